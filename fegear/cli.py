@@ -25,6 +25,7 @@ from fegear.commands.new import new
 from fegear.commands.open import open  # noqa: A004  (the name of the command)
 from fegear.commands.run import plan, run
 from fegear.commands.schema import results, schema
+from fegear.commands.size import size
 from fegear.commands.studies import check, compare, cost, effects, sweep
 from fegear.commands.verify import verify
 
@@ -90,6 +91,7 @@ COMMANDS = (
     (plan, "Show the calculation plan and the estimated time."),
     (compare, "Compare two runs or two cases."),
     (sweep, "Parameter study over a grid of values."),
+    (size, "Choose the teeth of a pair for a requirement."),
     (effects, "Influence of each effect on the results."),
     (cost, "Accuracy versus computing time."),
     (check, "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -46,7 +45,9 @@ class EvenlySpaced(Part):
         """All values as the case has them [SI]."""
         if self.values is not None:
             return np.array(self.values)
-        return np.linspace(self.start or math.nan, self.stop or math.nan, self.count or 0)
+        if self.start is None or self.stop is None or self.count is None:  # refused before
+            return np.zeros(0)
+        return np.linspace(self.start, self.stop, self.count)
 
     @property
     def array(self) -> NDArray[np.float64]:

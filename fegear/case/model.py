@@ -22,6 +22,7 @@ from fegear.case.part import Part, Table
 from fegear.case.planetary import PlanetaryPart
 from fegear.case.renamed import SCHEMA_VERSION
 from fegear.case.shaft import BearingPart, ShaftInSpacePart
+from fegear.case.sizing import SizingPart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
@@ -70,6 +71,9 @@ class Case(Part):
     )
     robustness: Table[TolerancePart] | None = Field(
         default=None, description="Random deviations of a pair within the tolerances of its gears."
+    )
+    sizing: Table[SizingPart] | None = Field(
+        default=None, description="Requirement for which the teeth of a pair are chosen (`fegear size`)."
     )
     loading: Table[LoadingPart] | None = Field(default=None, description="Tooth loading functions.")
     transmission_error: Table[TransmissionErrorPart] = Field(

@@ -27,6 +27,8 @@ from fegear.commands.common import (
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fegear.output.fields import FieldFile
 
 
@@ -56,6 +58,18 @@ def run(
     ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
+    run_case(
+        case, changes(overrides, wanted), out, Voice(quiet, as_json), scheduler=scheduler, plots=not no_plots,
+        cache=cache, with_fields=fields, only_needs=only_needs,
+    )  # fmt: skip
+
+
+def run_case(
+    case: Path, asked: list[str], out: Path | None, voice: Voice, *, scheduler: str | None = None,
+    workers: int | None = None, plots: bool = True, cache: bool = False, with_fields: bool = False,
+    only_needs: bool = False,
+) -> None:  # fmt: skip
+    """Compute what a case asks for, write it and say it; what `run` and `size` have in common."""
     from fegear.base.solution_cache import SolutionCache, cache_on_disk
     from fegear.case.reading import read_scene
     from fegear.engine.executor import Executor
@@ -70,13 +84,12 @@ def run(
     from fegear.output.tables import sheet_lines
     from fegear.results.catalogue import STAGES
 
-    voice = Voice(quiet, as_json)
     start = time.perf_counter()
     try:
-        scene = read_scene(case, changes(overrides, wanted))
+        scene = read_scene(case, asked)
         planned = make_plan(scene, STAGES)
         if only_needs:  # for the set-up, which installs what a case needs and no more
-            typer.echo(",".join(missing(planned, plots=not no_plots)))
+            typer.echo(",".join(missing(planned, plots=plots)))
             return
         begin_page()
         target = out or default_folder(scene.name)
@@ -85,16 +98,18 @@ def run(
             watching = stack.enter_context(voice.watcher())
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
-            process = None if no_plots else stack.enter_context(PictureProcess())
+            process = stack.enter_context(PictureProcess()) if plots else None
             drawing = (
-                Drawing(scratch / "plots", process, scene.name, scene.gears if fields else None) if process else None
+                Drawing(scratch / "plots", process, scene.name, scene.gears if with_fields else None)
+                if process
+                else None
             )
             results = run_plan(
-                scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler),
+                scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler, workers),
                 found=drawing.begin if drawing else None,
             )  # fmt: skip
-            files: list[FieldFile] | None = [] if fields else None
-            remarks = write_results(results, scratch, watching, plots=not no_plots, begun=drawing, fields=files)
+            files: list[FieldFile] | None = [] if with_fields else None
+            remarks = write_results(results, scratch, watching, plots=plots, begun=drawing, fields=files)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for table in results.tables:
@@ -104,7 +119,7 @@ def run(
         voice.say(repr(value))
     for file in files or ():
         voice.say(f"Field {target / str(file)}")
-    if fields and not files:
+    if with_fields and not files:
         voice.note("No requested result has a field: request root-stress, or stiffness with face_positions.")
     voice.notes(results.notes(remarks), "report.html")
     for sentence in results.answer.sentences:

@@ -183,6 +183,10 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "profile and lead modification for minimum loaded transmission error, exact and grindable",
               effects=(NEIGHBOUR_COUPLING.name, HERTZ.name, MISALIGNMENT.name)),  # the gears' own reliefs are replaced
     ),
+    "Sizing": (
+        Entry("sizing", "sizing.sizing.SIZING", "Sizing of a gear pair", ("sizing",),
+              "teeth for a requirement: variants by formulas, Pareto front, transmission error by FE"),
+    ),
     "Helical pairs": (
         Entry("tooth-contact", "helical.tooth_contact.TOOTH_CONTACT", "Tooth contact analysis", ("tooth-contact",),
               "unloaded contact of helical flanks with or without misalignment: transmission error, path, ellipses",

@@ -51,7 +51,7 @@ EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crosscheck", "design-chart", "flank-design", "flank-fracture",
     "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-solution", "odd-pair", "odd-tooth-stiffness",
-    "pair-forced-response", "stress-intensity", "tooth-contact", "transmissibility",
+    "pair-forced-response", "sizing", "stress-intensity", "tooth-contact", "transmissibility",
 }  # fmt: skip
 
 

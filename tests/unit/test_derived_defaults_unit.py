@@ -266,6 +266,9 @@ NOT_THERE = {
 }  # fmt: skip
 #: ... or needs a formula, a search or solid gears of its own.
 NOT_WRITTEN = {
+    *(f"SizingPart.{key}" for key in (
+        "centre_distance", "material", "normal_module", "roughness", "torques", "wheel_strength",
+    )), "PresentPart.tip_diameter",
     *(f"AccuracyPart.{key}" for key in (
         "order", "root_edge_length", "root_fraction", "flank_edge_length", "tip_edge_length", "junction_edge_length",
         "back_edge_length", "growth", "tip_growth", "side_growth", "body_fraction", "rim_fraction",

@@ -1,0 +1,258 @@
+"""``[sizing]``: a requirement for which teeth are chosen: what a pair must do, what may vary, what it must not do."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.derived import keys_of
+from fegear.case.evenly_spaced import EvenlySpaced
+from fegear.case.gear import MaterialPart, ToleranceClass
+from fegear.case.operation import OperationPart, ShaftsPart
+from fegear.case.pair import IsoPart, TorquesPart
+from fegear.case.part import (
+    Angle,
+    Number,
+    Part,
+    PositiveLength,
+    PositiveNumber,
+    PositivePower,
+    PositiveSpeed,
+    PositiveTorque,
+    Table,
+    at_most,
+    refuse,
+)
+from fegear.case.strength import StrengthPart
+from fegear.case.surface import LubricantPart, RoughnessPart
+from fegear.design.sizing.limits import SizingLimits
+
+#: What variants can be compared by; each is better where it is smaller, but `safety` and `contact-ratio`.
+Criterion = Literal[
+    "transmission-error", "mass", "centre-distance", "loss", "safety", "contact-ratio", "sliding", "module"
+]
+#: Modules of ISO 54 [mm], series I and II.
+_SERIES_I = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
+_SERIES_II = (1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4.5, 5.5, 7.0, 9.0, 11.0, 14.0, 18.0)
+Teeth = Annotated[int, Field(ge=5, le=1000)]
+Lengths = Annotated[list[PositiveLength], Field(min_length=1), at_most(200, "values")]
+Angles = Annotated[list[Angle], Field(min_length=1), at_most(200, "values")]
+Positives = Annotated[list[PositiveNumber], Field(min_length=1), at_most(50, "values")]
+
+
+def _usual_criteria() -> list[Criterion]:
+    return ["transmission-error", "mass", "safety"]
+
+
+class ShiftsPart(EvenlySpaced):
+    """``pinion_shift = { start, stop, count }``, evenly spaced, or a list."""
+
+    example = "write { start = -0.2, stop = 0.8, count = 11 }, or a list"
+
+    values: Annotated[list[Number], Field(min_length=1), at_most(1000, "values")] | None = Field(
+        default=None, description="Profile shift coefficients as a list (instead of the table)."
+    )
+    start: Number | None = Field(default=None, description="Minimum profile shift coefficient.")
+    stop: Number | None = Field(default=None, description="Maximum profile shift coefficient.")
+    count: Annotated[int, Field(ge=2, le=1000)] | None = Field(
+        default=None, description="Number of equally spaced values, both ends included."
+    )
+
+    @property
+    def shifts(self) -> tuple[float, ...]:
+        """All of them, increasing, as somebody would write them."""
+        return tuple(round(float(one), 12) + 0.0 for one in self.array)
+
+
+if TYPE_CHECKING:
+
+    class _LimitKeys(Part, SizingLimits):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _LimitKeys = keys_of(SizingLimits)
+
+
+class LimitsPart(_LimitKeys):  # type: ignore[misc]  # frozen by pydantic
+    """``limits = { tip_thickness, contact_ratio, ... }``: what a pair must not fall below or exceed."""
+
+    shift_sum: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(  # type: ignore[assignment]
+        default_factory=lambda: [-1.0, 1.5], description="Minimum and maximum of x_1 + x_2."
+    )
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        if self.shift_sum[0] > self.shift_sum[1]:
+            raise refuse("must be minimum and maximum", "exchange the values", key="shift_sum", value=self.shift_sum)
+        return self
+
+
+class PresentPart(Part):
+    """``[sizing.present]``: a design that exists, to be placed among the variants with what it breaks."""
+
+    teeth: Annotated[list[Teeth], Field(min_length=2, max_length=2)] = Field(
+        description="Numbers of teeth of driver and driven gear, the smaller first."
+    )
+    normal_module: PositiveLength = Field(description="Normal module m_n.")
+    helix_angle: Angle = Field(default=0.0, description="Helix angle.")
+    pressure_angle: Angle = Field(default=math.radians(20.0), description="Normal pressure angle.")
+    profile_shift: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(
+        default_factory=lambda: [0.0, 0.0], description="Profile shift coefficients."
+    )
+    face_width: PositiveLength = Field(description="Common face width.")
+    addendum: PositiveNumber = Field(default=1.0, description="Addendum of the basic racks h_aP in modules.")
+    tip_diameter: Lengths | None = Field(
+        default=None, description="Tip diameters of both gears. Default: as those of the variants."
+    )
+
+    @model_validator(mode="after")
+    def _pinion_first(self) -> Self:
+        if self.teeth[0] > self.teeth[1]:
+            raise refuse("must not be decreasing", "specify the pinion first", key="teeth", value=self.teeth)
+        if self.tip_diameter is not None and len(self.tip_diameter) != 2:
+            raise refuse("must be two diameters", 'for example ["60 mm", "180 mm"]', key="tip_diameter")
+        return self
+
+
+class SizingPart(Part):
+    """A pair of external gears to be sized: requirement, what may vary, limits and criteria. The pinion drives."""
+
+    power: PositivePower | None = Field(default=None, description="Nominal power at `speed`; alternatively `torque`.")
+    torque: PositiveTorque | None = Field(default=None, description="Nominal torque on the pinion.")
+    speed: PositiveSpeed = Field(description="Speed of the pinion.")
+    ratio: Annotated[Number, Field(ge=1.0, le=100.0)] = Field(description="Gear ratio z_2/z_1 of the reduction.")
+    ratio_tolerance: Annotated[Number, Field(ge=0.0, le=0.5)] = Field(
+        default=0.02, description="Permissible relative deviation of the ratio; 0: exact."
+    )
+    centre_distance: PositiveLength | Lengths | None = Field(
+        default=None,
+        description="Centre distance, or its minimum and maximum as a list. Default: free.",
+    )
+    face_width: PositiveLength | Lengths | None = Field(
+        default=None, description="Face width, or several to choose from; alternatively `width_ratio`."
+    )
+    width_ratio: Positives | None = Field(
+        default=None, description="Face widths as b/d_1, rounded up to whole millimetres."
+    )
+    strength: Table[StrengthPart] = Field(description="Material of both gears for the rating.")
+    wheel_strength: Table[StrengthPart] | None = Field(
+        default=None, description="Material of the wheel for the rating. Default: that of the pinion."
+    )
+    material: Table[MaterialPart] | None = Field(
+        default=None, description="Elastic constants and density of both gears. Default: steel."
+    )
+    tolerance_class: ToleranceClass = Field(default=6, description="Flank tolerance class (ISO 1328-1) of both gears.")
+    roughness: Table[RoughnessPart] | None = Field(
+        default=None, description="Roughness of both gears. Default: as in `rating`."
+    )
+    operation: Table[OperationPart] = Field(
+        default_factory=OperationPart, description="Loads, life and minimum safety factors, as of a pair."
+    )
+    lubricant: Table[LubricantPart] | None = Field(default=None, description="Lubricant, as of a pair.")
+    shafts: Table[ShaftsPart] | None = Field(
+        default=None, description="Pinion shaft and bearing arrangement for K_Hbeta, as of a pair."
+    )
+    iso_6336: Table[IsoPart] = Field(default_factory=IsoPart, description="Options of ISO 6336, as of a pair.")
+    torques: Table[TorquesPart] | None = Field(
+        default=None,
+        description="Torques at which the transmission error counts (its maximum over them). Default: the nominal.",
+    )
+    normal_module: Lengths | None = Field(
+        default=None, description="Normal modules to choose from. Default: `module_series`, 1 to 20 mm."
+    )
+    module_series: Literal["I", "I+II"] = Field(default="I", description="Series of ISO 54 for the modules.")
+    pinion_teeth: Annotated[list[Teeth], Field(min_length=2, max_length=2)] = Field(
+        default_factory=lambda: [15, 40], description="Minimum and maximum number of teeth of the pinion."
+    )
+    hunting: bool = Field(default=False, description="Only numbers of teeth without a common divisor.")
+    helix_angle: Angles = Field(default_factory=lambda: [0.0], description="Helix angles. Default: 0 (spur gears).")
+    pressure_angle: Angles = Field(
+        default_factory=lambda: [math.radians(20.0)], description="Normal pressure angles. Default: 20 deg."
+    )
+    pinion_shift: Table[ShiftsPart] = Field(
+        default_factory=lambda: ShiftsPart(start=-0.2, stop=0.8, count=11),
+        description="Profile shift coefficients of the pinion. Default: -0.2 to 0.8 in steps of 0.1.",
+    )
+    shift_sum: Table[ShiftsPart] = Field(
+        default_factory=lambda: ShiftsPart(values=[0.0]),
+        description="Sums x_1 + x_2 where the centre distance is free or a range. Default: 0.",
+    )
+    addendum: Positives = Field(
+        default_factory=lambda: [1.0],
+        description="Addenda of the basic racks h_aP in modules (above 1: deep teeth). Default: 1.",
+    )
+    root_clearance: PositiveNumber = Field(
+        default=0.25, description="Dedendum of the basic racks minus `addendum`, in modules."
+    )
+    rack_tip_radius: PositiveNumber = Field(
+        default=0.38, description="Tip radius of the basic racks rho_fP in modules."
+    )
+    shorten_tips: bool = Field(
+        default=True, description="Shorten the tips of both gears by what keeps the clearance of the basic racks."
+    )
+    limits: Table[LimitsPart] = Field(default_factory=LimitsPart, description="Limits that every variant must keep.")
+    criteria: Annotated[list[Criterion], Field(min_length=1)] = Field(
+        default_factory=_usual_criteria,
+        description="What variants are compared by, the most important first.",
+    )
+    screened: Annotated[int, Field(ge=0, le=5000)] = Field(
+        default=24, description="Number of variants whose transmission error is estimated by FE (coarse)."
+    )
+    verified: Annotated[int, Field(ge=0, le=200)] = Field(
+        default=3, description="Number of best variants verified by FE with estimated errors."
+    )
+    verified_width: Literal["slices", "solid"] = Field(
+        default="solid", description="Tooth model by which helical variants are verified: `slices` or `solid` (3D)."
+    )
+    tolerance: Annotated[Number, Field(ge=1e-4, le=0.1)] = Field(
+        default=1e-2, description="Relative accuracy of the FE verification."
+    )
+    present: Table[PresentPart] | None = Field(
+        default=None, description="Existing design to be placed among the variants."
+    )
+
+    @property
+    def modules(self) -> tuple[float, ...]:
+        """Modules to choose from [m], ascending."""
+        if self.normal_module is not None:
+            return tuple(sorted(set(self.normal_module)))
+        series = _SERIES_I if self.module_series == "I" else (*_SERIES_I, *_SERIES_II)
+        return tuple(float(f"{one}e-3") for one in sorted(series))
+
+    @property
+    def distances(self) -> tuple[float, float] | None:
+        """Minimum and maximum centre distance [m]; None where it is free."""
+        given = self.centre_distance
+        if given is None:
+            return None
+        return (min(given), max(given)) if isinstance(given, list) else (given, given)
+
+    @property
+    def widths(self) -> tuple[float, ...]:
+        """Face widths [m]; none where they follow from b/d_1."""
+        given = self.face_width
+        return () if given is None else tuple(sorted(set(given))) if isinstance(given, list) else (given,)
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Self:
+        if self.power is not None and self.torque is not None:
+            raise refuse("contradicts power", "specify either power or torque", key="torque")
+        if self.power is None and self.torque is None:
+            raise refuse("is missing", 'set power = "5 kW" or torque = "120 N*m"', key="power")
+        if self.face_width is not None and self.width_ratio is not None:
+            raise refuse("contradicts face_width", "specify either of them", key="width_ratio")
+        if self.face_width is None and self.width_ratio is None:
+            raise refuse("is missing", 'set face_width = "35 mm" or width_ratio = [0.8]', key="face_width")
+        if isinstance(self.centre_distance, list) and len(self.centre_distance) > 2:
+            raise refuse("must be one length, or minimum and maximum", key="centre_distance", value="(a list)")
+        if self.pinion_teeth[0] > self.pinion_teeth[1]:
+            raise refuse("must be minimum and maximum", "exchange them", key="pinion_teeth", value=self.pinion_teeth)
+        if len(set(self.criteria)) < len(self.criteria):
+            raise refuse("contains a criterion twice", "specify each once", key="criteria", value=self.criteria)
+        if any(not 0.0 <= one <= math.radians(45.0) for one in self.helix_angle):
+            raise refuse("must be between 0 and 45 deg", key="helix_angle", value="(a list)")
+        if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.pressure_angle):
+            raise refuse("must be between 10 and 30 deg", key="pressure_angle", value="(a list)")
+        return self

@@ -1,0 +1,114 @@
+"""Transmission error and root stress of variants by finite elements: each the run of its own case, once.
+
+Every variant is a point of its own (`fegear.engine.executor.map_points`): on all cores or a cluster, kept as soon as it
+is finished, so that a sizing that was killed goes on where it stopped, with the same numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.case.reading import build_scene
+from fegear.results.sizing.variant_case import PAIR, case_of_variant
+
+if TYPE_CHECKING:
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.design.sizing.space import Variant
+    from fegear.engine.progress import Progress
+    from fegear.engine.stage import Work
+
+#: Relative accuracy of an estimate, and the tooth model of its helical pairs.
+COARSE, COARSE_WIDTH = 1e-2, "slices"
+#: What is computed of a variant.
+_RESULTS = ("transmission-error", "root-stress-history")
+
+
+@dataclass(frozen=True)
+class FromFE:
+    """What finite elements say of a variant; NaN with the reason where they say nothing.
+
+    Parameters
+    ----------
+    te, te_error : float
+        Maximum of the peak-to-peak transmission error over the torques, its estimated error [m].
+    root_stress, root_stress_error : float
+        Maximum root stress of both gears at the nominal torque [Pa].
+    reason : str
+    """
+
+    te: float = math.nan
+    te_error: float = math.nan
+    root_stress: float = math.nan
+    root_stress_error: float = math.nan
+    reason: str = ""
+
+
+def compute_variant(point: Mapping[str, Any], cache: SolutionCache) -> dict[str, float]:
+    """Run the case of a variant; plain numbers in SI."""
+    from fegear.engine.executor import Executor
+    from fegear.engine.plan import make_plan
+    from fegear.engine.run import run_plan
+    from fegear.results.catalogue import STAGES
+
+    scene = replace(build_scene(point["document"], "variant", Path(point["folder"])), estimates=point["estimates"])
+    results = run_plan(scene, make_plan(scene, STAGES), cache=cache, executor=Executor(here=True))
+    values = {value.name: value for value in results.values}
+    te = values[f"{PAIR}.te_peak_to_peak"]
+    roots = [values[f"{PAIR}.{member}.largest_root_tension"] for member in ("driver", "driven")]
+    root = max(roots, key=lambda one: one.si)
+    found = {"te": float(te.si), "te_error": _error(te.si_error)}
+    for table in results.tables:
+        if table.name == f"transmission_error_loads_{PAIR}":
+            columns = {column.name: np.asarray(column.si, dtype=float) for column in table.columns}
+            ranges = [float(np.ptp(columns["te"][columns["total_load"] == w])) for w in set(columns["total_load"])]
+            found["te"] = max(found["te"], *ranges)
+    return {**found, "root_stress": float(root.si), "root_stress_error": _error(root.si_error)}
+
+
+def _error(value: float | None) -> float:
+    return math.nan if value is None else float(value)
+
+
+def _content(point: Mapping[str, Any]) -> object:
+    return [{key: value for key, value in point["document"].items() if key != "title"}, point["estimates"]]
+
+
+def by_finite_elements(
+    asked: Mapping[str, Any], variants: Sequence[Variant], work: Work, folder: str, progress: Progress, *,
+    verified: tuple[str, float] | None = None,
+) -> tuple[FromFE, ...]:  # fmt: skip
+    """Numbers of every variant.
+
+    Parameters
+    ----------
+    asked : mapping
+        ``[sizing]`` as it is written.
+    variants : sequence of Variant
+    work : Work
+    folder : str
+        Where files that the case names are looked for.
+    progress : callable
+    verified : (str, float), optional
+        Tooth model of helical pairs and tolerance of a verification, with estimated errors; else an estimate.
+    """
+    from fegear.engine.executor import map_points
+    from fegear.engine.processes import Failure
+
+    width, tolerance = verified or (COARSE_WIDTH, COARSE)
+    points = [
+        {
+            "document": case_of_variant(asked, one, _RESULTS, width=width, tolerance=tolerance), "folder": folder,
+            "estimates": verified is not None,
+        }
+        for one in variants
+    ]  # fmt: skip
+    found = map_points(
+        compute_variant, points, work.executor, work.cache, key=_content, shares_cache=True, progress=progress
+    )
+    return tuple(FromFE(reason=one.reason) if isinstance(one, Failure) else FromFE(**one) for one in found)

@@ -1,0 +1,201 @@
+"""What a sizing shows: the variants compared, what excluded the others, the present design among them, answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.notes import assuming, exceeding, failing
+from fegear.base.printed import figures
+from fegear.base.shown import shown
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Every, Rows
+from fegear.engine.sheet.sheet import Sheet
+from fegear.results.sizing.sizing_data import SizedVariant
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.base.notes import Note
+    from fegear.engine.sheet.seen import Seen
+    from fegear.results.sizing.sizing_data import SizingData
+
+#: How many reasons a sentence names.
+_NAMED = 3
+#: Variants whose names are shown on the page.
+_POINT = 7.0
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Some of the variants as points."""
+
+    notes: tuple[str, ...]
+    total_mass: Array = shown("kg", "mass of both gears")
+    te: Array = shown("um", "peak-to-peak transmission error")
+    margin: Array = shown("", "load margin")
+
+
+def _points(variants: tuple[SizedVariant, ...]) -> Drawn:
+    return Drawn(
+        tuple(f"variant {one.number}: {one.words}" if one.number else f"present: {one.words}" for one in variants),
+        np.array([one.mass for one in variants]), np.array([one.te for one in variants]),
+        np.array([one.margin for one in variants]),
+    )  # fmt: skip
+
+
+def _groups(seen: Seen) -> dict[str, Drawn]:
+    """Points of the scatter chart, by the entry of its legend."""
+    data: SizingData = seen.data
+    rest = tuple(one for one in data.chosen if not one.place)
+    groups = {"compared": rest, "Pareto front": data.front}
+    if data.present is not None:
+        groups["present design"] = (data.present.design,)
+    return {name: _points(variants) for name, variants in groups.items() if variants}
+
+
+def _has_te(seen: Seen) -> bool:
+    return any(math.isfinite(one.te) for one in seen.data.chosen)
+
+
+def _look(seen: Seen) -> dict[str, object]:
+    return {"size": _POINT, "notes": seen.one.notes}
+
+
+def _chart(key: str, y: str, words: str) -> Chart:
+    te = y == "te"
+    return Chart(
+        key, f"Variants: {words} over mass",
+        "Variants that keep all limits and were compared. In the report, hover over a point for the variant.",
+        (Over("total_mass", (Line(y, kind="points", each=Family(_groups, most=None), look=_look),), of=lambda _: Drawn),),
+        when=lambda seen: bool(seen.data.chosen) and _has_te(seen) == te,
+    )  # fmt: skip
+
+
+def _um(te: float) -> str:
+    return f"{figures(te * 1e6, 2)} µm"
+
+
+def _said_of(one: SizedVariant) -> str:
+    """Numbers of a variant in a sentence."""
+    found = [f"mass {figures(one.mass)} kg", f"load margin {figures(one.margin)}"]
+    if math.isfinite(one.te):
+        kind = "verified" if math.isfinite(one.te_verified) else "estimated"
+        found.insert(0, f"transmission error {_um(one.te)} peak to peak ({kind})")
+    return ", ".join(found)
+
+
+def _answers(seen: Seen) -> Iterator[str]:
+    data: SizingData = seen.data
+    if data.best is None:
+        ranked = sorted(data.reasons, key=lambda one: -one.variants)[:_NAMED]
+        named = ", ".join(f"{one.reason} {one.variants:,}" for one in ranked)
+        yield f"None of {data.count:,} variants keeps all limits: {named}."
+        return
+    best = data.best
+    yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}."
+    yield (
+        f"{data.living:,} variants keep all limits; {data.on_front:,} are on the Pareto front by formulas, "
+        f"{len(data.front):,} of {len(data.chosen):,} compared on that by all criteria."
+    )
+    if data.present is not None:
+        yield from _present(seen)
+
+
+def _present(seen: Seen) -> Iterator[str]:
+    """Where the present design stands."""
+    placed = seen.data.present
+    own = placed.design
+    breaks = f"breaks {', '.join(placed.reasons)}" if placed.reasons else "keeps all limits"
+    yield f"Present design ({own.words}) {breaks}; {_said_of(own)}."
+    better = placed.better
+    if better is not None:
+        yield f"Variant {better.number} is better by all criteria: {better.words}; {_said_of(better)}."
+        return
+    yield (
+        "No variant compared is better than the present design by all criteria "
+        f"({placed.dominating:,} are by formulas)."
+    )
+
+
+def _bounds(seen: Seen) -> tuple[Note, ...]:
+    best = seen.data.best
+    if best is None or not best.on_bounds:
+        return ()
+    return (
+        exceeding(
+            f"Variant {best.number}: {', '.join(best.on_bounds)} at the end of what may vary; a better one may lie "
+            "beyond. Widen the range."
+        ),
+    )
+
+
+def _failed(seen: Seen) -> tuple[Note, ...]:
+    failed = seen.data.failed
+    if not failed:
+        return ()
+    number, reason = failed[0]
+    return (failing(f"{len(failed)} variants have no transmission error by FE, the first is {number}: {reason}"),)
+
+
+def _unseen(seen: Seen) -> tuple[Note, ...]:
+    """Variants of the front by formulas that finite elements did not look at."""
+    data: SizingData = seen.data
+    if not _has_te(seen) or len(data.chosen) >= data.living:
+        return ()
+    return (
+        exceeding(
+            f"Transmission error known for {len(data.chosen):,} of {data.living:,} variants, evenly along the Pareto "
+            "front by formulas; increase sizing.screened for more."
+        ),
+    )
+
+
+def _slices(seen: Seen) -> tuple[Note, ...]:
+    if not any(one.helix_angle for one in seen.data.chosen) or not _has_te(seen):
+        return ()
+    return (
+        assuming(
+            "Transmission error of helical variants estimated with coupled slices; near integer overlap ratios it may "
+            "be a third off. Verified values count."
+        ),
+    )
+
+
+def _said(seen: Seen) -> tuple[str, ...]:
+    return tuple(seen.asked.said)
+
+
+SIZING_SHEET = Sheet(
+    name=lambda _asked: "",
+    tables=(
+        Rows("sizing", "Variants compared, the Pareto front first", (Every("sizing"),), of="chosen",
+             when=lambda seen: bool(seen.data.chosen)),
+        Rows("excluded_variants", "What excluded variants", (Every("reasons"),), of="reasons",
+             when=lambda seen: bool(seen.data.reasons)),
+        Rows("placed_design", "Present design among the variants", (Every("present"),),
+             of=lambda seen: seen.data.present.placed, when=lambda seen: seen.data.present is not None),
+        Rows("present_design", "Numbers of the present design", (Every("sizing"),),
+             of=lambda seen: (seen.data.present.design,), when=lambda seen: seen.data.present is not None),
+    ),
+    values=(
+        Number("count", exact, owner="sizing", name="variants"),
+        Number("living", exact, owner="sizing"),
+        Number("on_front", exact, owner="sizing"),
+        Number("te_verified", lambda seen: seen.data.best.te_verified_error, "best", owner="sizing"),
+        Number("mass", exact, "best", owner="sizing"),
+        Number("margin", exact, "best", owner="sizing"),
+    ),
+    figures=(
+        _chart("sizing_te", "te", "transmission error"),
+        _chart("sizing_margin", "margin", "load margin"),
+    ),
+    answer=Answer(_answers, figure=lambda seen: "sizing_te" if _has_te(seen) else "sizing_margin"),
+    remarks=(_failed, _bounds, _unseen, _slices, _said),
+    settings=lambda seen: {"variants": seen.data.count},
+)  # fmt: skip

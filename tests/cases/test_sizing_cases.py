@@ -1,0 +1,314 @@
+"""Sizing: the funnel against plain loops over single pairs, resumed, on any number of workers, published designs."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import FegearError, InputError
+from fegear.base.solution_cache import SolutionCache, cache_on_disk
+from fegear.case.built.rated_pair import pair_to_rate
+from fegear.case.reading import build_scene
+from fegear.design.sizing.front import best_by_fronts, pareto_front
+from fegear.design.sizing.limits import SizingLimits
+from fegear.engine.executor import Executor
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.formulas.iso6336.safety import rate_pair
+from fegear.geometry.checks import tip_thickness
+from fegear.geometry.involute import inv, pressure_angle_of_inv
+from fegear.geometry.pair import MEMBERS, specific_sliding
+from fegear.results.catalogue import STAGES
+from fegear.results.sizing.applied_variant import text_of_variant
+from fegear.results.sizing.variant_case import case_of_variant
+
+REQUIREMENT = {
+    "power": "2.9 kW",
+    "speed": "725 rpm",
+    "ratio": 2.5,
+    "ratio_tolerance": 0.01,
+    "strength": {"material": "18CrNiMo7-6"},
+    "operation": {"application_factor": 1.25, "life": "5000 h"},
+}
+#: 112 mm, 2.9 kW, 725 to 287.5 rpm, and another free one.
+FIXED = {
+    **REQUIREMENT, "centre_distance": "112 mm", "face_width": "35 mm", "normal_module": ["2.5 mm", "3 mm"],
+    "pinion_teeth": [18, 26], "helix_angle": ["0 deg", "12 deg"], "pinion_shift": [-0.2, 0.1, 0.4, 0.7],
+    "criteria": ["safety", "mass", "sliding"], "verified": 0,
+}  # fmt: skip
+FREE = {
+    **REQUIREMENT, "ratio": 4, "centre_distance": ["90 mm", "120 mm"], "width_ratio": [0.6, 0.9],
+    "normal_module": ["1.5 mm", "2 mm"], "pinion_teeth": [17, 21], "pinion_shift": [0.0, 0.3, 0.6],
+    "shift_sum": [-0.2, 0.4], "criteria": ["mass", "loss"], "verified": 0,
+}  # fmt: skip
+
+
+def sized(asked: dict, *, cache: SolutionCache | None = None, executor: Executor | None = None):
+    scene = build_scene({"results": ["sizing"], "sizing": asked}, "sized", Path())
+    results = run_plan(
+        scene, make_plan(scene, STAGES), cache=cache or SolutionCache(), executor=executor or Executor(here=True)
+    )
+    tables = {table.name: {c.name: c.si for c in table.columns} for table in results.tables}
+    return results, tables
+
+
+def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
+    """All variants one by one, through the case of each: how many there are, and the costs of those that live."""
+    limits, enumerated, living = SizingLimits(), 0, {}
+    alpha = math.radians(20.0)
+    widths = [asked["face_width"]] if "face_width" in asked else asked["width_ratio"]
+    fixed = isinstance(asked["centre_distance"], str)
+    for m_text, beta_text, width in itertools.product(
+        asked["normal_module"], asked.get("helix_angle", ["0 deg"]), widths
+    ):
+        m, beta = float(m_text.split()[0]), math.radians(float(beta_text.split()[0]))
+        a_t = math.atan(math.tan(alpha) / math.cos(beta))
+        low, high = asked["pinion_teeth"]
+        tolerance = asked["ratio_tolerance"]
+        for z_1, z_2 in itertools.product(range(low, high + 1), range(low, 140)):
+            if abs(z_2 / z_1 / asked["ratio"] - 1.0) > tolerance + 1e-12:
+                continue
+            pitch = 0.5 * m * (z_1 + z_2) / math.cos(beta)
+            for total in [None] if fixed else asked["shift_sum"]:
+                for x_1 in asked["pinion_shift"]:
+                    enumerated += 1
+                    if total is None:
+                        a = float(asked["centre_distance"].split()[0])
+                        cosine = pitch * math.cos(a_t) / a
+                        if cosine >= 1.0:
+                            continue
+                        total_here = (z_1 + z_2) * float(inv(math.acos(cosine)) - inv(a_t)) / (2.0 * math.tan(alpha))
+                    else:
+                        total_here = total
+                        value = float(inv(a_t)) + 2.0 * total * math.tan(alpha) / (z_1 + z_2)
+                        a = pitch * math.cos(a_t) / math.cos(float(pressure_angle_of_inv(value)))
+                    if not fixed and not 90.0 <= a <= 120.0:
+                        continue
+                    if not -1.0 <= total_here <= 1.5:
+                        continue
+                    if isinstance(width, str):
+                        b = float(width.split()[0])
+                    else:
+                        b = math.ceil(width * m * z_1 / math.cos(beta) - 1e-6)
+                    costs = one_by_one(asked, limits, (z_1, z_2), (x_1, total_here - x_1), m, beta, a, b)
+                    if costs is not None:
+                        living[z_1, z_2, m, round(math.degrees(beta)), x_1, total, b] = costs
+    return enumerated, living
+
+
+def one_by_one(asked, limits, z, x, m, beta, a, b) -> tuple[float, ...] | None:
+    """The costs of a variant by its own case; None where it breaks a limit."""
+    from fegear.design.sizing.space import Variant
+
+    moved = min((a - 0.5 * m * sum(z) / math.cos(beta)) / m - sum(x), 0.0)
+    tips = tuple(1e-3 * m * (zi / math.cos(beta) + 2.0 * (1.0 + xi + moved)) for zi, xi in zip(z, x, strict=True))
+    variant = Variant(
+        z, x, tips, m * 1e-3, math.radians(20.0), beta, 1.0, 1.25, 0.38, a * 1e-3, b * 1e-3
+    )  # fmt: skip
+    try:
+        scene = build_scene(case_of_variant(asked, variant, ["rating"]), "one", Path())
+    except FegearError:
+        return None
+    pair = scene.pairs["I"]
+    gears = (pair.driver, pair.driven)
+    if any(gear.tooth.undercut for gear in gears):
+        return None
+    reach = [pair.x_of_radius(gears[1 - i].involute_tip_radius, MEMBERS[1 - i]) for i in (0, 1)]
+    starts = [pair.x_of_radius(gears[i].form_radius, MEMBERS[i]) for i in (0, 1)]
+    if reach[0] < starts[0] - 1e-9 * m or reach[1] > starts[1] + 1e-9 * m:
+        return None
+    sliding = min(
+        float(specific_sliding(pair, at, member))
+        for at, member in zip((pair.x_start, pair.x_end), MEMBERS, strict=True)
+    )
+    kept = (
+        min(tip_thickness(gear) / (m * 1e-3) for gear in gears) >= limits.tip_thickness,
+        pair.contact_ratio >= limits.contact_ratio,
+        min(pair.tip_clearance(member) / (m * 1e-3) for member in MEMBERS) >= limits.tip_clearance,
+        sliding >= limits.specific_sliding,
+        b * 1e-3 <= limits.width_ratio * 2.0 * pair.driver.pitch_radius,
+    )
+    if not all(kept):
+        return None
+    try:
+        rated = rate_pair(pair_to_rate(scene, "I").conditions)
+    except FegearError:
+        return None
+    s_h, s_f = min(rated.contact_safety), min(rated.bending_safety)
+    if s_h < 1.0 or s_f < 1.4:
+        return None
+    discs = [(0.5 * (2.0 * g.tip_radius + 2.0 * g.root_radius)) ** 2 - g.root_radius**2 for g in gears]
+    one, two = pair.x_end / pair.base_pitch, -pair.x_start / pair.base_pitch
+    factor = math.pi * (1.0 / z[0] + 1.0 / z[1])
+    of = {
+        "safety": -min(s_h**2, s_f / 1.4),
+        "mass": 7850.0 * b * 1e-3 * 0.25 * math.pi * sum(discs),
+        "sliding": -sliding,
+        "centre-distance": a * 1e-3,
+        "loss": factor * (1.0 - one - two + one**2 + two**2),
+    }
+    return tuple(of[name] for name in asked["criteria"])
+
+
+def front_by_loops(costs: dict[tuple, tuple[float, ...]]) -> set[tuple]:
+    front = set()
+    for key, own in costs.items():
+        beaten = any(
+            all(p <= q * (1.0 + 1e-9 * math.copysign(1.0, q)) for p, q in zip(other, own, strict=True))
+            and any(p < q - 1e-9 * abs(q) for p, q in zip(other, own, strict=True))
+            for other in costs.values()
+        )
+        if not beaten:
+            front.add(key)
+    return front
+
+
+@pytest.mark.parametrize("asked", [FIXED, pytest.param(FREE, marks=pytest.mark.dear)], ids=["fixed", "free"])
+def test_plain_loops_over_single_pairs_find_the_same_variants_and_the_same_front(asked):
+    enumerated, living = by_plain_loops(asked)
+    results, tables = sized(asked)
+    values = {value.name: value.si for value in results.values}
+    assert values["sizing.variants"] == enumerated
+    assert values["sizing.variants_living"] == len(living)
+    assert sum(tables["excluded_variants"]["variants"]) + len(living) == enumerated
+    front, table = front_by_loops(living), tables["sizing"]
+    assert values["sizing.variants_on_front"] == len(front)
+    assert 3 < len(front) < len(living)
+    fixed = isinstance(asked["centre_distance"], str)
+    found = {
+        (
+            int(table["z_1"][n]), int(table["z_2"][n]), round(table["normal_module"][n] * 1e3, 9),
+            round(math.degrees(table["helix_angle"][n])), round(table["x_1"][n], 9),
+            None if fixed else round(table["x_1"][n] + table["x_2"][n], 9), round(table["face_width"][n] * 1e3, 9),
+        )
+        for n in range(len(table["z_1"]))
+    }  # fmt: skip
+    assert found == front
+    best = next(iter(sorted(front)))
+    n = next(n for n in range(len(found)) if (table["z_1"][n], round(table["x_1"][n], 9)) == (best[0], best[4]))
+    assert table["place"].min() >= 1
+    assert np.isfinite(table["load_margin"][n])
+
+
+def test_a_present_design_that_interferes_is_placed_with_its_reasons():
+    present = {
+        "teeth": [23, 58], "normal_module": "2.75 mm", "helix_angle": "12 deg", "profile_shift": [0.0, -0.6336],
+        "face_width": "35 mm",
+    }  # fmt: skip
+    asked = {**FIXED, "ratio": 2.5217, "ratio_tolerance": 0.03, "present": present}
+    results, tables = sized(asked)
+    assert "Present design (23/58 teeth" in results.answer.sentences[2]
+    assert "breaks interference" in results.answer.sentences[2]
+    placed = tables["placed_design"]
+    assert list(placed["criterion"]) == asked["criteria"]
+    assert (placed["better"] > 0).any()
+    own = tables["present_design"]
+    assert own["S_H"][0] == pytest.approx(1.73, abs=0.15)
+
+
+def test_reasons_name_what_a_requirement_without_a_design_breaks():
+    results, tables = sized({**FIXED, "power": "2900 kW"})
+    assert results.answer.sentences[0].startswith("None of ")
+    assert "S_H" in results.answer.sentences[0]
+    assert "sizing" not in tables
+    with pytest.raises(InputError, match="is not met by any numbers of teeth"):
+        sized({**FIXED, "ratio": 2.517, "ratio_tolerance": 0.0})
+    with pytest.raises(InputError, match=r"sizing\.operation"):
+        sized({**FIXED, "operation": {"life": "1e-9 s"}})
+
+
+def test_a_range_of_shifts_may_begin_or_end_at_zero():
+    for low, high in ((0.0, 0.4), (-0.4, 0.0)):
+        spaced = {"start": low, "stop": high, "count": 3}
+        results, _ = sized({**FIXED, "pinion_shift": spaced, "helix_angle": ["0 deg"], "normal_module": ["3 mm"]})
+        listed, _ = sized(
+            {**FIXED, "pinion_shift": [low, 0.5 * (low + high), high], "helix_angle": ["0 deg"],
+             "normal_module": ["3 mm"]}
+        )  # fmt: skip
+        assert [value.si for value in results.values] == [value.si for value in listed.values]
+
+
+def test_fronts_of_equal_costs_keep_all_and_larger_fronts_are_thinned_evenly():
+    costs = np.array([[1.0, 2.0], [2.0, 1.0], [1.0, 2.0], [2.0, 2.0], [1.5, 1.5]])
+    assert pareto_front(costs).tolist() == [0, 1, 2, 4]
+    assert best_by_fronts(costs, 5).tolist() == [0, 1, 2, 3, 4]
+    line = np.array([[k, 10.0 - k] for k in range(11)])
+    assert best_by_fronts(line, 3).tolist() == [0, 5, 10]
+
+
+@pytest.mark.dear
+def test_estimates_and_verified_numbers_are_those_of_the_variants_own_cases_resumed_or_not(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path / "cache"))
+    asked = {
+        **FIXED, "helix_angle": ["0 deg"], "criteria": ["transmission-error", "mass"], "screened": 2, "verified": 1,
+        "normal_module": ["3 mm"], "tolerance": 0.05,
+    }  # fmt: skip
+    _, whole = sized(asked)
+    import fegear.results.sizing.by_fe as by_fe
+
+    alone, calls = by_fe.compute_variant, []
+
+    def killed(point, cache):
+        calls.append(point)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return alone(point, cache)
+
+    killed.__module__, killed.__qualname__ = alone.__module__, alone.__qualname__
+    monkeypatch.setattr(by_fe, "compute_variant", killed)
+    with pytest.raises(KeyboardInterrupt):
+        sized(asked, cache=cache_on_disk())
+    calls[:] = [None, None]  # from here on nothing is killed
+    _, again = sized(asked, cache=cache_on_disk())
+    assert len(calls) == 2 + 2  # of three runs one was kept
+    for name, column in whole["sizing"].items():
+        assert np.array_equal(np.asarray(column), np.asarray(again["sizing"][name]), equal_nan=column.dtype.kind == "f")
+    scene = build_scene({"results": ["sizing"], "sizing": asked}, "sized", Path())
+    results = run_plan(scene, make_plan(scene, STAGES), cache=cache_on_disk(), executor=Executor(here=True))
+    tables = {table.name: table for table in results.tables}
+    number = int(again["sizing"]["variant"][0])
+    text, said = text_of_variant(scene.document, tables, number, "results/sized")
+    assert f"variant {number}" in said
+    own = tomllib.loads(text) | {"results": ["transmission-error", "rating"], "neglected": False}
+    own["accuracy"] = {"tolerance": 0.05}
+    case = build_scene(own, "own", Path())
+    values = {value.name: value.si for value in run_plan(case, make_plan(case, STAGES)).values}
+    assert values["I.te_peak_to_peak"] == pytest.approx(again["sizing"]["te_verified"][0], rel=1e-9)
+    s_h = min(values["I.driver.S_H"], values["I.driven.S_H"])
+    assert s_h == pytest.approx(again["sizing"]["S_H"][0], rel=1e-11)
+    with pytest.raises(InputError, match="not in the table of variants"):
+        text_of_variant(scene.document, tables, 10**6, "results/sized")
+
+
+@pytest.mark.long
+def test_two_processes_find_the_same_table():
+    asked = {**FIXED, "criteria": ["transmission-error", "mass"], "screened": 4, "verified": 1}
+    tables = [sized(asked, executor=one)[1]["sizing"] for one in (Executor(here=True), Executor(workers=2))]
+    for name, column in tables[0].items():
+        assert np.array_equal(column, tables[1][name], equal_nan=column.dtype.kind == "f")
+
+
+def test_ratings_of_variants_are_those_of_their_cases_under_a_spectrum_and_on_a_shaft():
+    spectrum = [{"load_factor": 1.0, "share": 0.2}, {"load_factor": 0.6, "speed": "900 rpm", "share": 0.8}]
+    asked = {
+        **FIXED, "pinion_shift": [0.4], "normal_module": ["3 mm"], "wheel_strength": {"material": "42CrMo4"},
+        "operation": {"spectrum": spectrum, "life": "2000 h", "safety_contact": 0.5, "safety_root": 0.5},
+        "shafts": {"arrangement": "a", "bearing_span": "120 mm", "offset": "10 mm", "diameter": "35 mm"},
+    }  # fmt: skip
+    _, tables = sized(asked)
+    table = tables["sizing"]
+    scene = build_scene({"results": ["sizing"], "sizing": asked}, "sized", Path())
+    results = run_plan(scene, make_plan(scene, STAGES))
+    text, _ = text_of_variant(scene.document, {t.name: t for t in results.tables}, 0, "sized")
+    case = build_scene(tomllib.loads(text) | {"results": ["rating"]}, "own", Path())
+    values = {value.name: value.si for value in run_plan(case, make_plan(case, STAGES)).values}
+    for symbol in ("S_H", "S_F"):
+        both = [values[f"I.{member}.{symbol}_spectrum"] for member in MEMBERS]
+        assert min(both) == pytest.approx(table[symbol][0], rel=1e-10)
+    assert replace(SizingLimits(), mass=1.0).mass == 1.0
