@@ -41,6 +41,8 @@ _MOST_SHOWN = 500
 _DIGITS_OF_FE, _DIGITS = 2, 3
 #: Criteria that stand in where none of the wanted ones is given by formulas.
 _STAND_IN = ("mass", "safety")
+#: Criterion by which variants are chosen for finite elements: transmission errors fall with the total contact ratio.
+_FOR_FE = "contact-ratio"
 #: Units in which criteria are read, and their size in SI.
 UNITS = {"transmission-error": ("um", 1e-6), "centre-distance": ("mm", 1e-3), "module": ("mm", 1e-3)}
 
@@ -72,8 +74,9 @@ class SizingInputs:
 
     @property
     def by_formulas(self) -> tuple[str, ...]:
-        """Criteria that formulas give."""
-        return tuple(name for name in self.part.criteria if name not in BY_FE) or _STAND_IN
+        """Criteria that formulas give; the contact ratio stands for the transmission error until it is known."""
+        names = tuple(name for name in self.part.criteria if name not in BY_FE) or _STAND_IN
+        return (*names, _FOR_FE) if self.with_fe and _FOR_FE not in names else names
 
     @property
     def with_fe(self) -> bool:

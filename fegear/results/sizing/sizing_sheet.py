@@ -69,10 +69,11 @@ def _look(seen: Seen) -> dict[str, object]:
 
 def _chart(key: str, y: str, words: str) -> Chart:
     te = y == "te"
+    line = Line(y, kind="points", each=Family(_groups, most=None), look=_look)
     return Chart(
         key, f"Variants: {words} over mass",
         "Variants that keep all limits and were compared. In the report, hover over a point for the variant.",
-        (Over("total_mass", (Line(y, kind="points", each=Family(_groups, most=None), look=_look),), of=lambda _: Drawn),),
+        (Over("total_mass", (line,), of=lambda _: Drawn),),
         when=lambda seen: bool(seen.data.chosen) and _has_te(seen) == te,
     )  # fmt: skip
 
