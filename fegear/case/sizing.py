@@ -167,16 +167,14 @@ class SizingPart(Part):
         default_factory=lambda: [15, 40], description="Minimum and maximum number of teeth of the pinion."
     )
     hunting: bool = Field(default=False, description="Only numbers of teeth without a common divisor.")
-    helix_angle: Angles = Field(default_factory=lambda: [0.0], description="Helix angles. Default: 0 (spur gears).")
-    pressure_angle: Angles = Field(
-        default_factory=lambda: [math.radians(20.0)], description="Normal pressure angles. Default: 20 deg."
-    )
-    pinion_shift: Table[ShiftsPart] = Field(
-        default_factory=lambda: ShiftsPart(start=-0.2, stop=0.8, count=11),
+    helix_angle: Angles | None = Field(default=None, description="Helix angles. Default: 0 (spur gears).")
+    pressure_angle: Angles | None = Field(default=None, description="Normal pressure angles. Default: 20 deg.")
+    pinion_shift: Table[ShiftsPart] | None = Field(
+        default=None,
         description="Profile shift coefficients of the pinion. Default: -0.2 to 0.8 in steps of 0.1.",
     )
-    shift_sum: Table[ShiftsPart] = Field(
-        default_factory=lambda: ShiftsPart(values=[0.0]),
+    shift_sum: Table[ShiftsPart] | None = Field(
+        default=None,
         description="Sums x_1 + x_2 where the centre distance is free or a range. Default: 0.",
     )
     addendum: Positives = Field(
@@ -222,6 +220,28 @@ class SizingPart(Part):
         return tuple(float(f"{one}e-3") for one in sorted(series))
 
     @property
+    def helix_angles(self) -> tuple[float, ...]:
+        """Helix angles to choose from [rad], ascending."""
+        return tuple(sorted(set(self.helix_angle or (0.0,))))
+
+    @property
+    def pressure_angles(self) -> tuple[float, ...]:
+        """Normal pressure angles to choose from [rad], ascending."""
+        return tuple(sorted(set(self.pressure_angle or (math.radians(20.0),))))
+
+    @property
+    def shifts(self) -> tuple[float, ...]:
+        """Profile shift coefficients of the pinion to choose from, ascending."""
+        return (
+            tuple(round(0.1 * k, 12) for k in range(-2, 9)) if self.pinion_shift is None else self.pinion_shift.shifts
+        )
+
+    @property
+    def shift_sums(self) -> tuple[float, ...]:
+        """Sums of both shifts to choose from, ascending."""
+        return (0.0,) if self.shift_sum is None else self.shift_sum.shifts
+
+    @property
     def distances(self) -> tuple[float, float] | None:
         """Minimum and maximum centre distance [m]; None where it is free."""
         given = self.centre_distance
@@ -251,8 +271,8 @@ class SizingPart(Part):
             raise refuse("must be minimum and maximum", "exchange them", key="pinion_teeth", value=self.pinion_teeth)
         if len(set(self.criteria)) < len(self.criteria):
             raise refuse("contains a criterion twice", "specify each once", key="criteria", value=self.criteria)
-        if any(not 0.0 <= one <= math.radians(45.0) for one in self.helix_angle):
+        if any(not 0.0 <= one <= math.radians(45.0) for one in self.helix_angles):
             raise refuse("must be between 0 and 45 deg", key="helix_angle", value="(a list)")
-        if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.pressure_angle):
+        if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.pressure_angles):
             raise refuse("must be between 10 and 30 deg", key="pressure_angle", value="(a list)")
         return self

@@ -22,7 +22,7 @@ from fegear.design.sizing.space import SizingSpace, Variant
 from fegear.formulas.iso6336.conditions import Replacement
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 from fegear.geometry.many_pairs import ManyGearPairs
-from fegear.results.sizing.variant_case import GEARS, PAIR, case_of_variant
+from fegear.results.sizing.variant_case import GEARS, OF_GEARS, OF_PAIR, PAIR, case_of_variant
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,14 +47,20 @@ def sizing_of(scene: Scene) -> SizingPart:
     return scene.case.sizing
 
 
+def requirement_of(part: SizingPart) -> dict[str, Any]:
+    """What the cases of variants have from the requirement, as plain tables with numbers in SI."""
+    keys = {*OF_PAIR, *OF_GEARS, "wheel_strength"}
+    return part.model_dump(include=keys, exclude_none=True, exclude_defaults=True)
+
+
 def space_of(part: SizingPart) -> SizingSpace:
     """What may vary."""
     limits = part.limits.shift_sum
     return SizingSpace(
-        part.modules, tuple(sorted(set(part.pressure_angle))), tuple(sorted(set(part.helix_angle))),
+        part.modules, part.pressure_angles, part.helix_angles,
         tuple(sorted(set(part.addendum))), part.widths, tuple(sorted(set(part.width_ratio or ()))),
         (part.pinion_teeth[0], part.pinion_teeth[1]), part.ratio, part.ratio_tolerance, part.hunting,
-        part.pinion_shift.shifts, part.shift_sum.shifts, part.distances, (limits[0], limits[1]), part.root_clearance,
+        part.shifts, part.shift_sums, part.distances, (limits[0], limits[1]), part.root_clearance,
         part.rack_tip_radius, part.shorten_tips,
     )  # fmt: skip
 
@@ -83,7 +89,7 @@ def duty_of(part: SizingPart, asked: Mapping[str, Any], folder: Path) -> tuple[S
         0.5 * sum(z) * _MODULE, _WIDTH,
     )  # fmt: skip
     try:
-        scene = build_scene(case_of_variant(asked, stands, ["rating"]), "variant", folder)
+        scene = build_scene(case_of_variant(asked, stands, ["rating"]), "variant", folder, bare_si=True)
         rated = pair_to_rate(scene, PAIR)
     except InputError as error:
         raise type(error)(_of_sizing(error.key), error.value, error.rule, error.remedy) from None

@@ -56,7 +56,8 @@ def compute_variant(point: Mapping[str, Any], cache: SolutionCache) -> dict[str,
     from fegear.engine.run import run_plan
     from fegear.results.catalogue import STAGES
 
-    scene = replace(build_scene(point["document"], "variant", Path(point["folder"])), estimates=point["estimates"])
+    scene = build_scene(point["document"], "variant", Path(point["folder"]), bare_si=True)
+    scene = replace(scene, estimates=point["estimates"])
     results = run_plan(scene, make_plan(scene, STAGES), cache=cache, executor=Executor(here=True))
     values = {value.name: value for value in results.values}
     te = values[f"{PAIR}.te_peak_to_peak"]
@@ -88,7 +89,7 @@ def by_finite_elements(
     Parameters
     ----------
     asked : mapping
-        ``[sizing]`` as it is written.
+        What the cases have from the requirement, in SI.
     variants : sequence of Variant
     work : Work
     folder : str

@@ -23,7 +23,7 @@ from fegear.design.sizing.space import SizingSpace, variant_of
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.sizing.basis import duty_of, limits_of, present_pair, sizing_of, space_of
+from fegear.results.sizing.basis import duty_of, limits_of, present_pair, requirement_of, sizing_of, space_of
 from fegear.results.sizing.by_fe import FromFE, by_finite_elements
 from fegear.results.sizing.sizing_data import Excluded, Placed, PresentPlaced, SizedVariant, SizingData
 from fegear.results.sizing.sizing_sheet import SIZING_SHEET
@@ -54,10 +54,10 @@ class SizingInputs:
     Parameters
     ----------
     part : SizingPart
-    asked : mapping
-        The same as it is written, for the cases of variants.
     space, limits, duty
         What may vary, limits, what every variant is rated for.
+    asked : mapping
+        What the cases of variants have from the requirement, numbers in SI.
     folder : str
         Where files that the case names are looked for.
     said : tuple of str
@@ -65,10 +65,10 @@ class SizingInputs:
     """
 
     part: SizingPart
-    asked: Mapping[str, Any]
     space: SizingSpace
     limits: SizingLimits
     duty: SizingDuty
+    asked: Mapping[str, Any]
     folder: str = field(compare=False)
     said: tuple[str, ...] = field(compare=False, default=())
 
@@ -86,10 +86,10 @@ class SizingInputs:
 
 def _inputs(scene: Scene, _subject: str) -> SizingInputs:
     part = sizing_of(scene)
-    asked: Any = scene.document["sizing"]
+    asked = requirement_of(part)
     duty, said = duty_of(part, asked, scene.folder)
     limits = limits_of(part, duty.material.density)
-    return SizingInputs(part, asked, space_of(part), limits, duty, str(Path(scene.folder).absolute()), said)
+    return SizingInputs(part, space_of(part), limits, duty, asked, str(Path(scene.folder).absolute()), said)
 
 
 def _check(scene: Scene, _subject: str) -> None:
@@ -234,7 +234,7 @@ def _place(asked: SizingInputs, own: SizedVariant, chosen: Sequence[SizedVariant
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     part = sizing_of(scene)
     space = space_of(part)
-    spur = all(beta == 0.0 for beta in part.helix_angle)
+    spur = all(beta == 0.0 for beta in part.helix_angles)
     screened = part.screened if BY_FE & set(part.criteria) else 0
     slow = 4.0 if part.verified_width == "slices" else 40.0
     seconds = forecasts.LIBRARIES + 3e-6 * space.count + screened * (0.6 if spur else 4.0)

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 #: Names of the pair and of its gears.
 PAIR, GEARS = "I", ("pinion", "wheel")
-#: Tables of the requirement that a pair has under the same name.
-_OF_PAIR = ("operation", "lubricant", "shafts", "iso_6336")
+#: Keys of the requirement that a pair has under the same name, and those of its gears.
+OF_PAIR = ("power", "torque", "speed", "torques", "operation", "lubricant", "shafts", "iso_6336")
+OF_GEARS = ("strength", "tolerance_class", "roughness", "material")
 
 
 def _mm(metres: float) -> str:
@@ -53,7 +54,7 @@ def case_of_variant(
     Parameters
     ----------
     asked : mapping
-        ``[sizing]`` of the case, as it is written.
+        ``[sizing]`` of the case, as it is written or with numbers in SI.
     variant : Variant
     results : sequence of str
     width : str
@@ -65,7 +66,7 @@ def case_of_variant(
         "driver": GEARS[0],
         "driven": GEARS[1],
         "centre_distance": _mm(variant.centre_distance),
-        **{key: asked[key] for key in ("power", "torque", "speed", "torques", *_OF_PAIR) if key in asked},
+        **{key: asked[key] for key in OF_PAIR if key in asked},
     }
     if helical and width:
         pair["width"] = width
