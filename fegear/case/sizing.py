@@ -131,9 +131,9 @@ class SizingPart(Part):
         description="Centre distance, or its minimum and maximum as a list. Default: free.",
     )
     face_width: PositiveLength | Lengths | None = Field(
-        default=None, description="Face width, or several to choose from; alternatively `width_ratio`."
+        default=None, description="Face width, or several to choose from; alternatively `width_ratios`."
     )
-    width_ratio: Positives | None = Field(
+    width_ratios: Positives | None = Field(
         default=None, description="Face widths as b/d_1, rounded up to whole millimetres."
     )
     strength: Table[StrengthPart] = Field(description="Material of both gears for the rating.")
@@ -159,7 +159,7 @@ class SizingPart(Part):
         default=None,
         description="Torques at which the transmission error counts (its maximum over them). Default: the nominal.",
     )
-    normal_module: Lengths | None = Field(
+    normal_modules: Lengths | None = Field(
         default=None, description="Normal modules to choose from. Default: `module_series`, 1 to 20 mm."
     )
     module_series: Literal["I", "I+II"] = Field(default="I", description="Series of ISO 54 for the modules.")
@@ -167,22 +167,22 @@ class SizingPart(Part):
         default_factory=lambda: [15, 40], description="Minimum and maximum number of teeth of the pinion."
     )
     hunting: bool = Field(default=False, description="Only numbers of teeth without a common divisor.")
-    helix_angle: Angles | None = Field(default=None, description="Helix angles. Default: 0 (spur gears).")
-    pressure_angle: Angles | None = Field(default=None, description="Normal pressure angles. Default: 20 deg.")
-    pinion_shift: Table[ShiftsPart] | None = Field(
+    helix_angles: Angles | None = Field(default=None, description="Helix angles. Default: 0 (spur gears).")
+    pressure_angles: Angles | None = Field(default=None, description="Normal pressure angles. Default: 20 deg.")
+    pinion_shifts: Table[ShiftsPart] | None = Field(
         default=None,
         description="Profile shift coefficients of the pinion. Default: -0.2 to 0.8 in steps of 0.1.",
     )
-    shift_sum: Table[ShiftsPart] | None = Field(
+    shift_sums: Table[ShiftsPart] | None = Field(
         default=None,
         description="Sums x_1 + x_2 where the centre distance is free or a range. Default: 0.",
     )
-    addendum: Positives = Field(
+    addenda: Positives = Field(
         default_factory=lambda: [1.0],
         description="Addenda of the basic racks h_aP in modules (above 1: deep teeth). Default: 1.",
     )
     root_clearance: PositiveNumber = Field(
-        default=0.25, description="Dedendum of the basic racks minus `addendum`, in modules."
+        default=0.25, description="Dedendum of the basic racks minus `addenda`, in modules."
     )
     rack_tip_radius: PositiveNumber = Field(
         default=0.38, description="Tip radius of the basic racks rho_fP in modules."
@@ -214,32 +214,32 @@ class SizingPart(Part):
     @property
     def modules(self) -> tuple[float, ...]:
         """Modules to choose from [m], ascending."""
-        if self.normal_module is not None:
-            return tuple(sorted(set(self.normal_module)))
+        if self.normal_modules is not None:
+            return tuple(sorted(set(self.normal_modules)))
         series = _SERIES_I if self.module_series == "I" else (*_SERIES_I, *_SERIES_II)
         return tuple(float(f"{one}e-3") for one in sorted(series))
 
     @property
-    def helix_angles(self) -> tuple[float, ...]:
+    def chosen_helix_angles(self) -> tuple[float, ...]:
         """Helix angles to choose from [rad], ascending."""
-        return tuple(sorted(set(self.helix_angle or (0.0,))))
+        return tuple(sorted(set(self.helix_angles or (0.0,))))
 
     @property
-    def pressure_angles(self) -> tuple[float, ...]:
+    def chosen_pressure_angles(self) -> tuple[float, ...]:
         """Normal pressure angles to choose from [rad], ascending."""
-        return tuple(sorted(set(self.pressure_angle or (math.radians(20.0),))))
+        return tuple(sorted(set(self.pressure_angles or (math.radians(20.0),))))
 
     @property
-    def shifts(self) -> tuple[float, ...]:
+    def chosen_shifts(self) -> tuple[float, ...]:
         """Profile shift coefficients of the pinion to choose from, ascending."""
         return (
-            tuple(round(0.1 * k, 12) for k in range(-2, 9)) if self.pinion_shift is None else self.pinion_shift.shifts
+            tuple(round(0.1 * k, 12) for k in range(-2, 9)) if self.pinion_shifts is None else self.pinion_shifts.shifts
         )
 
     @property
-    def shift_sums(self) -> tuple[float, ...]:
+    def chosen_sums(self) -> tuple[float, ...]:
         """Sums of both shifts to choose from, ascending."""
-        return (0.0,) if self.shift_sum is None else self.shift_sum.shifts
+        return (0.0,) if self.shift_sums is None else self.shift_sums.shifts
 
     @property
     def distances(self) -> tuple[float, float] | None:
@@ -261,18 +261,18 @@ class SizingPart(Part):
             raise refuse("contradicts power", "specify either power or torque", key="torque")
         if self.power is None and self.torque is None:
             raise refuse("is missing", 'set power = "5 kW" or torque = "120 N*m"', key="power")
-        if self.face_width is not None and self.width_ratio is not None:
-            raise refuse("contradicts face_width", "specify either of them", key="width_ratio")
-        if self.face_width is None and self.width_ratio is None:
-            raise refuse("is missing", 'set face_width = "35 mm" or width_ratio = [0.8]', key="face_width")
+        if self.face_width is not None and self.width_ratios is not None:
+            raise refuse("contradicts face_width", "specify either of them", key="width_ratios")
+        if self.face_width is None and self.width_ratios is None:
+            raise refuse("is missing", 'set face_width = "35 mm" or width_ratios = [0.8]', key="face_width")
         if isinstance(self.centre_distance, list) and len(self.centre_distance) > 2:
             raise refuse("must be one length, or minimum and maximum", key="centre_distance", value="(a list)")
         if self.pinion_teeth[0] > self.pinion_teeth[1]:
             raise refuse("must be minimum and maximum", "exchange them", key="pinion_teeth", value=self.pinion_teeth)
         if len(set(self.criteria)) < len(self.criteria):
             raise refuse("contains a criterion twice", "specify each once", key="criteria", value=self.criteria)
-        if any(not 0.0 <= one <= math.radians(45.0) for one in self.helix_angles):
-            raise refuse("must be between 0 and 45 deg", key="helix_angle", value="(a list)")
-        if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.pressure_angles):
-            raise refuse("must be between 10 and 30 deg", key="pressure_angle", value="(a list)")
+        if any(not 0.0 <= one <= math.radians(45.0) for one in self.chosen_helix_angles):
+            raise refuse("must be between 0 and 45 deg", key="helix_angles", value="(a list)")
+        if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.chosen_pressure_angles):
+            raise refuse("must be between 10 and 30 deg", key="pressure_angles", value="(a list)")
         return self

@@ -38,14 +38,14 @@ REQUIREMENT = {
 }
 #: 112 mm, 2.9 kW, 725 to 287.5 rpm, and another free one.
 FIXED = {
-    **REQUIREMENT, "centre_distance": "112 mm", "face_width": "35 mm", "normal_module": ["2.5 mm", "3 mm"],
-    "pinion_teeth": [18, 26], "helix_angle": ["0 deg", "12 deg"], "pinion_shift": [-0.2, 0.1, 0.4, 0.7],
+    **REQUIREMENT, "centre_distance": "112 mm", "face_width": "35 mm", "normal_modules": ["2.5 mm", "3 mm"],
+    "pinion_teeth": [18, 26], "helix_angles": ["0 deg", "12 deg"], "pinion_shifts": [-0.2, 0.1, 0.4, 0.7],
     "criteria": ["safety", "mass", "sliding"], "verified": 0,
 }  # fmt: skip
 FREE = {
-    **REQUIREMENT, "ratio": 4, "centre_distance": ["90 mm", "120 mm"], "width_ratio": [0.6, 0.9],
-    "normal_module": ["1.5 mm", "2 mm"], "pinion_teeth": [17, 21], "pinion_shift": [0.0, 0.3, 0.6],
-    "shift_sum": [-0.2, 0.4], "criteria": ["mass", "loss"], "verified": 0,
+    **REQUIREMENT, "ratio": 4, "centre_distance": ["90 mm", "120 mm"], "width_ratios": [0.6, 0.9],
+    "normal_modules": ["1.5 mm", "2 mm"], "pinion_teeth": [17, 21], "pinion_shifts": [0.0, 0.3, 0.6],
+    "shift_sums": [-0.2, 0.4], "criteria": ["mass", "loss"], "verified": 0,
 }  # fmt: skip
 
 
@@ -62,10 +62,10 @@ def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
     """All variants one by one, through the case of each: how many there are, and the costs of those that live."""
     limits, enumerated, living = SizingLimits(), 0, {}
     alpha = math.radians(20.0)
-    widths = [asked["face_width"]] if "face_width" in asked else asked["width_ratio"]
+    widths = [asked["face_width"]] if "face_width" in asked else asked["width_ratios"]
     fixed = isinstance(asked["centre_distance"], str)
     for m_text, beta_text, width in itertools.product(
-        asked["normal_module"], asked.get("helix_angle", ["0 deg"]), widths
+        asked["normal_modules"], asked.get("helix_angles", ["0 deg"]), widths
     ):
         m, beta = float(m_text.split()[0]), math.radians(float(beta_text.split()[0]))
         a_t = math.atan(math.tan(alpha) / math.cos(beta))
@@ -75,8 +75,8 @@ def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
             if abs(z_2 / z_1 / asked["ratio"] - 1.0) > tolerance + 1e-12:
                 continue
             pitch = 0.5 * m * (z_1 + z_2) / math.cos(beta)
-            for total in [None] if fixed else asked["shift_sum"]:
-                for x_1 in asked["pinion_shift"]:
+            for total in [None] if fixed else asked["shift_sums"]:
+                for x_1 in asked["pinion_shifts"]:
                     enumerated += 1
                     if total is None:
                         a = float(asked["centre_distance"].split()[0])
@@ -226,10 +226,10 @@ def test_reasons_name_what_a_requirement_without_a_design_breaks():
 def test_a_range_of_shifts_may_begin_or_end_at_zero():
     for low, high in ((0.0, 0.4), (-0.4, 0.0)):
         spaced = {"start": low, "stop": high, "count": 3}
-        results, _ = sized({**FIXED, "pinion_shift": spaced, "helix_angle": ["0 deg"], "normal_module": ["3 mm"]})
+        results, _ = sized({**FIXED, "pinion_shifts": spaced, "helix_angles": ["0 deg"], "normal_modules": ["3 mm"]})
         listed, _ = sized(
-            {**FIXED, "pinion_shift": [low, 0.5 * (low + high), high], "helix_angle": ["0 deg"],
-             "normal_module": ["3 mm"]}
+            {**FIXED, "pinion_shifts": [low, 0.5 * (low + high), high], "helix_angles": ["0 deg"],
+             "normal_modules": ["3 mm"]}
         )  # fmt: skip
         assert [value.si for value in results.values] == [value.si for value in listed.values]
 
@@ -246,8 +246,8 @@ def test_fronts_of_equal_costs_keep_all_and_larger_fronts_are_thinned_evenly():
 def test_estimates_and_verified_numbers_are_those_of_the_variants_own_cases_resumed_or_not(tmp_path, monkeypatch):
     monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path / "cache"))
     asked = {
-        **FIXED, "helix_angle": ["0 deg"], "criteria": ["transmission-error", "mass"], "screened": 2, "verified": 1,
-        "normal_module": ["3 mm"], "tolerance": 0.05,
+        **FIXED, "helix_angles": ["0 deg"], "criteria": ["transmission-error", "mass"], "screened": 2, "verified": 1,
+        "normal_modules": ["3 mm"], "tolerance": 0.05,
     }  # fmt: skip
     _, whole = sized(asked)
     import fegear.results.sizing.by_fe as by_fe
@@ -297,7 +297,7 @@ def test_two_processes_find_the_same_table():
 def test_ratings_of_variants_are_those_of_their_cases_under_a_spectrum_and_on_a_shaft():
     spectrum = [{"load_factor": 1.0, "share": 0.2}, {"load_factor": 0.6, "speed": "900 rpm", "share": 0.8}]
     asked = {
-        **FIXED, "pinion_shift": [0.4], "normal_module": ["3 mm"], "wheel_strength": {"material": "42CrMo4"},
+        **FIXED, "pinion_shifts": [0.4], "normal_modules": ["3 mm"], "wheel_strength": {"material": "42CrMo4"},
         "operation": {"spectrum": spectrum, "life": "2000 h", "safety_contact": 0.5, "safety_root": 0.5},
         "shafts": {"arrangement": "a", "bearing_span": "120 mm", "offset": "10 mm", "diameter": "35 mm"},
     }  # fmt: skip

@@ -103,7 +103,7 @@ def test_in_a_shipped_case(path):
 #: What no shipped case has: a case, and tables that are joined to it.
 MORE = {
     "sizing": ("sizing_spur", {"sizing": {
-        "limits": {"mass": "20 kg"}, "pinion_shift": [0.2, 0.3], "shift_sum": [0.0], "centre_distance": "112 mm"}}),
+        "limits": {"mass": "20 kg"}, "pinion_shifts": [0.2, 0.3], "shift_sums": [0.0], "centre_distance": "112 mm"}}),
     "pins": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "pins", "pins": 6, "width": "5 mm"}}}}),
     "held": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "held"}}}}),
     "friction": ("surface_and_loss", {"pair": {"I": {"friction": {"coefficient": 0.05}}}}),

@@ -267,8 +267,8 @@ NOT_THERE = {
 #: ... or needs a formula, a search or solid gears of its own.
 NOT_WRITTEN = {
     *(f"SizingPart.{key}" for key in (
-        "centre_distance", "helix_angle", "material", "normal_module", "pinion_shift", "pressure_angle", "roughness",
-        "shift_sum", "torques", "wheel_strength",
+        "centre_distance", "helix_angles", "material", "normal_modules", "pinion_shifts", "pressure_angles",
+        "roughness", "shift_sums", "torques", "wheel_strength",
     )), "PresentPart.tip_diameter",
     *(f"AccuracyPart.{key}" for key in (
         "order", "root_edge_length", "root_fraction", "flank_edge_length", "tip_edge_length", "junction_edge_length",

@@ -38,15 +38,15 @@ class SizingSpace:
 
     Parameters
     ----------
-    modules, pressure_angles, helix_angles, addenda : tuple of float
-    widths, width_ratios : tuple of float
+    modules, alphas, betas, heights : tuple of float
+    widths, relative_widths : tuple of float
         Face widths, or b/d_1 where there are none.
     pinion_teeth : (int, int)
         Minimum and maximum.
     ratio, tolerance : float
     hunting : bool
         Whether z_1 and z_2 have no common divisor.
-    shifts, shift_sums : tuple of float
+    shifts, sums : tuple of float
         x_1; x_1 + x_2 where the centre distance does not give it.
     distances : (float, float) or None
         Minimum and maximum centre distance; equal ones give x_1 + x_2.
@@ -56,17 +56,17 @@ class SizingSpace:
     """
 
     modules: tuple[float, ...]
-    pressure_angles: tuple[float, ...]
-    helix_angles: tuple[float, ...]
-    addenda: tuple[float, ...]
+    alphas: tuple[float, ...]
+    betas: tuple[float, ...]
+    heights: tuple[float, ...]
     widths: tuple[float, ...]
-    width_ratios: tuple[float, ...]
+    relative_widths: tuple[float, ...]
     pinion_teeth: tuple[int, int]
     ratio: float
     tolerance: float
     hunting: bool
     shifts: tuple[float, ...]
-    shift_sums: tuple[float, ...]
+    sums: tuple[float, ...]
     distances: tuple[float, float] | None
     shift_sum_limits: tuple[float, float]
     root_clearance: float = 0.25
@@ -92,14 +92,14 @@ class SizingSpace:
     @cached_property
     def _rows(self) -> Array:
         """A row for each combination but the shifts: m_n, alpha_n, beta, h_aP, b or b/d_1, z_1, z_2."""
-        widths = self.widths or self.width_ratios
-        sizes = itertools.product(self.modules, self.pressure_angles, self.helix_angles, self.addenda, widths)
+        widths = self.widths or self.relative_widths
+        sizes = itertools.product(self.modules, self.alphas, self.betas, self.heights, widths)
         return np.array([(*size, *teeth) for size in sizes for teeth in self.pairs_of_teeth]).reshape(-1, 7)
 
     @property
     def per_row(self) -> int:
         """Variants of one row."""
-        return len(self.shifts) * (1 if self.fixed else len(self.shift_sums))
+        return len(self.shifts) * (1 if self.fixed else len(self.sums))
 
     @property
     def count(self) -> int:
@@ -118,12 +118,12 @@ class SizingSpace:
                 "sizing.ratio", f"{self.ratio:g}", "is not met by any numbers of teeth within the tolerance",
                 "increase ratio_tolerance, or widen pinion_teeth",
             )  # fmt: skip
-        sizes = (self.modules, self.pressure_angles, self.helix_angles, self.addenda, self.widths or self.width_ratios)
+        sizes = (self.modules, self.alphas, self.betas, self.heights, self.widths or self.relative_widths)
         count = math.prod(len(one) for one in sizes) * len(self.pairs_of_teeth) * self.per_row
         if count > MOST:
             raise InputError(
                 "sizing", f"{count:,} variants", f"exceeds the limit of {MOST:,}",
-                "reduce the number of values (pinion_shift, helix_angle, pinion_teeth ...)",
+                "reduce the number of values (pinion_shifts, helix_angles, pinion_teeth ...)",
             )  # fmt: skip
 
     def chunks(self) -> Iterator[tuple[Index, ManyGearPairs]]:
@@ -147,7 +147,7 @@ class SizingSpace:
                 working = np.arccos(pitch * np.cos(transverse) / distance)
                 total = (z_1 + z_2) * (involute(working) - involute(transverse)) / (2.0 * np.tan(alpha))
             else:
-                total = np.array(self.shift_sums)[within // len(self.shifts)]
+                total = np.array(self.sums)[within // len(self.shifts)]
                 value = involute(transverse) + 2.0 * total * np.tan(alpha) / (z_1 + z_2)
                 working = np.where(value > 0.0, pressure_angle_of_inv(np.maximum(value, 1e-12)), np.nan)
                 distance = pitch * np.cos(transverse) / np.cos(working)
@@ -164,18 +164,18 @@ class SizingSpace:
         """What of a variant lies at the end of what may vary, in words of the case; nothing that has one value."""
         row, within = divmod(number, self.per_row)
         values = self._rows[row]
-        names = ("normal_module", "pressure_angle", "helix_angle", "addendum", "width")
-        widths = self.widths or self.width_ratios
-        lists = (self.modules, self.pressure_angles, self.helix_angles, self.addenda, widths)
+        names = ("normal_modules", "pressure_angles", "helix_angles", "addenda", "width")
+        widths = self.widths or self.relative_widths
+        lists = (self.modules, self.alphas, self.betas, self.heights, widths)
         found = []
         for name, value, given in zip(names, values, lists, strict=False):
-            key = name if name != "width" else "face_width" if self.widths else "width_ratio"
+            key = name if name != "width" else "face_width" if self.widths else "width_ratios"
             found += _ends(key, float(value), min(given), max(given))
         found += _ends("pinion_teeth", float(values[5]), *map(float, self.pinion_teeth))
-        found += _ends("pinion_shift", self.shifts[within % len(self.shifts)], self.shifts[0], self.shifts[-1])
+        found += _ends("pinion_shifts", self.shifts[within % len(self.shifts)], self.shifts[0], self.shifts[-1])
         if not self.fixed:
-            sums = self.shift_sums
-            found += _ends("shift_sum", sums[within // len(self.shifts)], sums[0], sums[-1])
+            sums = self.sums
+            found += _ends("shift_sums", sums[within // len(self.shifts)], sums[0], sums[-1])
         return tuple(found)
 
 

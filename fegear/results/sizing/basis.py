@@ -57,10 +57,10 @@ def space_of(part: SizingPart) -> SizingSpace:
     """What may vary."""
     limits = part.limits.shift_sum
     return SizingSpace(
-        part.modules, part.pressure_angles, part.helix_angles,
-        tuple(sorted(set(part.addendum))), part.widths, tuple(sorted(set(part.width_ratio or ()))),
+        part.modules, part.chosen_pressure_angles, part.chosen_helix_angles,
+        tuple(sorted(set(part.addenda))), part.widths, tuple(sorted(set(part.width_ratios or ()))),
         (part.pinion_teeth[0], part.pinion_teeth[1]), part.ratio, part.ratio_tolerance, part.hunting,
-        part.shifts, part.shift_sums, part.distances, (limits[0], limits[1]), part.root_clearance,
+        part.chosen_shifts, part.chosen_sums, part.distances, (limits[0], limits[1]), part.root_clearance,
         part.rack_tip_radius, part.shorten_tips,
     )  # fmt: skip
 

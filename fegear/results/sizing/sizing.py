@@ -234,7 +234,7 @@ def _place(asked: SizingInputs, own: SizedVariant, chosen: Sequence[SizedVariant
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     part = sizing_of(scene)
     space = space_of(part)
-    spur = all(beta == 0.0 for beta in part.helix_angles)
+    spur = all(beta == 0.0 for beta in part.chosen_helix_angles)
     screened = part.screened if BY_FE & set(part.criteria) else 0
     slow = 4.0 if part.verified_width == "slices" else 40.0
     seconds = forecasts.LIBRARIES + 3e-6 * space.count + screened * (0.6 if spur else 4.0)
