@@ -9,8 +9,10 @@ Sources that several results share.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
+from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation
@@ -64,15 +66,33 @@ def sizes(scene: Scene) -> tuple[int, int]:
     return (len(train.mesh), len(train.body)) if train else (0, 0)
 
 
+def _pitches(scene: Scene, mesh: str) -> int:
+    """Base pitches after which the teeth of a mesh that differ meet again."""
+    part = scene.case.train
+    if part is None or part.mesh[mesh].like is not None:
+        return 1
+    name = part.loaded_pair_of(mesh)
+    odd, spaced = odd_gears_of(scene, name), scene.case.effects.spacing_errors
+    pair = scene.case.pair[name]
+    return math.lcm(*(
+        scene.gears[gear].teeth
+        for gear in (pair.driver, pair.driven)
+        if gear in odd or (spaced and scene.case.gear[gear].spacing_errors is not None)
+    ))  # fmt: skip
+
+
 def periods(scene: Scene) -> int:
-    """Periods of the fastest mesh after which all meshes stand as before."""
+    """Periods of the fastest mesh after which all meshes stand as before, with teeth that differ."""
     from fegear.case.built.train import train_inputs
     from fegear.dynamics.train.torque_ripple import common_period
+    from fegear.dynamics.train.train import common_multiple
     from fegear.dynamics.train.train_spec import build_train, speed_ratio
 
     spec = train_inputs(scene).spec
     train = build_train(spec)
-    turns, fastest = train.mesh_turns, max(train.mesh_orders)
+    pitches = [_pitches(scene, mesh) for mesh in scene.case.train.mesh] if scene.case.train else []
+    turns = common_multiple(count / order for count, order in zip(pitches, train.mesh_orders, strict=True))
+    fastest = max(train.mesh_orders)
     speeds = scene.case.dynamics.speed_values
     if spec.ripple and speeds.size:
         turns *= common_period(turns, fastest, float(speeds[0]) / speed_ratio(spec, train), spec.ripple).count

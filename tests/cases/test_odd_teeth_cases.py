@@ -248,7 +248,7 @@ def test_a_gear_gets_a_crack_in_python():
 
 
 RIG = (
-    "effects.corner_contact=false",
+    "effects.corner_contact=false", "effects.parametric=true", "effects.contact_loss=true",
     "train.body={ a = { inertia = '0.002 kg*m^2' }, b = { inertia = '0.003 kg*m^2' } }",
     "train.mesh={ I = { driver = 'a', driven = 'b', damping_ratio = 0.1 } }",
     "train.torque={ a = '60 N*m' }", "train.balance='b'", "dynamics.speed='2000 rpm'", "dynamics.harmonics=8",
@@ -258,7 +258,7 @@ RIG = (
 @pytest.mark.dear
 def test_a_train_has_the_odd_teeth_of_its_pairs():
     """Its excitation repeats after a revolution, with sidebands; the FMU of the pair has the same springs."""
-    found = run('results=["mesh-force-spectrum", "mesh-stiffness-revolution"]', *RIG)
+    found = run('results=["mesh-force-spectrum", "mesh-stiffness-revolution", "vibration-revolution"]', *RIG)
     te = pitches(found)
     assert number(found, "I.static_te_peak_to_peak") == pytest.approx(np.ptp(te), rel=1e-2)
     assert any("repeats after 25 base pitches (odd teeth)" in said for said in found.remarks)
@@ -266,6 +266,22 @@ def test_a_train_has_the_odd_teeth_of_its_pairs():
     mesh = {round(order * 25): line for order, line in zip(n, force, strict=True)}
     assert 0.003 * mesh[25] < mesh[24] < mesh[25]
     assert 0.003 * mesh[25] < mesh[26] < mesh[25]
+    angle, moved, residual, force, acceleration = (
+        column(found, "vibration_revolution_I", name)
+        for name in ("driver_angle", "te", "te_residual", "force", "acceleration")
+    )
+    assert angle == pytest.approx(2.0 * np.pi * np.arange(angle.size) / angle.size)
+    assert force.mean() == pytest.approx(number(found, "I.mean_force"), rel=5e-3)
+    # the crack is met in base pitches 0 and 1 behind the pitch point, and shakes the pair for some more
+    assert np.argmax(np.abs(residual)) in range(angle.size // 25 * 2)
+    regular = np.broadcast_to((moved - residual).reshape(25, -1)[0], (25, angle.size // 25))
+    assert moved - residual == pytest.approx(regular.ravel(), rel=1e-9)
+    assert residual.reshape(25, -1).mean(axis=0) == pytest.approx(0.0, abs=1e-12)
+    step = 60.0 / 2000.0 / angle.size
+    assert np.cumsum(acceleration * step).std() == pytest.approx(np.gradient(moved, step).std(), rel=2e-2)
+    lines = 2.0 * np.abs(np.fft.rfft(moved)) / moved.size
+    assert column(found, "vibration_orders_I", "te") == pytest.approx(lines[1:201])
+    assert number(found, "I.dynamic_residual_kurtosis") > 10.0
     (model, _) = mesh_models(read_scene(CASE, (*COARSE, *RIG)))[0]
     (springs,) = model.excitations
     assert {k.pitches for k in springs.stiffness} == {25}

@@ -18,7 +18,10 @@ def made(te):
     error = 1e-6 * (te(turn) + 0.0 * turn)
     loads = np.stack([np.full(error.shape, 100.0), np.where(turn < 0.5, 50.0, 0.0)], axis=1)
     nan = np.full(error.shape, math.nan)
-    return OverRevolution(x, PITCH, 100.0, np.array([0, 1]), error, 1e8 + 1e12 * error, loads, 3, nan, nan)
+    stiffness = 1e8 + 1e12 * error
+    return OverRevolution(
+        x, PITCH, 100.0, 0.03, np.array([0, 1]), error, stiffness, loads, 3, nan, nan, 2.0 * stiffness
+    )
 
 
 def mesh(turn):
@@ -74,7 +77,7 @@ def test_a_pulse_once_a_turn_is_far_from_normal():
 
 def test_rows_follow_each_other_round_the_turn():
     found = made(lambda turn: mesh(turn) + 3.0 * (turn > 1.0 - 1.0 / CYCLES))
-    rows = along_revolution(found, 0.03)
+    rows = along_revolution(found)
     assert (np.diff(rows.x) > -1e-12).all()
     assert rows.driver_angle == pytest.approx(rows.x / 0.03)
     assert rows.base_pitch[POSITIONS + 1] == 1
@@ -84,3 +87,16 @@ def test_rows_follow_each_other_round_the_turn():
     late = rows.te_residual[rows.base_pitch == 11]
     assert late[1:] == pytest.approx(np.full(POSITIONS, 3e-6), rel=1e-6)
     assert rows.te_residual[rows.base_pitch == 4] == pytest.approx(np.zeros(POSITIONS + 1), abs=1e-15)
+
+
+def test_stiffness_at_any_rotation_of_the_driver():
+    """Periodic over all base pitches, at the places of the table its rows."""
+    found = made(lambda turn: mesh(turn) + side(turn))
+    rows = along_revolution(found)
+    inner = slice(5, -5)
+    turn = CYCLES * PITCH / 0.03
+    for at in (rows.driver_angle[inner], rows.driver_angle[inner] + 3.0 * turn, rows.driver_angle[inner] - turn):
+        assert found.stiffness_at(at, secant=True) == pytest.approx(rows.mesh_stiffness[inner])
+        assert found.stiffness_at(at) == pytest.approx(rows.local_stiffness[inner])
+        assert found.error_at(at) == pytest.approx(rows.te[inner])
+    assert found.error_at(rows.driver_angle[0] - 1e-9) == pytest.approx(rows.te[-1], rel=1e-6)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
@@ -36,6 +37,8 @@ class OverRevolution:
         Base pitch [m].
     load : float
         [N].
+    driver_base_radius : float
+        [m].
     number : ndarray of int, shape (n,)
         Of the pairs, as of `Contacts`.
     transmission_error : ndarray, shape (C, P)
@@ -48,11 +51,14 @@ class OverRevolution:
         How many base pitches differ from each other.
     transmission_error_error, stiffness_error : ndarray, shape (C, P)
         What the compliances' estimated errors change; NaN where they state none.
+    tangent : ndarray, shape (C, P)
+        Local mesh stiffness dF/dTE [N/m].
     """
 
     x: Array
     pitch: float
     load: float
+    driver_base_radius: float
     number: Index
     transmission_error: Array
     stiffness: Array
@@ -60,6 +66,7 @@ class OverRevolution:
     solved: int
     transmission_error_error: Array
     stiffness_error: Array
+    tangent: Array
 
     @property
     def along(self) -> Array:
@@ -70,6 +77,34 @@ class OverRevolution:
     def residual(self) -> Array:
         """Transmission error less that of an ordinary base pitch, their median, shape (C, P) [m]."""
         return np.asarray(self.transmission_error - np.median(self.transmission_error, axis=0))
+
+    def stiffness_at(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+        """Mesh stiffness at rotations of the driver, for equations of motion.
+
+        Parameters
+        ----------
+        driver_angle : array_like
+            Zero with the first teeth at the pitch point [rad]; any number of turns.
+        secant : bool
+            Load over transmission error in place of the slope dF/dTE.
+
+        Returns
+        -------
+        ndarray
+            Periodic over all base pitches, straight between the roll positions [N/m].
+        """
+        return self._over_rotation(self.stiffness if secant else self.tangent, driver_angle)
+
+    def error_at(self, driver_angle: ArrayLike) -> Array:
+        """Transmission error under the load at rotations of the driver [m], as `stiffness_at`."""
+        return self._over_rotation(self.transmission_error, driver_angle)
+
+    def _over_rotation(self, values: Array, driver_angle: ArrayLike) -> Array:
+        period = self.pitch * self.transmission_error.shape[0]
+        x = np.asarray(driver_angle, dtype=float) * self.driver_base_radius
+        along = self.along.ravel()
+        ends = np.append(along, along[0] + period)
+        return np.interp(np.mod(x - along[0], period) + along[0], ends, np.append(values, values.flat[0]))
 
     @property
     def lowest_stiffness(self) -> float:
@@ -112,7 +147,7 @@ def over_revolution(
     x = roll_positions(engagement, positions)
     number = engagement.grid(x).contacts.number
     count = engagement.cycles if engagement.cycles > 1 else base_pitches
-    (error, stiffness, loads), solved = _each_pitch(engagement, x, load, _curves, count)
+    (error, stiffness, loads, tangent), solved = _each_pitch(engagement, x, load, _curves, count)
     te_off, off = np.full((2, *error.shape), np.nan)
     if shifted:
         others = [_each_pitch(one, x, load, _curves, count)[0] for one in shifted]
@@ -120,7 +155,10 @@ def over_revolution(
             np.sum([np.abs(other[at] - value) for other in others], axis=0)
             for at, value in enumerate((error, stiffness))
         )
-    return OverRevolution(x, engagement.pair.base_pitch, load, number, error, stiffness, loads, solved, te_off, off)
+    pair = engagement.pair
+    return OverRevolution(
+        x, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, solved, te_off, off, tangent
+    )
 
 
 def _refuse_too_many(engagement: Engagement) -> None:
@@ -132,8 +170,9 @@ def _refuse_too_many(engagement: Engagement) -> None:
 
 
 def _curves(loaded: Loaded) -> tuple[Array, ...]:
-    """Transmission error, secant stiffness and loads of a base pitch."""
-    return loaded.transmission_error[:, 0], secant_stiffness(loaded)[:, 0], loaded.loads[:, :, 0]
+    """Transmission error, secant stiffness, loads and tangent stiffness of a base pitch."""
+    secant = secant_stiffness(loaded)[:, 0]
+    return loaded.transmission_error[:, 0], secant, loaded.loads[:, :, 0], loaded.local_stiffness[:, 0]
 
 
 def _each_pitch(

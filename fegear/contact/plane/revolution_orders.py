@@ -18,7 +18,7 @@ from fegear.base.shown import shown
 from fegear.contact.plane.over_revolution import OverRevolution
 
 #: Even samples over a base pitch, and the highest harmonic of the mesh frequency.
-_SAMPLES, _HIGHEST = 128, 8
+_SAMPLES, HIGHEST = 128, 8
 #: Share of the transmission error below which a part of it is round-off.
 _ROUND_OFF = 1e-9
 
@@ -59,15 +59,17 @@ def _even(found: OverRevolution, curve: Array) -> Array:
     return np.interp(at, found.along.ravel(), curve.ravel())
 
 
-def _amplitudes(even: Array, count: int) -> Array:
-    return 2.0 * np.abs(np.fft.rfft(even)[1 : count + 1]) / even.size
+def amplitudes(even: Array, count: int) -> Array:
+    """Amplitudes of the first harmonics of even samples over a period."""
+    found = 2.0 * np.abs(np.fft.rfft(even)[1 : count + 1]) / even.size
+    return np.pad(found, (0, count - found.size))
 
 
 def revolution_orders(found: OverRevolution) -> RevolutionOrders:
     """Harmonics of transmission error and mesh stiffness over all base pitches, up to eight mesh harmonics."""
     cycles = found.transmission_error.shape[0]
-    n = np.arange(1, _HIGHEST * cycles + 1)
-    te, stiffness = (_amplitudes(_even(found, curve), n.size) for curve in (found.transmission_error, found.stiffness))
+    n = np.arange(1, HIGHEST * cycles + 1)
+    te, stiffness = (amplitudes(_even(found, curve), n.size) for curve in (found.transmission_error, found.stiffness))
     return RevolutionOrders(n, n / cycles, te, stiffness)
 
 
@@ -106,7 +108,7 @@ def indicators_of(te: Array, cycles: int, teeth: Sequence[int]) -> ConditionIndi
     whole = _rms(g + r)
     r, d = (np.where(_rms(one) > _ROUND_OFF * whole, one, 0.0) for one in (r, d))
     amplitude = 2.0 * np.abs(spectrum) / te.size
-    harmonics = float(amplitude[mesh[1 : _HIGHEST + 1]].sum())
+    harmonics = float(amplitude[mesh[1 : HIGHEST + 1]].sum())
     sides = sum(float(amplitude[cycles + side * shaft]) for shaft in beside for side in (-1, 1))
     sides = sides if sides > _ROUND_OFF * whole else 0.0
     return ConditionIndicators(
@@ -140,25 +142,20 @@ class AlongRevolution:
     te: Array = shown("um", "transmission error", table="revolution")
     te_residual: Array = shown("um", "transmission error minus that of an ordinary base pitch", table="revolution")
     mesh_stiffness: Array = shown("N/um", "mesh stiffness (secant)", table="revolution")
+    local_stiffness: Array = shown("N/um", "local (tangent) mesh stiffness dF/dTE", table="revolution")
     pairs_in_contact: Index = shown("", "number of tooth pairs in contact", table="revolution")
     te_error: Array | None = None
     mesh_stiffness_error: Array | None = None
 
 
-def along_revolution(found: OverRevolution, base_radius: float) -> AlongRevolution:
-    """All base pitches one below the other.
-
-    Parameters
-    ----------
-    found : OverRevolution
-    base_radius : float
-        Of the driver [m].
-    """
+def along_revolution(found: OverRevolution) -> AlongRevolution:
+    """All base pitches one below the other."""
+    base_radius = found.driver_base_radius
     cycles, positions = found.transmission_error.shape
     stated = bool(np.isfinite(found.transmission_error_error).all())
     return AlongRevolution(
         np.repeat(np.arange(cycles), positions), found.along.ravel() / base_radius, found.along.ravel(),
-        found.transmission_error.ravel(), found.residual.ravel(), found.stiffness.ravel(),
+        found.transmission_error.ravel(), found.residual.ravel(), found.stiffness.ravel(), found.tangent.ravel(),
         (found.loads > 0.0).sum(axis=1).ravel(),
         found.transmission_error_error.ravel() if stated else None, found.stiffness_error.ravel() if stated else None,
     )  # fmt: skip

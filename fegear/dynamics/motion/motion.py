@@ -197,10 +197,10 @@ class Trajectory:
         value, _ = self._at(time, derivative)
         return (value @ self.packed.shapes.T) / self.packed.time_unit**derivative
 
-    def approach(self, time: ArrayLike) -> Array:
-        """Approach of each gear pair [m] (the dynamic transmission error), shape (..., meshes)."""
-        value, _ = self._at(time)
-        return (value @ self.packed.approach.T) * self.packed.length_unit
+    def approach(self, time: ArrayLike, derivative: int = 0) -> Array:
+        """Approach of each gear pair [m] (the dynamic transmission error) or time derivatives, (..., meshes)."""
+        value, _ = self._at(time, derivative)
+        return (value @ self.packed.approach.T) * (self.packed.length_unit / self.packed.time_unit**derivative)
 
     def _springs(self, time: ArrayLike) -> tuple[Array, Array]:
         """Elastic force of each spring [N], and its stiffness in units."""

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 
 #: Even steps over a base pitch.
 POSITIONS = 100
+#: Condition indicators, as values.
+INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor")
 #: Seconds of a base pitch.
 _PITCH = 0.4
 
@@ -109,7 +111,7 @@ class RevolutionData:
     @cached_property
     def along(self) -> AlongRevolution:
         """Row by row."""
-        return along_revolution(self.found, self.pair.driver.base_radius)
+        return along_revolution(self.found)
 
     @cached_property
     def loads(self) -> LoadsOnTeeth:
@@ -245,12 +247,7 @@ _SHEET = Sheet(
         "mesh_stiffness_loss",
         Number("te_max", "te_max_error"),
         "te_residual_max",
-        *(
-            Number(key, of="indicators")
-            for key in (
-                "residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor",
-            )
-        ),
+        *(Number(key, of="indicators") for key in INDICATORS),
     ),
     figures=(
         Chart(
