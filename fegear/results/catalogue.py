@@ -312,7 +312,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("vibration-revolution", "train.vibration_revolution.VIBRATION_REVOLUTION",
               "Vibration over a revolution", ("vibration-revolution",),
               "dynamic transmission error, mesh force, residual, sidebands, condition indicators over a revolution",
-              extra="motion", effects=MOTION_EFFECTS),
+              extra="motion", effects=MOTION_EFFECTS, internal=True),
         Entry("design-chart", "train.design_chart.DESIGN_CHART", "Tip relief design chart", ("design-chart",),
               "dynamic factor over amount and length of tip relief", extra="motion",
               effects=MOTION_EFFECTS),

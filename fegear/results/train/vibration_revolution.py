@@ -83,7 +83,7 @@ _SHEET = Sheet(
     ),
     values=(
         "mesh_force_max", "dynamic_te_residual_max",
-        *(Number(key, of="indicators", name=f"dynamic_{key}") for key in INDICATORS),
+        *(Number(key, of="indicators", name="dynamic_" + key) for key in INDICATORS),
     ),
     figures=(
         Chart(
