@@ -117,6 +117,8 @@ MORE = {
         "mesh_stiffness": {"start": "100 N/um", "stop": "200 N/um"}}}}}),
     "force": ("blankenship_singh_forces", {"transmissibility": {"I": {"excitation": {
         "external": [{"on": "driver", "order": 1, "y": "1 N"}]}}}}),
+    "pit": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
+        {"pits": [{"diameter": ["49 mm", "50 mm"], "depth": "50 um"}]}]}}}),
     "catalogue": ("two_stage_shafts", {
         "bearing": {"printed": {"designation": "6206", "catalogue": {"static_rating": "11.2 kN"}}},
         "shaft": {"in": {"bearings": [{"bearing": "ball", "at": "10 mm"}, {"bearing": "printed", "at": "110 mm"}]}}}),

@@ -14,6 +14,7 @@ from fegear.base.shown import shown
 from fegear.case.built.compound import compound_inputs, compound_part
 from fegear.case.nearest import nearest
 from fegear.case.part import at
+from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -164,5 +165,6 @@ TOOTH_NUMBERS = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
+    cites=citing(Citation("parker", "modes excited by planets in phase")),
     forecast=lambda _scene, _name: forecasts.constant(2.0),
 )
