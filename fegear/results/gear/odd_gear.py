@@ -4,21 +4,31 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
+from fegear.base.notes import exceeding
+from fegear.base.printed import percent
 from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of, reshaped_gears
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.fem.teeth import meshing_order
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.reading import Scene
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 
 #: The stage's name.
 ODD = "odd-gear-solution"
 #: Seconds of a ring with one odd sector with the default settings, and of each further odd tooth.
 _RING, _CRACK = 1.0, 0.3
+#: Places over the flank at which a crack is looked at; beyond which share of them it counts as closed.
+_PLACES, _MOSTLY = 11, 0.5
 #: What results on cracks rest on.
 CRACKS = (
     *RING,
@@ -48,12 +58,27 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     return Forecast(seconds=_RING + _CRACK * len(scene.case.gear[name].odd_tooth))
 
 
+def _closed(seen: Seen) -> Iterator[str]:
+    """Cracks that loads on their own tooth press together: their faces are taken as open."""
+    found: OddGearInfluence = seen.data
+    for tooth, _ in seen.asked.cracks:
+        number = meshing_order(tooth, found.gear.teeth, seen.asked.member)
+        low, high = found.ends(found.from_middle(number))
+        shut = found.stress_intensity(number, number, np.linspace(low, high, _PLACES)[1:-1])[0][0] < 0.0
+        if shut.mean() > _MOSTLY:
+            yield exceeding(
+                f"Gear {seen.asked.name}: loads on tooth {tooth} press its crack together (K_I negative over "
+                f"{percent(float(shut.mean()))} of the flank). Open faces are assumed: its deflection, and the "
+                "reduction of the mesh stiffness, are overestimated many times."
+            )
+
+
 ODD_GEAR = Stage(
     subjects=reshaped_gears,
     needs=lambda _scene, name: needs_solution(name),
     inputs=odd_teeth_of,
     compute=_compute,
-    present=Sheet().present,
+    present=Sheet(remarks=(_closed,)).present,
     check=check_odd_gear,
     cites=citing(*CRACKS),
     forecast=_forecast,
