@@ -8,6 +8,7 @@ from pydantic import Field
 
 from fegear.case.accuracy import AccuracyPart
 from fegear.case.compound import CompoundPart
+from fegear.case.crack_growth import CrackGrowthPart
 from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
@@ -47,6 +48,9 @@ class Case(Part):
     pair: dict[str, Table[PairPart]] = Field(default_factory=dict, description="Gear pairs in mesh, by name.")
     gauge: dict[str, Table[GaugePart]] = Field(
         default_factory=dict, description="Strain gauges in root fillets, by name."
+    )
+    crack_growth: Table[CrackGrowthPart] = Field(
+        default_factory=CrackGrowthPart, description="Growth of the cracks of odd teeth (result `crack-path`)."
     )
     stiffness: Table[StiffnessPart] = Field(
         default_factory=StiffnessPart, description="Load positions of the compliance and root stress tables."

@@ -66,7 +66,6 @@ _LETTERS = str.maketrans({
 _RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
 _STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
 _DOUBLE = "double-helical gears are not supported: model one half with half the face width and torque"
-_GROWN = "growth of cracks is not computed; see stress-intensity"
 _BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
 _WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
 _CROSSED = "only cylindrical gears on parallel axes are supported"
@@ -263,7 +262,7 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("tolerance_analysis monte_carlo sensitivity", ("robustness",), ""),
     ("planet_load_share k_gamma lastverteilung", ("planet-load-sharing",), ""),
     ("crack stress_intensity_factor sif riss", ("stress-intensity",), ""),
-    ("crack_propagation crack_growth", (), _GROWN),
+    ("crack_propagation crack_growth paris_law rissfortschritt", ("crack-path",), ""),
     ("wear wear_depth verschleiss", (), _WORN),
     ("noise sound_power sound_pressure acoustics geraeusch", (),
      "noise is not computed; see transmission-error and dynamic-factor for its excitation"),

@@ -216,8 +216,8 @@ def test_the_command_line_starts_without_the_heavy_libraries():
 def test_a_plan_needs_none_of_the_mechanics_libraries():
     """What results could be asked for is known without loading what computes them: `fegear plan` stays quick."""
     late = ("scipy.", "fegear.contact.", "fegear.fem.", "fegear.formulas.")
-    # What a case may ask of meshes and oils is declared there, with numpy and the standard library only.
-    specs = ("fegear.fem.plane", "fegear.fem.plane.settings", "fegear.formulas.lubricant")
+    # What a case may ask of meshes, oils and cracks is declared there, with numpy and the standard library only.
+    specs = ("fegear.fem.plane", "fegear.fem.plane.settings", "fegear.formulas.lubricant", "fegear.formulas.paris")
     probe = (
         "import sys, fegear.engine.run, fegear.results.catalogue; from fegear.case.reading import build_scene;"
         "build_scene({'results': ['geometry'], 'gear': {'a': {'teeth': 28, 'module': '1 mm'}}}, 'case', None);"

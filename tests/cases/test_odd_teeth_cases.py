@@ -298,3 +298,34 @@ def test_a_train_has_the_odd_teeth_of_its_pairs():
     assert {k.pitches for k in springs.stiffness} == {25}
     x = column(found, "mesh_stiffness_revolution_I", "x").reshape(te.shape)
     assert springs.approach(model.nominal, x / model.pair.base_pitch) == pytest.approx(te, rel=1e-5)
+
+
+@pytest.mark.dear
+def test_a_crack_grows_in_a_case():
+    """The first step's K is that of `stress-intensity` but for loads on the next teeth; steps are 0.1 modules."""
+    found = run(
+        'results=["crack-path", "stress-intensity"]', 'gear.pinion.bore_radius="20.3 mm"',
+        'gear.pinion.rim_support={kind = "free_arc", teeth = 7}',
+        'gear.pinion.odd_tooth=[{crack = {depth = "0.3 mm", angle = "60 deg"}}]',
+        "crack_growth={steps = 2, paris_coefficient = 6.9e-12, paris_exponent = 3.0, toughness = 1000.0}",
+    )  # fmt: skip
+    k, length, cycles = (column(found, "crack_path_I_pinion_0", name) for name in ("K_I", "length", "cycles"))
+    assert k[0] == pytest.approx(column(found, "stress_intensity_I_pinion_0", "K_I").max(), rel=5e-3)
+    assert np.diff(length) == pytest.approx(2 * [0.2e-3], rel=1e-6)
+    assert cycles[0] == 0.0
+    assert (np.diff(cycles) > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("growth", "words"),
+    [
+        ("{paris_exponent = 3.0}", "paris_coefficient.*is required together with paris_exponent"),
+        ("{threshold = 2.0}", "threshold = 2.*requires Paris' law"),
+        ("{load_factors = [1.0, 2.0], cycle_shares = [1.0]}", "must have one value for each of the 2 load_factors"),
+        ("{load_factors = [1.0, 2.0], cycle_shares = [0.5, 0.6]}", r"cycle_shares = 1\.1: must have the sum 1"),
+        ("{steps = 0}", "steps"),
+    ],
+)
+def test_growth_that_has_no_law_is_refused_in_words(growth, words):
+    with pytest.raises(InputError, match=words):
+        read_scene(CASE, ['results=["crack-path"]', f"crack_growth={growth}"])

@@ -48,8 +48,8 @@ def planned():
 
 #: Results that are made for external teeth only, or for pairs of external gears.
 EXTERNAL = {
-    "atlas-gear", "body-modes", "contact-lines", "crosscheck", "design-chart", "flank-design", "flank-fracture",
-    "flank-generation",
+    "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "flank-design",
+    "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-solution", "odd-pair", "odd-tooth-stiffness",
     "pair-forced-response", "sizing", "stress-intensity", "tooth-contact", "transmissibility",
 }  # fmt: skip

@@ -104,6 +104,7 @@ def test_in_a_shipped_case(path):
 MORE = {
     "sizing": ("sizing_spur", {"sizing": {
         "limits": {"mass": "20 kg"}, "pinion_shifts": [0.2, 0.3], "shift_sums": [0.0], "centre_distance": "112 mm"}}),
+    "growth": ("cracked_tooth", {"results": ["crack-path"], "crack_growth": {"toughness": 60.0}}),
     "pins": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "pins", "pins": 6, "width": "5 mm"}}}}),
     "held": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "held"}}}}),
     "friction": ("surface_and_loss", {"pair": {"I": {"friction": {"coefficient": 0.05}}}}),

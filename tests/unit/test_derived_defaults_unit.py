@@ -253,6 +253,7 @@ def off(one, other):
 NOT_THERE = {
     "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected",
     "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
+    "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",
     "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
     "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "GearPart.web_thickness",
@@ -278,7 +279,8 @@ NOT_WRITTEN = {
         "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
     "CompoundPlanetPart.body", "CompoundShaftPart.body",
-    "CostPart.gear", "CostPart.pair", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
+    "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares", "CrackGrowthPart.load_factors",
+    "CrackGrowthPart.step", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
     "DesignPart.peak",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
     "FlankDesignPart.load", "FlankDesignPart.loads", "FlankDesignPart.pair", "FlankMapPart.over_face",

@@ -59,6 +59,7 @@ def condensed_sector(
     *,
     expandable: bool = False,
     motions: Array | None = None,
+    sectors: int = 1,
 ) -> tuple[Condensed, int, Array, Array]:
     """Condense a sector onto its sides and ports.
 
@@ -66,6 +67,8 @@ def condensed_sector(
     ----------
     mesh, elasticity, ports, expandable, motions
         As for `close_ring`.
+    sectors : int
+        So many of the ring's in one mesh.
 
     Returns
     -------
@@ -82,7 +85,7 @@ def condensed_sector(
     InputError
         If the sides do not match node by node.
     """
-    side_a, side_b, angle_a, radius = _matching_sides(mesh, elasticity)
+    side_a, side_b, angle_a, radius = _matching_sides(mesh, elasticity, sectors)
     bore = np.unique(elasticity.edge_dofs["bore"]) if motions is None else np.zeros(0, dtype=np.int64)
     free = ~np.isin(side_a, bore)
     side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
@@ -96,7 +99,7 @@ def condensed_sector(
         sector = replace(sector, stiffness=0.5 * (stiffness + stiffness.T))
     m, n = side_a.size, sides.size
     turn = np.zeros((n, n))
-    turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / mesh.teeth)
+    turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi * sectors / mesh.teeth)
     return sector, m, turn, radius
 
 
@@ -146,7 +149,9 @@ def _polar(angle: Array) -> Array:
     return matrix
 
 
-def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Index, Array, Array]:
+def _matching_sides(
+    mesh: SectorMesh, elasticity: SectorElasticity, sectors: int = 1
+) -> tuple[Index, Index, Array, Array]:
     """Unknowns of both sides, ascending from the axis, and the clockwise angles and radii of side A's nodes."""
     both = []
     for name in ("side_a", "side_b"):
@@ -171,7 +176,7 @@ def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Ind
             "have different nodes, so that sectors cannot be joined",
             "mesh side_b as side_a rotated by one pitch",
         )
-    pitch = 2.0 * np.pi / mesh.teeth
+    pitch = 2.0 * np.pi * sectors / mesh.teeth
     if abs(angle_b - angle_a - pitch) > 1e-6:
         raise InputError(
             "mesh", f"{angle_b - angle_a:.8g} rad between the sides", f"must be one pitch, {pitch:.8g} rad"

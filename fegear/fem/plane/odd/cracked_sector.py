@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -94,6 +94,17 @@ def cracked_sector(
     """
     started = time.perf_counter()
     chains = sector_boundary(tooth, bore_radius, settings, bore_end=bore_end(settings, support))
+    found = crack_in(chains, tooth, settings, crack, started)
+    return replace(found, mesh=section_on(found.mesh, settings, support))
+
+
+def crack_in(
+    chains: list[Chain], tooth: InvoluteTooth, settings: MeshSettings, crack: Crack, started: float
+) -> CrackedSector:
+    """Fill a closed boundary, in which the fillets of tooth 0 have their names, with a crack from one of them.
+
+    Parameters and errors as of `cracked_sector`; when the work `started` [s], of `time.perf_counter`.
+    """
     path, room = _checked(tooth, crack, np.hstack([chain.vertices[:, :-1] for chain in chains]))
     scale = 1.0
     for _ in range(_MOST_REFINEMENTS):
@@ -106,9 +117,7 @@ def cracked_sector(
             scale *= _FINER
             continue
         way = path[:, -1] - path[:, -2]
-        return CrackedSector(
-            section_on(mesh, settings, support), path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back
-        )
+        return CrackedSector(mesh, path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back)
     raise FegearError(
         f"No valid mesh of the cracked tooth: it still {refused.rule}; change depth or angle of the crack a little."
     ) from refused
