@@ -67,9 +67,12 @@ class Family:
         Raises
         ------
         RangeError
-            If it is of no family: internal, helical, with a protuberance, a chamfer, or a body on supports.
+            If it is of no family: internal, asymmetric, helical, with a protuberance, a chamfer, or a body on supports.
         """
         tooth = gear.tooth
+        if gear.asymmetric:
+            angle = f"{math.degrees(tooth.back.normal_pressure_angle):.6g} deg"
+            raise RangeError("coast_pressure_angle", angle, "is not in an atlas (equal flanks only)", "solve the gear")
         if not isinstance(tooth, Tooth):
             raise RangeError("internal", "true", "is not in an atlas (external gears only)", "solve the gear")
         if gear.support is not None:
@@ -167,7 +170,7 @@ def _written(name: str, value: float | str) -> str:
 
 def place_of(gear: Gear) -> Place:
     """Where a gear lies in its family."""
-    tooth = gear.tooth
+    tooth = gear.symmetric_tooth
     shift = tooth.generating_shift
     height = tooth.tip_radius - tooth.pitch_radius - shift
     return Place(tooth.teeth, shift, height, gear.bore_radius / gear.root_radius)

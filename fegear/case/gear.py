@@ -5,26 +5,23 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.base.errors import GeometryError, InputError, shown
-from fegear.case.derived import keys_of
 from fegear.case.deviations import DeviationsPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
-from fegear.case.gear_teeth import TeethPart
+from fegear.case.gear_material import MaterialPart
+from fegear.case.gear_teeth import MEASURES, TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
-from fegear.case.nearest import nearest
 from fegear.case.odd_tooth import OddToothPart
 from fegear.case.part import (
     LengthOrZero,
-    Part,
     PositiveLength,
     Table,
     at,
     refuse,
-    spelt_also,
 )
 from fegear.case.relief import (
     BiasPart,
@@ -37,70 +34,22 @@ from fegear.case.relief import (
 )
 from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
+from fegear.geometry.asymmetric_tooth import AsymmetricSide, AsymmetricTooth
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
+from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
-from fegear.geometry.materials import NAMES, named_material
 from fegear.geometry.over_balls import over_balls
-from fegear.geometry.plausible import refuse_material
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {
     "tip_rounding": "tip_radius_rounding",
     "rack.pressure_angle": "pressure_angle",
+    "rack.drive.pressure_angle": "pressure_angle",
+    "rack.coast.pressure_angle": "coast_pressure_angle",
+    "rack.drive.tip_radius": "rack.tip_radius",
+    "rack.coast.tip_radius": "rack.coast_tip_radius",
 }
-
-
-if TYPE_CHECKING:
-
-    class _MaterialKeys(Part, Material):  # type: ignore[misc]  # frozen by pydantic
-        """Keys of the spec."""
-
-else:
-    _MaterialKeys = keys_of(Material)
-
-
-class MaterialPart(_MaterialKeys):  # type: ignore[misc]  # frozen by pydantic
-    """``material = { young_modulus, poisson_ratio, density }``, or the name of a material."""
-
-    model_config = spelt_also(lambda _table: {"type": "string", "examples": ["18CrNiMo7-6", "42CrMo4"]})
-
-    name: str | None = Field(
-        default=None,
-        description="Material by name (steels, POM, PA66), for keys not specified: E = 206 GPa for steel (ISO 6336-2). "
-        "Plastics require poisson_ratio.",
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _by_name(cls, value: Any) -> Any:
-        """Fill in the numbers of a named material."""
-        given = {"name": value} if isinstance(value, str) else value
-        if not isinstance(given, dict) or not isinstance(given.get("name"), str):
-            return given
-        name = given["name"]
-        found = named_material(name)
-        if found is None:
-            near = nearest(name, NAMES)
-            raise refuse("is not a known material", near, key="name", value=shown(name))
-        numbers = {"young_modulus": f"{found.young_modulus!r} Pa", "density": f"{found.density!r} kg/m^3"}
-        if found.poisson_ratio is not None:
-            numbers["poisson_ratio"] = found.poisson_ratio  # type: ignore[assignment]
-        elif "poisson_ratio" not in given:
-            raise refuse(
-                f"is required for {found.name}: the source of its modulus has none",
-                f'set material = {{ name = "{found.name}", poisson_ratio = ... }} from the data sheet',
-                key="poisson_ratio", value="(not given)",
-            )  # fmt: skip
-        return {**numbers, **given, "name": found.name}
-
-    def build(self) -> Material:
-        """Make the material."""
-        made = Material(self.young_modulus, self.poisson_ratio, self.density)
-        refuse_material(made.young_modulus, made.density)
-        return made
-
 
 #: Classes by name: ISO 1328-1 6, DIN ISO 1328-1:2013 class 6, ANSI/AGMA ISO 1328-1-B14 A6.
 _CLASS = re.compile(
@@ -132,6 +81,25 @@ _EXTERNAL_ONLY = {
     "body": "write outer_radius or rim_thickness",
     "tooth_mesh": "remove it: its mesh is generated",
     "tooth_mesh_fillet": "remove it",
+    "coast_pressure_angle": "remove it: asymmetric internal gears are not available yet",
+}
+
+#: Two pressure angles that differ by less [of the angle] are one, as written in deg and in rad.
+_ONE_ANGLE = 1e-12
+#: Keys that are for gears with equal flanks only, and what to do with them.
+_SYMMETRIC_ONLY = {
+    "helix_angle": "remove it: asymmetric teeth are available for spur gears only",
+    "transverse_pressure_angle": "remove it",
+    "tooth_mesh": "remove it: its mesh is generated",
+    "body": "remove it: asymmetric teeth are available for plane (2D) gears only",
+    "odd_tooth": "remove it",
+    "relief": "remove it: modifications of asymmetric teeth are not available yet",
+    "lead": "remove it",
+    "bias": "remove it",
+    "topography": "remove it",
+    "measured": "remove it",
+    "span_teeth": "remove it: no span can be measured over flanks of two base circles",
+    **dict.fromkeys(MEASURES, "set profile_shift"),
 }
 
 
@@ -295,6 +263,7 @@ class GearPart(TeethPart):
         if not self.internal and self.rim_support is not None:
             self.rim_support.check_external(self)
         self._check_internal()
+        self._check_asymmetric()
         self._check_odd_teeth()
         if self.is_helical:
             self._check_helical()
@@ -322,6 +291,35 @@ class GearPart(TeethPart):
             raise refuse(
                 "contradicts outer_radius", "specify either rim_thickness or outer_radius", key="rim_thickness"
             )
+
+    @property
+    def asymmetric(self) -> bool:
+        """Whether the two flanks of its teeth differ."""
+        angle, tip = self.coast_pressure_angle, self.rack.coast_tip_radius
+        return (angle is not None and not math.isclose(angle, self.pressure_angle, rel_tol=_ONE_ANGLE)) or (
+            tip is not None and tip != self.rack.tip_radius
+        )
+
+    def _check_asymmetric(self) -> None:
+        """Refuse keys of equal flanks on others."""
+        if self.rack.coast_tip_radius is not None and not isinstance(self.rack.tip_radius, float):
+            raise refuse(
+                "is required for rack.coast_tip_radius", "set rack.tip_radius = 0.25", key="rack.tip_radius",
+                value=self.rack.tip_radius,
+            )  # fmt: skip
+        if not self.asymmetric:
+            return
+        for key, remedy in _SYMMETRIC_ONLY.items():
+            if key in self.given:
+                raise refuse("is not available for asymmetric teeth", remedy, key=key)
+        for key in ("protuberance", "grinding_allowance"):
+            if getattr(self.rack, key):
+                raise refuse("is not available for asymmetric teeth", "remove it", key=f"rack.{key}")
+        if isinstance(self.profile_shift, str):
+            raise refuse(
+                "is not available for asymmetric teeth", "give the profile shift as a number", key="profile_shift",
+                value=shown(self.profile_shift),
+            )  # fmt: skip
 
     def _check_odd_teeth(self) -> None:
         """Refuse odd teeth of gears that are not solved with them, that are no teeth of theirs, and twice given."""
@@ -416,8 +414,8 @@ class GearPart(TeethPart):
                 raise
             raise GeometryError("span_teeth", error.value, error.rule, error.remedy) from None
 
-    def _tooth(self, module: float) -> Tooth | InternalTooth:
-        """The tooth in modules, as the rack or the cutter makes it."""
+    def _tooth(self, module: float) -> Tooth | InternalTooth | AsymmetricSide:
+        """The tooth in modules, as the rack or the cutter makes it; an asymmetric one is seen from its drive flank."""
         tip = math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / module
         shape = (
             self.x, self.allowance / module, tip, self.tip_radius_rounding / module,
@@ -428,6 +426,10 @@ class GearPart(TeethPart):
                 cutter.teeth,
                 lambda z0: InternalTooth(self.teeth, cutter.build(module, z0), self.pressure_angle, *shape),
             )
+        if self.asymmetric:
+            coast = self.pressure_angle if self.coast_pressure_angle is None else self.coast_pressure_angle
+            rack = self.rack.build_asymmetric(self.pressure_angle, coast, module)
+            return AsymmetricTooth(self.teeth, rack, *shape).drive
         return Tooth(self.teeth, self.rack.build(self.pressure_angle, module), *shape)
 
     def _cut(self, given: int | None, made: Callable[[int], InternalTooth]) -> InternalTooth:

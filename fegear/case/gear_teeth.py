@@ -119,6 +119,11 @@ class TeethPart(Part):
         default=math.radians(20.0),
         description="Pressure angle of the basic rack, normal to the teeth of helical gears.",
     )
+    coast_pressure_angle: Angle | None = Field(
+        default=None,
+        description="Pressure angle of the coast flank of asymmetric teeth; `pressure_angle` is that of the drive "
+        "flank. Default: `pressure_angle`.",
+    )
     transverse_pressure_angle: Angle | None = Field(
         default=None,
         description="Transverse pressure angle alpha_t of a helical gear, tan(alpha_t) = tan(alpha_n) / cos(beta); "

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from fegear.case.derived import keys_of
 from fegear.case.part import Number, Part, PositiveLength, refuse, spelt_also
+from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
 from fegear.geometry.internal_tooth import PinionCutter
 from fegear.geometry.named_racks import named_rack
 from fegear.geometry.rack import BasicRack
@@ -55,6 +56,12 @@ class RackPart(_RackKeys):
         "that of the profile, 0.25 for C.",
     )
 
+    coast_tip_radius: Number | None = Field(
+        default=None,
+        description="Tip radius of the basic rack beside the coast flank of asymmetric teeth [modules]. Default: "
+        "`tip_radius`.",
+    )
+
     @model_validator(mode="before")
     @classmethod
     def _name_alone(cls, value: Any) -> Any:
@@ -62,7 +69,7 @@ class RackPart(_RackKeys):
 
     def build(self, pressure_angle: float, module: float = math.nan) -> BasicRack:
         """Make the rack of a module [m]; what is not given comes from the named profile, else from ISO 53 C."""
-        base = named_rack("C" if self.profile is None else self.profile, pressure_angle, module)
+        base = self._named(pressure_angle, module)
         addendum = base.addendum if self.addendum is None else self.addendum
         dedendum = base.dedendum if self.dedendum is None else self.dedendum
         more = (self.protuberance, self.grinding_allowance, self.protuberance_angle)
@@ -70,6 +77,24 @@ class RackPart(_RackKeys):
             return BasicRack.full_fillet(addendum, dedendum, pressure_angle, *more)
         tip_radius = base.tip_radius if self.tip_radius is None else float(self.tip_radius)
         return BasicRack(addendum, dedendum, tip_radius, pressure_angle, *more)
+
+    def _named(self, pressure_angle: float, module: float) -> BasicRack:
+        """The named profile, for its numbers: at large pressure angles only the given ones need fit on a tool."""
+        usual = min(pressure_angle, math.radians(20.0))
+        return named_rack("C" if self.profile is None else self.profile, usual, module)
+
+    def build_asymmetric(self, drive: float, coast: float, module: float = math.nan) -> AsymmetricRack:
+        """Make the rack of two pressure angles [rad]; what is not given comes from the named profile, as in `build`."""
+        base = self._named(min(drive, coast), module)
+        addendum = base.addendum if self.addendum is None else self.addendum
+        dedendum = base.dedendum if self.dedendum is None else self.dedendum
+        if self.tip_radius == "full":
+            sharp = AsymmetricRack(RackFlank(drive, 0.0), RackFlank(coast, 0.0), addendum, dedendum)
+            one = other = sharp.full_fillet_radius
+        else:
+            one = base.tip_radius if self.tip_radius is None else float(self.tip_radius)
+            other = one if self.coast_tip_radius is None else self.coast_tip_radius
+        return AsymmetricRack(RackFlank(drive, one), RackFlank(coast, other), addendum, dedendum)
 
 
 class CutterPart(Part):

@@ -157,6 +157,11 @@ class PairPart(Part):
 
     driver: str = Field(description="Name of the driving gear.")
     driven: str = Field(description="Name of the driven gear; may be the same gear.")
+    flank: Literal["drive", "coast"] | None = Field(
+        default=None,
+        description="Working flanks of asymmetric teeth (`coast_pressure_angle`): `drive`, or `coast` as under "
+        "reversed torque. Default: drive.",
+    )
     centre_distance: PositiveLength | None = Field(
         default=None,
         description="Working centre distance. Default: zero backlash.",

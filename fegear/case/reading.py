@@ -25,6 +25,7 @@ from fegear.case.renamed import current, current_key, without_old
 from fegear.case.set_pairs import with_set_pairs
 from fegear.case.settled import settled
 from fegear.case.text_file import is_below, read_text
+from fegear.case.working_flanks import with_working_flanks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -237,6 +238,7 @@ def build_scene(
                 f"pair.{key}.driven", f'"{pair.driven}"', "only one of the two gears is helical",
                 "specify the same helix_angle and opposite hands",
             )  # fmt: skip
+    gears = with_working_flanks(case, gears)
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     case = _with_effects(case, pairs)
     helical_pairs = {

@@ -23,6 +23,13 @@ _LARGEST = 3.0
 #: Keys by which a case says how thick the teeth of a gear are.
 _SHIFTED = ("profile_shift", "tooth_thickness", "span", "over_balls", "over_pins", "chordal_thickness")
 
+#: Keys of a pair from which profile shifts or allowances are derived, and what to do instead.
+_DERIVING = {
+    "shift_distribution": "set profile_shift of both gears",
+    "normal_backlash": "set thickness_allowance of the gears",
+    "circumferential_backlash": "set thickness_allowance of the gears",
+}
+
 
 def numbers_of(part: GearPart) -> ToothNumbers:
     """What a gear is before its teeth have a thickness."""
@@ -53,6 +60,7 @@ def settled_pairs(
     thinned = {name: "thickness_allowance" in part.model_fields_set for name, part in written.items()}
     known = {name: part for name, part in pairs.items() if {part.driver, part.driven} <= gears.keys()}
     for name, part in known.items():
+        _refuse_asymmetric(name, part, gears)
         if part.power is not None and part.speed is not None:
             torque = part.power / part.speed
             made[name] = part.model_copy(update={"torque": torque})
@@ -66,6 +74,14 @@ def settled_pairs(
         if part.normal_backlash is not None or part.circumferential_backlash is not None:
             said.append(_thin(name, part, found, thinned))
     return made, found, said
+
+
+def _refuse_asymmetric(name: str, part: PairPart, gears: Mapping[str, GearPart]) -> None:
+    """Refuse to derive shifts or thickness of asymmetric teeth."""
+    gear = next((gear for gear in (part.driver, part.driven) if gears[gear].asymmetric), None)
+    for key, remedy in _DERIVING.items():
+        if gear is not None and getattr(part, key) is not None:
+            _refuse(name, key, "(given)", f"is not available for the asymmetric teeth of gear {gear}", remedy)
 
 
 def _mesh(part: PairPart, gears: Mapping[str, GearPart]) -> tuple[MeshNumbers, float]:

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.derived import keys_of
-from fegear.case.gear import MaterialPart
+from fegear.case.gear_material import MaterialPart
 from fegear.case.part import (
     Angle,
     Force,

@@ -39,6 +39,8 @@ class Entry(NamedTuple):
         Quantities that a study of cost takes for its results; empty where it knows none.
     internal : bool
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
+    asymmetric : bool
+        Whether it takes teeth with two different flanks; a plan refuses those of other stages.
     """
 
     name: str
@@ -51,11 +53,12 @@ class Entry(NamedTuple):
     effects: tuple[str, ...] = ()
     quantities: tuple[str, ...] = ()
     internal: bool = False
+    asymmetric: bool = False
 
 
 def _entry(stage: Stage) -> Entry:
     return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects,
-                 internal=stage.internal)  # fmt: skip
+                 internal=stage.internal, asymmetric=stage.asymmetric)  # fmt: skip
 
 
 class Catalogue(Sequence[Stage]):
@@ -120,7 +123,7 @@ class Catalogue(Sequence[Stage]):
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
             named = replace(
                 found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
-                effects=entry.effects, internal=entry.internal,
+                effects=entry.effects, internal=entry.internal, asymmetric=entry.asymmetric,
             )  # fmt: skip
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.brief import Brief
 from fegear.base.errors import GeometryError, InputError
@@ -15,6 +15,10 @@ from fegear.case.trade_words import of_result
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.joined_names import refuse_joined
 from fegear.engine.stage import Stage, Task
+
+if TYPE_CHECKING:
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair
 
 #: Why a task runs that no result of the case asks for.
 ON_REQUEST = "shown on request"
@@ -108,6 +112,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
         _require_effects(scene, stage, wanted)
         _refuse_twice(stage, wanted)
         _refuse_internal(scene, stage, task.subject, result)
+        _refuse_asymmetric(scene, stage, task.subject, result)
         _refuse_fouling(scene, stage, task.subject)
         stage.check(scene, task.subject)
         reasons[task], needs = [reason], stage.needs(scene, task.subject)
@@ -241,11 +246,7 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> N
     """Refuse internal gears and pairs where a stage is made for external ones, by the name of what was asked for."""
     if stage.internal:
         return
-    one = subject in scene.pairs or subject in scene.gears
-    pairs = [name for name, pair in scene.pairs.items() if pair.internal and (name == subject or not one)]
-    alone = subject == "" or (one and subject not in scene.pairs)
-    gears = [name for name, gear in scene.gears.items() if gear.tooth.internal and alone and subject in (name, "")]
-    for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
+    for key in _subjects(scene, subject, lambda pair: pair.internal, lambda gear: gear.tooth.internal):
         named = result or (stage.results[0] if stage.results else stage.name)
         wide = " for helical or 3D gears" if subject in scene.wide_pairs else ""
         why = f": {stage.why_external}" if stage.why_external else ""
@@ -253,6 +254,32 @@ def _refuse_internal(scene: Scene, stage: Stage, subject: str, result: str) -> N
             key, "internal", f'is not supported by "{named}" (external gears only{wide}{why})',
             "remove it from results, or use a separate case for the external gears",
         )  # fmt: skip
+
+
+def _refuse_asymmetric(scene: Scene, stage: Stage, subject: str, result: str) -> None:
+    """Refuse teeth with two different flanks where a stage is made for equal ones, by what was asked for."""
+    if stage.asymmetric:
+        return
+    for key in _subjects(scene, subject, lambda pair: pair.asymmetric, lambda gear: gear.asymmetric):
+        named = result or (stage.results[0] if stage.results else stage.name)
+        raise InputError(
+            key, "asymmetric teeth", f'is not supported by "{named}" (teeth with equal flanks only)',
+            "remove it from results, or use a separate case for the other gears",
+        )  # fmt: skip
+
+
+def _subjects(
+    scene: Scene, subject: str, of_pair: Callable[[GearPair], bool], of_gear: Callable[[Gear], bool]
+) -> Iterator[str]:
+    """Keys of the pairs and gears of one kind among those that a task is about."""
+    one = subject in scene.pairs or subject in scene.gears
+    for name, pair in scene.pairs.items():
+        if of_pair(pair) and (name == subject or not one):
+            yield f"pair.{name}"
+    alone = subject == "" or (one and subject not in scene.pairs)
+    for name, gear in scene.gears.items():
+        if of_gear(gear) and alone and subject in (name, ""):
+            yield f"gear.{name}"
 
 
 def _why_not(stage: Entry, wanted: Sequence[str]) -> str:

@@ -175,6 +175,8 @@ class Stage:
     internal : bool
         Whether it takes internal gears and pairs; a plan refuses those of other stages. Given by the catalogue, by the
         stage itself where another distribution adds it.
+    asymmetric : bool
+        The same of teeth with two different flanks.
     why_external : str
         Why it does not.
     holds : tuple of str
@@ -208,6 +210,7 @@ class Stage:
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
     internal: bool = False
+    asymmetric: bool = False
     why_external: str = ""
     holds: tuple[str, ...] = ()
     instead_of: tuple[str, ...] = ()

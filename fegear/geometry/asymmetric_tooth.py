@@ -141,10 +141,6 @@ class AsymmetricTooth:
         """Radius above which the tooth has both flanks [modules]."""
         return max(self.drive.base_radius, self.coast.base_radius)
 
-    def thickness_angle(self, radius: float) -> float:
-        """Angle [rad] between the tooth's two involutes at a radius [modules], outside both base circles."""
-        return float(self.drive.flank_angle(radius) + self.coast.flank_angle(radius))
-
     @property
     def tip_land_angle(self) -> float:
         """Angle of the tip land that is left between both flanks, roundings or chamfers [rad]."""
@@ -156,11 +152,11 @@ class AsymmetricTooth:
         if self.tip_radius <= lowest:
             rule = f"must exceed the larger base radius of {lowest:.6g} modules"
             raise GeometryError("tip_radius", f"{self.tip_radius:.6g}", rule, "increase the tip diameter")
-        if self.thickness_angle(self.tip_radius) <= 0.0:
+        if float(self.drive.thickness_angle(self.tip_radius)) <= 0.0:
             low, high = lowest, self.tip_radius  # the angle falls from the larger base circle on
             for _ in range(80):
                 middle = 0.5 * (low + high)
-                low, high = (middle, high) if self.thickness_angle(middle) > 0.0 else (low, middle)
+                low, high = (middle, high) if float(self.drive.thickness_angle(middle)) > 0.0 else (low, middle)
             raise GeometryError(
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
@@ -205,6 +201,12 @@ class AsymmetricTooth:
             )
 
 
+#: What both sides of a tooth have in common.
+_COMMON = (
+    "teeth", "profile_shift", "thickness_allowance", "tip_radius", "tip_rounding", "tip_chamfer", "helix_angle",
+)  # fmt: skip
+
+
 @dataclass(frozen=True)
 class AsymmetricSide(InvoluteSide):
     """An asymmetric tooth seen from one of its flanks.
@@ -218,6 +220,8 @@ class AsymmetricSide(InvoluteSide):
     tooth: AsymmetricTooth
     flank: Flank
     teeth: int = field(init=False, repr=False)
+    profile_shift: float = field(init=False, repr=False)
+    thickness_allowance: float = field(init=False, repr=False)
     tip_radius: float = field(init=False, repr=False)
     tip_rounding: float = field(init=False, repr=False)
     tip_chamfer: float = field(init=False, repr=False)
@@ -225,7 +229,7 @@ class AsymmetricSide(InvoluteSide):
 
     def __post_init__(self) -> None:
         """Take over what both sides have in common."""
-        for name in ("teeth", "tip_radius", "tip_rounding", "tip_chamfer", "helix_angle"):
+        for name in _COMMON:
             object.__setattr__(self, name, getattr(self.tooth, name))
 
     @property
@@ -238,6 +242,11 @@ class AsymmetricSide(InvoluteSide):
         """What generates this side."""
         return self.tooth.rack.half(self.flank)
 
+    @property
+    def normal_pressure_angle(self) -> float:
+        """alpha_n of this flank [rad]."""
+        return self.rack.pressure_angle
+
     @cached_property
     def pressure_angle(self) -> float:
         """alpha_t of this flank [rad]."""
@@ -249,7 +258,7 @@ class AsymmetricSide(InvoluteSide):
         return self.tooth.root_radius
 
     @property
-    def _beside(self) -> float:
+    def beside(self) -> float:
         """How far the middle of the rack's tip lies beside the middle of its tooth, toward this flank [modules]."""
         shift = self.tooth.rack.tip_shift if self.flank == "drive" else -self.tooth.rack.tip_shift
         return shift / math.cos(self.helix_angle)
@@ -258,7 +267,7 @@ class AsymmetricSide(InvoluteSide):
     def base_half_angle(self) -> float:
         """psi_b, angle from the centre line at which the involute leaves the base circle [rad]."""
         thickness = math.pi / 2 + 2.0 * self.tooth.generating_shift * math.tan(self.rack.pressure_angle)
-        return thickness / self.teeth + float(inv(self.pressure_angle)) + self._beside / self.pitch_radius
+        return thickness / self.teeth + float(inv(self.pressure_angle)) + self.beside / self.pitch_radius
 
     @cached_property
     def tip_middle(self) -> float:
@@ -292,7 +301,7 @@ class AsymmetricSide(InvoluteSide):
     @cached_property
     def _flank_line(self) -> RackFlankLine:
         half_pitch, shift = 0.5 * math.pi / math.cos(self.helix_angle), self.tooth.generating_shift
-        half_space = 0.5 * half_pitch - self._beside
+        half_space = 0.5 * half_pitch - self.beside
         normal = self.rack.pressure_angle
         return RackFlankLine(self.pressure_angle, self.pitch_radius, half_space, half_pitch, shift, normal)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -12,6 +12,7 @@ from fegear.base.given import given
 from fegear.base.shown import shown, shows
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.mass import MassProperties, mass_properties
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
@@ -58,9 +59,9 @@ class Gear:
 
     Parameters
     ----------
-    tooth : InvoluteTooth
-        Shape of the transverse section in normal modules, with the helix angle: external (`Tooth`) or internal
-        (`InternalTooth`).
+    tooth : InvoluteSide
+        Shape of the transverse section in normal modules, with the helix angle: external (`Tooth`), internal
+        (`InternalTooth`), or a side of an asymmetric tooth, seen from the flank that is loaded.
     module : float
         m_n, the normal module [m].
     bore_radius : float
@@ -85,7 +86,7 @@ class Gear:
         If the plane assumption is unknown, or plane strain meets a material that is as good as incompressible.
     """
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     module: float = shown("mm", "module")
     bore_radius: float = shown("mm", "radius at which the gear body is fixed")
     face_width: float = shown("mm", "face width", default=1e-3)
@@ -127,7 +128,8 @@ class Gear:
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
         if self.plane == "auto":
             t = self.tooth
-            thickness = 2.0 * self.pitch_radius * float(t.half_thickness_angle(max(t.pitch_radius, t.base_radius)))
+            radius = max(t.pitch_radius, t.base_radius, t.back.base_radius)
+            thickness = self.pitch_radius * float(t.thickness_angle(radius))
             object.__setattr__(self, "plane", "strain" if self.face_width >= 5.0 * thickness else "stress")
         nu = self.material.poisson_ratio
         if self.plane == "strain" and nu > _LARGEST_POISSON_RATIO:
@@ -164,14 +166,41 @@ class Gear:
         Raises
         ------
         GeometryError
-            Of an internal gear: it is what formulas and effects take that are made for racks.
+            Of an internal gear, or of asymmetric teeth: it is what formulas and effects take that are made for racks.
         """
-        if not isinstance(self.tooth, Tooth):
+        tooth = self.symmetric_tooth
+        if not isinstance(tooth, Tooth):
             raise GeometryError(
                 "internal", "true", "is an internal gear; this result is available for external gears only",
                 "request the FE results of the gear",
             )  # fmt: skip
+        return tooth
+
+    @property
+    def symmetric_tooth(self) -> InvoluteTooth:
+        """The tooth of a gear whose flanks are equal.
+
+        Raises
+        ------
+        GeometryError
+            Of asymmetric teeth: it is what formulas, drawings and effects take that hold for equal flanks only.
+        """
+        if not isinstance(self.tooth, InvoluteTooth):
+            raise GeometryError(
+                "coast_pressure_angle", f"{math.degrees(self.tooth.back.normal_pressure_angle):.6g} deg",
+                "makes the teeth asymmetric, and this is available for equal flanks only", "remove it, or the request",
+            )  # fmt: skip
         return self.tooth
+
+    @property
+    def asymmetric(self) -> bool:
+        """Whether the two flanks of its teeth differ."""
+        return self.tooth.back is not self.tooth
+
+    @property
+    def from_the_back(self) -> Gear:
+        """The gear with its other flanks loaded: itself, where both are equal."""
+        return replace(self, tooth=self.tooth.back) if self.asymmetric else self
 
     @property
     def plane_assumption(self) -> Plane:
@@ -192,12 +221,12 @@ class Gear:
     @property
     def half_base_tooth_angle(self) -> float:
         """psi_b, half the angle of a tooth on the base cylinder [rad]; eta of TM-107451."""
-        return self.tooth.base_half_angle
+        return self.symmetric_tooth.base_half_angle
 
     @property
     def half_base_space_angle(self) -> float:
         """Half the angle of a tooth space on the base cylinder [rad]; mu of TM-107451."""
-        return 0.5 * self.angular_pitch - self.tooth.base_half_angle
+        return 0.5 * self.angular_pitch - self.symmetric_tooth.base_half_angle
 
     @property
     def helix_angle(self) -> float:
@@ -244,7 +273,7 @@ class Gear:
 
     @property
     def normal_pressure_angle(self) -> float:
-        """alpha_n [rad], that of the tool."""
+        """alpha_n [rad], that of the tool; of asymmetric teeth of the loaded flank."""
         return self.tooth.normal_pressure_angle
 
     @property
@@ -296,7 +325,7 @@ class Gear:
 
     def normal_thickness(self, radius: float) -> float:
         """Thickness of a tooth at a radius [m], normal to its helix there: s_n = s_t cos(beta) [m]."""
-        arc = 2.0 * radius * float(self.tooth.half_thickness_angle(radius / self.module))
+        arc = radius * float(self.tooth.thickness_angle(radius / self.module))
         return arc * math.cos(math.atan(self.twist * radius))
 
     @cached_property

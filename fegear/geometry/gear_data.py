@@ -13,7 +13,8 @@ from fegear.geometry.checks import tip_thickness
 from fegear.geometry.gear import Gear
 from fegear.geometry.inspection import chord, span, usual_span
 from fegear.geometry.over_balls import OverBalls, over_balls, touching_ball, usual_ball
-from fegear.geometry.pair import ActiveProfile, GearPair, Member, active_profile, specific_sliding
+from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.path_of_contact import ActiveProfile, active_profile, specific_sliding
 
 
 def measured(gear: Gear, ball_diameter: float | None = None) -> OverBalls | None:
@@ -105,6 +106,24 @@ class GearData:
     def base_helix_angle(self) -> float | None:
         """[rad]."""
         return self.gear.base_helix_angle if self.helical else None
+
+    @property
+    @shows("deg", "pressure angle of the non-working flank")
+    def back_pressure_angle(self) -> float | None:
+        """Of asymmetric teeth [rad]."""
+        return self.gear.from_the_back.normal_pressure_angle if self.gear.asymmetric else None
+
+    @property
+    @shows("mm", "base diameter of the non-working flank")
+    def back_base_diameter(self) -> float | None:
+        """[m]."""
+        return 2.0 * self.gear.from_the_back.base_radius if self.gear.asymmetric else None
+
+    @property
+    @shows("mm", "root form diameter of the non-working flank")
+    def back_root_form_diameter(self) -> float | None:
+        """[m]."""
+        return 2.0 * self.gear.from_the_back.form_radius if self.gear.asymmetric else None
 
     @property
     @shows("", "profile shift coefficient x")

@@ -35,7 +35,7 @@ def span(gear: Gear, teeth: int) -> float:
     if teeth < 1:
         raise GeometryError("teeth", teeth, "must be at least 1")
     lean = math.cos(gear.base_helix_angle)
-    length = ((teeth - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.tooth.base_half_angle) * lean
+    length = ((teeth - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.symmetric_tooth.base_half_angle) * lean
     radius = math.hypot(gear.base_radius, 0.5 * length * lean)
     if not gear.form_radius <= radius <= gear.involute_tip_radius:
         raise GeometryError(
@@ -60,9 +60,9 @@ def usual_span(gear: Gear) -> tuple[int, float] | None:
     """Number of teeth and base tangent length [m] of the measurement that `span_teeth` would take.
 
     A face too narrow for the lean of helical teeth takes fewer teeth; None where no number is left, and of internal
-    gears.
+    gears and of asymmetric teeth: between planes on flanks of two base circles the distance depends on how they lie.
     """
-    if gear.tooth.internal:
+    if gear.tooth.internal or gear.asymmetric:
         return None
     for teeth in range(span_teeth(gear), 0, -1):
         try:
@@ -76,7 +76,7 @@ def span_teeth(gear: Gear) -> int:
     """Number of teeth whose measurement touches the flanks nearest to the middle of the involute."""
     middle = 0.5 * (gear.form_radius + gear.involute_tip_radius)
     half = math.sqrt(max(middle**2 - gear.base_radius**2, 0.0))
-    base_thickness = 2.0 * gear.base_radius * gear.tooth.base_half_angle
+    base_thickness = 2.0 * gear.base_radius * gear.symmetric_tooth.base_half_angle
     across = 2.0 * half / math.cos(gear.base_helix_angle) ** 2
     return max(1, round((across - base_thickness) / gear.base_pitch) + 1)
 
@@ -85,11 +85,12 @@ def chord(gear: Gear) -> tuple[float, float]:
     """Chordal tooth thickness on the reference cylinder, normal to the helix, and its height from the tip circle [m].
 
     A helical tooth is that of its virtual spur gear in the normal section, as drawings have it. Not a number of
-    internal gears, which no caliper reaches, and of teeth so thick that they have no such chord.
+    internal gears, which no caliper reaches, of asymmetric teeth, whose flanks it would touch at two heights, and of
+    teeth so thick that they have no such chord.
     """
-    tooth = gear.tooth
-    if tooth.internal:
+    if gear.asymmetric or gear.tooth.internal:
         return math.nan, math.nan
+    tooth = gear.symmetric_tooth
     numbers = ToothNumbers(tooth.teeth, tooth.normal_pressure_angle, tooth.helix_angle)
     thickness, drop = numbers.chord(tooth.generating_shift)
     return thickness * gear.module, (tooth.tip_radius - tooth.pitch_radius + drop) * gear.module

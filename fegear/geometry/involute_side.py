@@ -92,6 +92,8 @@ class InvoluteSide(ABC):
     side: ClassVar[int] = 1
 
     teeth: int
+    profile_shift: float
+    thickness_allowance: float
     tip_radius: float
     tip_rounding: float
     tip_chamfer: float
@@ -105,8 +107,13 @@ class InvoluteSide(ABC):
 
     @property
     @abstractmethod
+    def normal_pressure_angle(self) -> float:
+        """alpha_n of this flank [rad]."""
+
+    @property
+    @abstractmethod
     def pressure_angle(self) -> float:
-        """alpha_t, the transverse pressure angle [rad]."""
+        """alpha_t, the transverse pressure angle of this flank [rad]."""
 
     @property
     @abstractmethod
@@ -194,6 +201,10 @@ class InvoluteSide(ABC):
     def flank_angle(self, radius: ArrayLike) -> Array:
         """Angle from the centre line [rad] of the involute at `radius` [modules]."""
         return self.base_half_angle - polar_angle(self.roll(radius))
+
+    def thickness_angle(self, radius: ArrayLike) -> Array:
+        """The tooth's angle [rad] between its two involutes at `radius` [modules], outside both base circles."""
+        return np.asarray(self.flank_angle(radius) + self.back.flank_angle(radius))
 
     # ---- the tip ---------------------------------------------------------------------------------------------------
     @property

@@ -21,15 +21,7 @@ class InvoluteTooth(InvoluteSide):
     one loaded flank takes an `InvoluteSide`.
     """
 
-    profile_shift: float
-    thickness_allowance: float
-
     # ---- what the tool decides -------------------------------------------------------------------------------------
-    @property
-    @abstractmethod
-    def normal_pressure_angle(self) -> float:
-        """alpha_n [rad]."""
-
     @property
     @abstractmethod
     def dedendum(self) -> float:

@@ -19,12 +19,14 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.geometry.asymmetric_rack import RackHalf
+from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.geometry.curves import Arc, Drawn, Involute, Line
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import InvoluteSide
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import Relief
 
 _LARGEST_COUNT = 1 << 14
@@ -87,20 +89,36 @@ def gear_outline(gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | 
     return np.hstack([turned(one, k * pitch) for k in range(gear.teeth)])
 
 
-def rack_tooth(tooth: Tooth) -> Array:
-    """Outline of the tool's tooth across the gear's axis [modules], (2, N): along the rack, above the pitch line."""
-    rack, shift = tooth.rack, tooth.generating_shift
+def _rack_half(rack: BasicRack | RackHalf, addendum: float, shift: float, beside: float, cos_helix: float) -> Array:
+    """One half of the tool's tooth from its foot to its tip, from where the middle of its tip is [modules]."""
     alpha, rho = rack.pressure_angle, rack.tip_radius
-    top = np.array([[math.pi / 4 + rack.addendum * math.tan(alpha)], [shift + rack.addendum]])
+    top = np.array([[math.pi / 4 + addendum * math.tan(alpha)], [shift + addendum]])
     beta = np.linspace(math.pi / 2 - alpha, 0.0, 25)
     centre = rack.tip_centre_offset, shift - rack.tip_centre_depth
     rounding = np.stack([centre[0] + rho * np.sin(beta), centre[1] - rho * np.cos(beta)])
-    right = np.hstack([top, rounding])
-    right[0] /= math.cos(tooth.helix_angle)
-    return np.hstack([right, right[:, ::-1] * np.array([[-1.0], [1.0]])])
+    half = np.hstack([top, rounding])
+    half[0] = half[0] / cos_helix - beside
+    return half
 
 
-def rack_in_gear(tooth: Tooth, rolled: float) -> Array:
+def rack_tooth(tooth: Tooth | AsymmetricSide) -> Array:
+    """Outline of the tool's tooth across the gear's axis [modules], (2, N): along the rack, above the pitch line.
+
+    From right to left; its left flank makes the one that the tooth is seen from.
+    """
+    lean = math.cos(tooth.helix_angle)
+    if isinstance(tooth, Tooth):
+        right = _rack_half(tooth.rack, tooth.rack.addendum, tooth.generating_shift, 0.0, lean)
+        left = right
+    else:
+        right, left = (
+            _rack_half(side.rack, side.tooth.rack.addendum, side.tooth.generating_shift, side.beside, lean)
+            for side in (tooth.back, tooth)
+        )
+    return np.hstack([right, left[:, ::-1] * np.array([[-1.0], [1.0]])])
+
+
+def rack_in_gear(tooth: Tooth | AsymmetricSide, rolled: float) -> Array:
     """The tool in the gear's frame after the gear has rolled by an angle [rad], in the space right of the tooth."""
     u, v = rack_tooth(tooth)
     placed = np.stack([u + tooth.pitch_radius * rolled, v + tooth.pitch_radius])
@@ -114,21 +132,21 @@ def _cutter_in_gear(tooth: InternalTooth, rolled: float) -> Array:
     return turned(placed, math.pi / tooth.teeth - rolled)
 
 
-def tool_in_gear(tooth: InvoluteTooth, rolled: float) -> Array:
+def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
     """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
     if isinstance(tooth, InternalTooth):
         return _cutter_in_gear(tooth, rolled)
-    if isinstance(tooth, Tooth):
+    if isinstance(tooth, (Tooth, AsymmetricSide)):
         return rack_in_gear(tooth, rolled)
     raise TypeError(f"no tool available for a {type(tooth).__name__}")
 
 
-def tool_in_space(tooth: InvoluteTooth, count: int) -> Array:
+def tool_in_space(tooth: InvoluteSide, count: int) -> Array:
     """Positions of the tool as it rolls through the space right of the tooth, shape (count, 2, N) [modules].
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     count : int
         Even steps of the roll, from before the first touch to after the last.
     """

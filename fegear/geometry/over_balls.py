@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from fegear.base.errors import GeometryError
+from fegear.geometry.balls_on_two_flanks import ball_of, ball_touching_at
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute import pressure_angle_of_inv
 
@@ -59,7 +60,9 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     """
     if not (math.isfinite(ball_diameter) and ball_diameter > 0.0):
         raise GeometryError("ball_diameter", ball_diameter, "must be positive and finite")
-    base, space = gear.base_radius, math.pi / gear.teeth - gear.tooth.base_half_angle
+    if gear.asymmetric:
+        return _over_two_flanks(gear, ball_diameter)
+    base, space = gear.base_radius, math.pi / gear.teeth - gear.symmetric_tooth.base_half_angle
     lean, side = math.cos(gear.base_helix_angle), gear.tooth.side
     rise = side * (0.5 * ball_diameter / lean / base - space)
     if rise <= 0.0:
@@ -83,6 +86,20 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     return OverBalls(over, ball_diameter, contact, pins)
 
 
+def _over_two_flanks(gear: Gear, ball_diameter: float) -> OverBalls:
+    """The same over spur teeth whose flanks have two base circles."""
+    try:
+        ball = ball_of(gear.tooth, ball_diameter / gear.module)
+    except GeometryError as error:
+        raise _refused(gear, ball_diameter, error.rule) from None
+    if ball.trouble:
+        raise _refused(gear, ball_diameter, ball.trouble)
+    centre = ball.centre * gear.module
+    across = centre if gear.teeth % 2 == 0 else centre * math.cos(0.5 * math.pi / gear.teeth)
+    over = 2.0 * across + ball_diameter
+    return OverBalls(over, ball_diameter, 0.5 * sum(ball.contact_radii) * gear.module, over)
+
+
 def _refused(gear: Gear, ball_diameter: float, rule: str) -> GeometryError:
     remedy = f"choose about {touching_ball(gear) * 1e3:.4g} mm"
     return GeometryError("ball_diameter", f"{ball_diameter * 1e3:.6g} mm", rule, remedy)
@@ -97,8 +114,10 @@ def touching_ball(gear: Gear) -> float:
     radius, (low, high) = tooth.pitch_radius + tooth.side * tooth.profile_shift, tooth.involute_radii
     if not low < radius < high:
         radius = 0.5 * (tooth.form_radius + tooth.involute_tip_radius)
+    if gear.asymmetric:
+        return ball_touching_at(tooth, radius).diameter * gear.module
     roll = float(tooth.roll(radius))
-    space = math.pi / tooth.teeth - float(tooth.half_thickness_angle(radius))
+    space = math.pi / tooth.teeth - float(gear.symmetric_tooth.half_thickness_angle(radius))
     centre = math.atan(roll) + space  # pressure angle at the ball's centre, for a spur gear
     steep = math.tan(gear.base_helix_angle) ** 2
     target = centre + steep * roll  # centre + steep tan(centre) = target, by Newton's rule

@@ -1,14 +1,11 @@
-"""Two gears in mesh: working data, path of contact, contact ratio, interference (ISO 21771, 5.4).
-
-What happens along the path of contact: its points A to E, the diameters that it uses, sliding (ISO 21771, 5.4).
-"""
+"""Two gears in mesh: working data, path of contact, contact ratio, interference (ISO 21771, 5.4)."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +13,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
+from fegear.geometry.both_flanks import free_arc, touching_distance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
@@ -86,11 +84,11 @@ class GearPair:
                 "must be equal for the gears to mesh",
                 "use the same module and pressure angle for both gears",
             )
+        self._check_back()
         self._check_room_in_ring()
         tight = self.tight_centre_distance
         if math.isnan(self.centre_distance):
-            nominal = self._base_radii / math.cos(self._working_angle(allowance=False))
-            object.__setattr__(self, "centre_distance", nominal)
+            object.__setattr__(self, "centre_distance", self._touching_distance(allowance=False))
         distance = self.centre_distance
         if not (math.isfinite(distance) and distance > 0.0):
             raise GeometryError("centre_distance", distance, "must be positive and finite")
@@ -136,6 +134,21 @@ class GearPair:
                 f"parallel axes require {hands}, or two spur gears",
                 "change the hand of one gear",
             )
+
+    def _check_back(self) -> None:
+        """Refuse asymmetric teeth whose other flanks do not go together: they would jam, or wedge."""
+        if not self.asymmetric:
+            return
+        if self.internal:
+            rule = "is not possible for internal gears yet"
+            raise GeometryError("coast_pressure_angle", "(of a gear in a ring gear)", rule, "remove it")
+        a, b = self.driver.from_the_back, self.driven.from_the_back
+        if abs(a.base_pitch - b.base_pitch) > 1e-9 * a.base_pitch:
+            angles = [f"{math.degrees(gear.normal_pressure_angle):.6g} deg" for gear in (a, b)]
+            raise GeometryError(
+                "coast_pressure_angle", " and ".join(angles), "must be equal for the non-working flanks to mesh",
+                "use the same pressure angles for both gears",
+            )  # fmt: skip
 
     def _check_room_in_ring(self) -> None:
         """Refuse a gear that is as large as the ring gear in which it is to run."""
@@ -212,7 +225,7 @@ class GearPair:
             return ()
         from fegear.geometry.internal_interference import internal_checks
 
-        return internal_checks(planet.tooth, ring.tooth, self.centre_distance / ring.module)
+        return internal_checks(planet.symmetric_tooth, ring.tooth, self.centre_distance / ring.module)
 
     @property
     def _base_radii(self) -> float:
@@ -220,7 +233,7 @@ class GearPair:
         return abs(self.driver.base_radius + self.side * self.driven.base_radius)
 
     def _working_angle(self, *, allowance: bool) -> float:
-        a, b = self.driver.tooth, self.driven.tooth
+        a, b = self.driver.symmetric_tooth, self.driven.symmetric_tooth
         shifts = a.generating_shift + b.generating_shift if allowance else a.profile_shift + b.profile_shift
         teeth = a.side * a.teeth + b.side * b.teeth
         value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.normal_pressure_angle) / teeth
@@ -235,7 +248,24 @@ class GearPair:
     @cached_property
     def tight_centre_distance(self) -> float:
         """Centre distance at which both flanks touch [m] (ISO 21771, 5.4.4)."""
-        return self._base_radii / math.cos(self._working_angle(allowance=True))
+        return self._touching_distance(allowance=True)
+
+    @property
+    def asymmetric(self) -> bool:
+        """Whether the two flanks of a gear's teeth differ."""
+        return self.driver.asymmetric or self.driven.asymmetric
+
+    @cached_property
+    def from_the_back(self) -> GearPair:
+        """The pair with its other flanks loaded, as it runs under reversed torque; itself, where they are equal."""
+        if not self.asymmetric:
+            return self
+        return replace(self, driver=self.driver.from_the_back, driven=self.driven.from_the_back)
+
+    def _touching_distance(self, *, allowance: bool) -> float:
+        if self.asymmetric:
+            return touching_distance(self.driver.tooth, self.driven.tooth, allowance=allowance) * self.driver.module
+        return self._base_radii / math.cos(self._working_angle(allowance=allowance))
 
     @cached_property
     @shows("deg", "working pressure angle")
@@ -253,6 +283,10 @@ class GearPair:
     @shows("mm", "backlash normal to the flanks")
     def normal_backlash(self) -> float:
         """j_bn, gap between the back flanks along their normal when the front flanks touch [m] (ISO 21771, 5.4.6)."""
+        if self.asymmetric:
+            one, other, back = self.driver.tooth, self.driven.tooth, self.from_the_back
+            arc = free_arc(one, other, self.centre_distance / self.driver.module) * self.driver.module
+            return arc * math.cos(back.working_pressure_angle) * math.cos(back.driver.base_helix_angle)
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
         if abs(turn) < _ROUND_OFF:  # the centre distance that leaves none: no backlash, not -8e-15 mm
             return 0.0
@@ -265,13 +299,16 @@ class GearPair:
 
         Zero for gears that jam by the rounding of their profile shifts (`ROUNDED_JAM`).
         """
+        if self.asymmetric:
+            return max(self.circumferential_backlash, 0.0) * math.cos(self.working_pressure_angle)
         return max(self.normal_backlash, 0.0) / math.cos(self.driver.base_helix_angle)
 
     @property
     @shows("mm", "backlash on the working pitch circle")
     def circumferential_backlash(self) -> float:
-        """j_wt, the same as an arc of the working pitch circles [m]: j_bn / (cos(alpha_wt) cos(beta_b))."""
-        return self.normal_backlash / (math.cos(self.working_pressure_angle) * math.cos(self.driver.base_helix_angle))
+        """j_wt, the same as an arc of the working pitch circles [m]: j_bn / (cos(alpha_wt) cos(beta_b)) of the back."""
+        back = self.from_the_back
+        return self.normal_backlash / (math.cos(back.working_pressure_angle) * math.cos(back.driver.base_helix_angle))
 
     @property
     @shows("mm", "base pitch")
@@ -410,78 +447,3 @@ class GearPair:
     def reversed(self) -> GearPair:
         """The same gears with driver and driven exchanged; x changes sign."""
         return GearPair(self.driven, self.driver, self.centre_distance, -self.axial_offset)
-
-
-class PathPoint(NamedTuple):
-    """A point on the path of contact: its letter and its place x [m]."""
-
-    letter: str
-    x: float
-
-
-class ActiveProfile(NamedTuple):
-    """Radii of one gear between which the mate touches it [m].
-
-    Attributes
-    ----------
-    start, end : float
-        Of the active profile, r_Nf and r_Na.
-    lowest_single, highest_single : float
-        Lowest and highest point of single tooth contact; NaN unless the contact ratio lies between 1 and 2.
-    """
-
-    start: float
-    lowest_single: float
-    highest_single: float
-    end: float
-
-
-def path_points(pair: GearPair) -> tuple[PathPoint, ...]:
-    """Points of the path in the order in which a tooth pair passes them.
-
-    A and E are the first and the last contact and C is the pitch point, where the path holds it. The number of tooth
-    pairs in contact changes at B, one base pitch before E, and at D, one base pitch after A. With a contact ratio of
-    two or more there are several of each: B_{2} lies two base pitches before E.
-    """
-    start, end, pitch = pair.x_start, pair.x_end, pair.base_pitch
-    count = math.floor(pair.contact_ratio)
-    found = [PathPoint("A", start), PathPoint("E", end)]
-    if start < 0.0 < end:
-        found.append(PathPoint("C", 0.0))
-    for k in range(1, count + 1):
-        which = "" if count == 1 else f"_{{{k}}}"
-        found += [PathPoint(f"B{which}", end - k * pitch), PathPoint(f"D{which}", start + k * pitch)]
-    return tuple(sorted(found, key=lambda point: point.x))
-
-
-def active_profile(pair: GearPair, member: Member) -> ActiveProfile:
-    """Where the mate touches a gear, and where it does so alone."""
-    inner, outer = (pair.x_start, pair.x_end) if member == "driver" else (pair.x_end, pair.x_start)
-    pitch = math.copysign(pair.base_pitch, outer - inner)
-    alone = 1.0 <= pair.contact_ratio < 2.0
-    low, high = (outer - pitch, inner + pitch) if alone else (math.nan, math.nan)
-    return ActiveProfile(*(float(pair.radius(x, member)) for x in (inner, low, high, outer)))
-
-
-def specific_sliding(pair: GearPair, x: ArrayLike, member: Member) -> Array:
-    """Specific sliding zeta of a gear's flank: its sliding velocity over its own rolling velocity.
-
-    With the radii of curvature, zeta_1 = 1 - rho_2 / (u rho_1) and zeta_2 = 1 - u rho_1 / rho_2, u negative in an
-    internal pair. Negative below the pitch point of either flank, zero at it, and minus infinity on the base circle.
-
-    Parameters
-    ----------
-    pair : GearPair
-    x : array_like
-        Place on the path of contact [m].
-    member : {"driver", "driven"}
-
-    Returns
-    -------
-    ndarray
-    """
-    mate: Member = "driven" if member == "driver" else "driver"
-    ratio = pair.side * pair.gear(member).teeth / pair.gear(mate).teeth
-    own, other = pair.flank_curvature_radius(x, member), pair.flank_curvature_radius(x, mate)
-    with np.errstate(divide="ignore"):
-        return np.asarray(1.0 - ratio * np.asarray(other) / np.asarray(own))

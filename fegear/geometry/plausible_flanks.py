@@ -48,7 +48,7 @@ def deepest_relief(gear: Gear, roll: ArrayLike) -> Array:
     """
     angle = np.asarray(roll, dtype=float)
     radius = np.hypot(1.0, angle) * gear.base_radius
-    half_thickness = radius * np.maximum(gear.tooth.half_thickness_angle(radius / gear.module), 0.0)
+    half_thickness = radius * np.maximum(gear.tooth.flank_angle(radius / gear.module), 0.0)
     return np.asarray(np.minimum(DEEPEST_RELIEF * gear.module, half_thickness / np.hypot(1.0, angle)))
 
 

@@ -54,7 +54,7 @@ class RackCutter:
     @property
     def shift(self) -> float:
         """Distance of the cutter's reference line from the pitch line, outwards [m]: x m_n less the allowance."""
-        return self.gear.tooth.generating_shift * self.gear.module
+        return self.gear.symmetric_tooth.generating_shift * self.gear.module
 
     @property
     def half_width(self) -> float:
@@ -163,7 +163,7 @@ class RackFlank:
         """x + i y_t of the cutter's transverse profile and two derivatives (A.5.6 in the transverse plane)."""
         a, g = self.parabola, self.gear
         sn, cn, cb = math.sin(g.normal_pressure_angle), math.cos(g.normal_pressure_angle), math.cos(g.helix_angle)
-        half_width, shift = 0.25 * math.pi * g.module, g.tooth.generating_shift * g.module
+        half_width, shift = 0.25 * math.pi * g.module, g.symmetric_tooth.generating_shift * g.module
         return (
             shift + s * (cn - a * s * sn) - 1j * (s * (sn + a * s * cn) + half_width) / cb,
             (cn - 2.0 * a * sn * s) - 1j * (sn + 2.0 * a * cn * s) / cb,
@@ -213,7 +213,7 @@ class RackFlank:
         sin_t, cos_t = math.sin(g.transverse_pressure_angle), math.cos(g.transverse_pressure_angle)
         tangent = math.sqrt(max(radius**2 - g.base_radius**2, 0.0))
         height = (tangent - g.base_radius * sin_t / cos_t) * sin_t
-        return (height - g.tooth.generating_shift * g.module) / math.cos(g.normal_pressure_angle)
+        return (height - g.symmetric_tooth.generating_shift * g.module) / math.cos(g.normal_pressure_angle)
 
     @cached_property
     def s_form(self) -> float:

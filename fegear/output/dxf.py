@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -94,6 +96,7 @@ def write_dxf(
     """
     bore, pitch, scale = gear.bore_radius * _MM, 2.0 * math.pi / gear.teeth, gear.module * _MM
     pieces = list(gear.tooth.outline.values()) if relief is None else relieved_outline(gear, relief)
+    back = list(gear.tooth.back.outline.values()) if gear.asymmetric else pieces
     sector = tooth_outline(gear.tooth, CHORD_TOLERANCE, pieces) * scale
     known: Splines = {}
     ends = turned(np.array([[0.0], [bore]]), pitch / 2), turned(np.array([[0.0], [bore]]), -pitch / 2)
@@ -114,10 +117,10 @@ def write_dxf(
     save(document, "gear_polyline")
 
     smooth = smooth_pieces(pieces)
+    halves = ((smooth, False), (smooth_pieces(back) if gear.asymmetric else smooth, True))
     document, space = _drawing(flanks)
-    for curve in smooth:
-        for mirrored in (False, True):
-            _add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
+    for curve, mirrored in _one_by_one(halves):
+        _add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
     for end, corner in zip(ends, (sector[:, -1], sector[:, 0]), strict=True):
         space.add_line(tuple(end[:, 0]), tuple(corner), dxfattribs={"layer": "OUTLINE"})
     low, high = 90.0 - math.degrees(pitch) / 2, 90.0 + math.degrees(pitch) / 2
@@ -126,12 +129,17 @@ def write_dxf(
 
     document, space = _drawing(flanks)
     for k in range(gear.teeth):
-        for curve in smooth:
-            for mirrored in (False, True):
-                _add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
+        for curve, mirrored in _one_by_one(halves):
+            _add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_spline")
     return written
+
+
+def _one_by_one(halves: tuple[tuple[Sequence[Drawn], bool], ...]) -> Iterator[tuple[Drawn, bool]]:
+    """Curves of both halves of a tooth in turn, as they are drawn: each right one, mirrored or not."""
+    for row in zip_longest(*([(curve, mirrored) for curve in pieces] for pieces, mirrored in halves)):
+        yield from (one for one in row if one is not None)
 
 
 def written_dxf(request: Request) -> Written:

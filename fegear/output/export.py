@@ -10,6 +10,7 @@ from fegear.base.extensions import Added
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.nearest import nearest
+from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.output.formats import FORMATS, Format, Request, added_formats
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def export_gears(
         others = " or ".join(name for name, row in FORMATS.items() if row.holds == "flanks")
         rule = f"must be {spur} for {', '.join(sorted(plane))} (plane meshes)"
         raise InputError("--gear", ", ".join(helical), rule, f"use {others}")
+    _refuse_asymmetric(scene, chosen, wanted)
     for row in wanted.values():
         row.require()
     written: list[Path] = []
@@ -148,6 +150,17 @@ def _chosen(scene: Scene, names: Sequence[str]) -> list[str]:
     return list(names or every)
 
 
+def _refuse_asymmetric(scene: Scene, chosen: Sequence[str], wanted: Mapping[str, Format]) -> None:
+    """Refuse formats that hold teeth with equal flanks only."""
+    gear = next((name for name in chosen if scene.gears[name].asymmetric), None)
+    other = next((name for name, row in wanted.items() if not row.asymmetric), None)
+    if gear is not None and other is not None:
+        held = ", ".join(name for name, row in FORMATS.items() if row.asymmetric)
+        raise InputError(
+            "--format", f'"{other}"', f"is not available for the asymmetric teeth of gear {gear}", f"use {held}"
+        )
+
+
 def _of(wanted: Mapping[str, Format], holds: Holds) -> list[str]:
     """Names of the formats of a kind."""
     return [name for name, row in wanted.items() if row.holds == holds]
@@ -185,6 +198,9 @@ def _of_relief(scene: Scene, gear: str, names: Sequence[str]) -> list[str]:
 def _left_out(scene: Scene, gear: str, wanted: Mapping[str, Format], written: Sequence[str]) -> list[str]:
     """What files do not hold of a gear's teeth: solids of rings, relief of meshes, what differs over face and teeth."""
     part, remarks = scene.case.gear[gear], []
+    tooth = scene.gears[gear].tooth
+    if isinstance(tooth, AsymmetricSide):
+        remarks.append(f"Gear {gear}: seen with the tooth tip up, the {tooth.flank} flank is on the right.")
     if scene.gears[gear].tooth.internal and (solid := _of(wanted, "solid mesh")):
         remarks.append(f"Gear {gear} is internal: no {', '.join(sorted(solid))} is written for it.")
     meshes = sorted(name for name in written if wanted[name].holds in ("plane mesh", "solid mesh"))

@@ -85,6 +85,8 @@ class Format:
         ``seconds(gear)`` -> about the CPU time that a gear's file takes; said before it starts if it is long.
     takes_results : bool
         Whether the folder of a run may stand in the place of the case.
+    asymmetric : bool
+        Whether it holds teeth with two different flanks; gears with such teeth are refused by the others.
     """
 
     holds: Holds
@@ -95,6 +97,7 @@ class Format:
     needs: Callable[[], object] | str = ""
     seconds: Callable[[Gear], float] | str = ""
     takes_results: bool = False
+    asymmetric: bool = False
 
     def written(self, request: Request) -> Written:
         """Write what is asked for."""
@@ -124,13 +127,13 @@ def _called(function: Callable[..., Any] | str) -> Callable[..., Any]:
 FORMATS: Mapping[str, Format] = MappingProxyType({
     "dxf": Format(
         "flanks", "drawing of a tooth and of the gear", "fegear.output.dxf:written_dxf", "*_spline.dxf, *_polyline.dxf",
-        "CAD, wire erosion: the exact outline of tooth and gear with its relief, mm",
+        "CAD, wire erosion: the exact outline of tooth and gear with its relief, mm", asymmetric=True,
     ),
     "step": Format(
         "flanks", "solid of the gear", "fegear.output.step:written_step", "*.step",
         "CAD, printing: the solid gear, spur or helical, with its bore and its relief, as a disc (a `body` is "
         "neglected, with a note), mm; the axis is z, the middle of the face z = 0",
-        seconds="fegear.output.step:seconds_of",
+        seconds="fegear.output.step:seconds_of", asymmetric=True,
     ),
     "relief": Format(
         "flanks", "modifications for grinding, as tables",
@@ -140,16 +143,16 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
     ),
     "msh": Format(
         "plane mesh", "mesh of the gear, Gmsh", "fegear.output.plane_mesh_files:written_msh", "*.msh",
-        "gmsh: the whole gear with named groups",
+        "gmsh: the whole gear with named groups", asymmetric=True,
     ),
     "vtu": Format(
         "plane mesh", "mesh of the gear, ParaView", "fegear.output.plane_mesh_files:written_vtu", "*.vtu",
-        "ParaView: the same with displacement and stress under 1 N/mm",
+        "ParaView: the same with displacement and stress under 1 N/mm", asymmetric=True,
     ),
     "inp": Format(
         "plane mesh", "mesh of the gear, Abaqus and CalculiX", "fegear.output.plane_mesh_files:written_inp", "*.inp",
         "CalculiX, Abaqus: a deck that runs as it is: six-node plane elements, bore fixed, the contact pressure of "
-        "1 N/mm on tooth 0",
+        "1 N/mm on tooth 0", asymmetric=True,
     ),
     "solid-inp": Format(
         "solid mesh", "3D mesh of the gear, Abaqus and CalculiX",

@@ -9,7 +9,8 @@ import numpy as np
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.members import gear_name
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS, active_profile
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.relief import Relief, chart_points, roll_of_radius
 from fegear.output.file_names import file_name
 from fegear.output.tables import write_table

@@ -7,15 +7,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fegear.base.errors import GeometryError
-from fegear.geometry.asymmetric_pair import AsymmetricPair
+from fegear.atlas.family import Family
+from fegear.base.errors import GeometryError, InputError
+from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
 from fegear.geometry.asymmetric_tooth import AsymmetricTooth
+from fegear.geometry.balls_on_two_flanks import ball_touching_at
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.inspection import span
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.mass import section_moments
 from fegear.geometry.outline import tooth_outline
+from fegear.geometry.over_balls import over_balls, touching_ball
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 
@@ -200,39 +204,50 @@ def test_full_fillet_of_two_angles_is_accepted_and_no_more():
 # ---- pairs ---------------------------------------------------------------------------------------------------------
 
 
+def gear(tooth):
+    """A gear of pure numbers: module 1, seen from its drive flank."""
+    side = tooth.drive if isinstance(tooth, AsymmetricTooth) else tooth
+    return Gear(side, 1.0, 0.5 * tooth.root_radius, 5.0, Material(1.0))
+
+
+def pair_of(teeth, distance=math.nan):
+    return GearPair(*map(gear, teeth), distance)
+
+
+NAMES = ("centre_distance", "tight_centre_distance", "circumferential_backlash", "normal_backlash", "free_backlash",
+         "working_pressure_angle", "contact_ratio", "x_start", "x_end")  # fmt: skip
+
+
 @pytest.mark.parametrize("distance", [math.nan, 26.4])
 def test_a_pair_of_equal_flanks_is_the_usual_pair(distance):
     numbers = ((20, 0.25), (32, 0.0))
-    usual = [Gear(Tooth(z, BasicRack(), x, 0.02), 1e-3, 5e-3, 5e-3) for z, x in numbers]
-    pair = GearPair(*usual, distance * 1e-3)
-    found = AsymmetricPair(*(AsymmetricTooth(z, rack(20.0, 20.0), x, 0.02) for z, x in numbers), distance)
-    assert found.centre_distance == pytest.approx(pair.centre_distance * 1e3, rel=1e-13)
-    assert found.tight_centre_distance == pytest.approx(pair.tight_centre_distance * 1e3, rel=1e-13)
-    assert found.circumferential_backlash == pytest.approx(pair.circumferential_backlash * 1e3, abs=1e-11)
-    for flank in ("drive", "coast"):
-        assert found.working_pressure_angle(flank) == pytest.approx(pair.working_pressure_angle, rel=1e-12)
-        assert found.contact_ratio(flank) == pytest.approx(pair.contact_ratio, rel=1e-12)
-        assert found.x_start(flank) == pytest.approx(pair.x_start * 1e3, rel=1e-12)
-        assert found.gap(flank) == pytest.approx(pair.normal_backlash * 1e3, abs=1e-11)
+    usual = pair_of([Tooth(z, BasicRack(), x, 0.02) for z, x in numbers], distance)
+    found = pair_of([AsymmetricTooth(z, rack(20.0, 20.0), x, 0.02) for z, x in numbers], distance)
+    assert found.asymmetric
+    assert not usual.asymmetric
+    assert usual.from_the_back is usual
+    for one in (found, found.from_the_back):
+        for name in NAMES:
+            assert getattr(one, name) == pytest.approx(getattr(usual, name), rel=1e-12, abs=1e-12), name
 
 
 def test_a_pair_turned_round_drives_on_its_other_flanks():
-    one, other = (AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x) for z, x in ((22, 0.3), (41, -0.1)))
-    pair = AsymmetricPair(one, other, AsymmetricPair(one, other).centre_distance + 0.05)
-    turned = pair.reversed
-    assert turned.centre_distance == pair.centre_distance
+    teeth = [AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x) for z, x in ((22, 0.3), (41, -0.1))]
+    distance = pair_of(teeth).centre_distance + 0.05
+    pair, turned = pair_of(teeth, distance), pair_of([tooth.reversed for tooth in teeth], distance)
+    for name in NAMES:
+        assert getattr(pair.from_the_back, name) == pytest.approx(getattr(turned, name), rel=1e-13, abs=1e-13), name
     assert turned.circumferential_backlash == pytest.approx(pair.circumferential_backlash, abs=1e-13)
-    for flank, back in (("drive", "coast"), ("coast", "drive")):
-        assert turned.contact_ratio(flank) == pair.contact_ratio(back)
     # the steep flank has the shorter path of contact and, at one backlash, the smaller gap along its normal
-    assert pair.contact_ratio("drive") < pair.contact_ratio("coast")
-    assert pair.gap("drive") < pair.gap("coast")
+    assert pair.contact_ratio < turned.contact_ratio
+    assert turned.normal_backlash < pair.normal_backlash
 
 
 def test_backlash_is_what_driven_points_of_both_flanks_leave_free():
     """Both gears' involutes laid through the pitch point in turn; the driven gear turns back until its others touch."""
     teeth = [AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x, 0.03) for z, x in ((22, 0.3), (41, -0.1))]
-    pair = AsymmetricPair(*teeth, AsymmetricPair(*teeth).centre_distance + 0.02)
+    nominal = pair_of(teeth)
+    pair = pair_of(teeth, nominal.centre_distance + 0.02)
     taken = 0.0
     for tooth in teeth:
         working = pair.centre_distance * tooth.teeth / (teeth[0].teeth + teeth[1].teeth)
@@ -241,15 +256,84 @@ def test_backlash_is_what_driven_points_of_both_flanks_leave_free():
             taken += working * math.atan2(*involute.points(roll))
     pitch = 2.0 * math.pi * pair.centre_distance / (teeth[0].teeth + teeth[1].teeth)
     assert pair.circumferential_backlash == pytest.approx(pitch - taken, abs=1e-12)
-    tight = AsymmetricPair(*teeth, pair.tight_centre_distance)
-    assert tight.circumferential_backlash == pytest.approx(0.0, abs=1e-12)
+    back = pair.from_the_back.working_pressure_angle
+    assert pair.normal_backlash == pytest.approx((pitch - taken) * math.cos(back), abs=1e-12)
+    assert pair.free_backlash == pytest.approx((pitch - taken) * math.cos(pair.working_pressure_angle), abs=1e-12)
+    assert pair_of(teeth, pair.tight_centre_distance).circumferential_backlash == pytest.approx(0.0, abs=1e-12)
+    # without allowances the nominal distance is the tight one
+    full = [replace(tooth, thickness_allowance=0.0) for tooth in teeth]
+    assert pair_of(full).tight_centre_distance == pytest.approx(nominal.centre_distance, rel=1e-13)
 
 
 def test_pairs_that_cannot_run_are_refused():
-    one, other = AsymmetricTooth(22, rack(30.0, 20.0, (0.15, 0.3))), AsymmetricTooth(41, rack(28.0, 20.0, (0.15, 0.3)))
-    with pytest.raises(GeometryError, match="drive flanks"):
-        AsymmetricPair(one, other)
+    one, other = (AsymmetricTooth(z, rack(a, 20.0, (0.15, 0.3))) for z, a in ((22, 30.0), (41, 28.0)))
+    third = AsymmetricTooth(41, rack(30.0, 22.0, (0.15, 0.3)))
+    with pytest.raises(GeometryError, match="base pitches"):
+        pair_of([one, other])
+    with pytest.raises(GeometryError, match="non-working flanks to mesh"):
+        pair_of([one, third])
+    with pytest.raises(GeometryError, match="non-working flanks to mesh"):
+        pair_of([one, Tooth(41, BasicRack(tip_radius=0.1, pressure_angle=math.radians(30.0)))])
     with pytest.raises(GeometryError, match="leaves no backlash"):
-        AsymmetricPair(one, one, 21.9)
-    with pytest.raises(GeometryError, match="no contact of the drive flanks"):
-        AsymmetricPair(one, one, 24.2)
+        pair_of([one, one], 21.9)
+    with pytest.raises(GeometryError, match="no flank contact"):
+        pair_of([one, one], 24.2)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda gear: gear.symmetric_tooth,
+        lambda gear: gear.external_tooth,
+        lambda gear: gear.half_base_tooth_angle,
+        lambda gear: span(gear, 3),
+        lambda gear: Family.of(gear),
+        lambda gear: pair_stiffness(GearPair(gear, gear)),
+    ],
+)
+def test_what_is_for_equal_flanks_says_so_of_others(use):
+    with pytest.raises(InputError, match=r"coast_pressure_angle.*equal flanks only"):
+        use(gear(made("20/30")))
+
+
+# ---- balls ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(28, 0.2), (35, 0.0)])
+def test_balls_on_equal_flanks_are_the_usual_ones(teeth, shift):
+    usual, found = gear(Tooth(teeth, BasicRack(), shift, 0.02)), gear(AsymmetricTooth(teeth, rack(20, 20), shift, 0.02))
+    ball = touching_ball(usual)
+    assert touching_ball(found) == pytest.approx(ball, rel=1e-10)
+    for name, value in over_balls(usual, ball)._asdict().items():
+        assert getattr(over_balls(found, ball), name) == pytest.approx(value, rel=1e-12), name
+
+
+@pytest.mark.parametrize("name", ["20/30", "28/18", "35/20"])
+def test_a_ball_touches_both_drawn_flanks_and_cuts_neither(name):
+    one = gear(made(name))
+    ball = ball_touching_at(one.tooth, one.tooth.pitch_radius + one.tooth.profile_shift)
+    x, y = tooth_outline(one.tooth, 1e-8)
+    pitch = 2.0 * math.pi / one.teeth
+    right = np.stack([x[x > 0.0], y[x > 0.0]])
+    left = np.stack([x[x < 0.0], y[x < 0.0]])
+    c, s = math.cos(pitch), math.sin(pitch)
+    left = np.stack([c * left[0] + s * left[1], c * left[1] - s * left[0]])  # of the next tooth clockwise
+
+    def gaps(angle):
+        centre = ball.centre * np.array([[math.sin(angle)], [math.cos(angle)]])
+        return [float(np.hypot(*(side - centre)).min()) - 0.5 * ball.diameter for side in (right, left)]
+
+    low, high = 0.0, pitch
+    for _ in range(60):  # where it stands as near to one as to the other
+        angle = 0.5 * (low + high)
+        first, second = gaps(angle)
+        low, high = (angle, high) if first < second else (low, angle)
+    assert gaps(angle) == pytest.approx([0.0, 0.0], abs=2e-8)
+    assert 0.5 * sum(ball.contact_radii) == pytest.approx(one.tooth.pitch_radius + one.tooth.profile_shift, rel=1e-9)
+    assert not ball.trouble
+
+
+@pytest.mark.parametrize(("diameter", "said"), [(0.5, "so small"), (9.0, "so large"), (4.0, "rests on the tips")])
+def test_balls_of_no_use_are_refused_with_one_of_use(diameter, said):
+    with pytest.raises(GeometryError, match=rf"{said}.*choose about"):
+        over_balls(gear(made("28/18")), diameter)

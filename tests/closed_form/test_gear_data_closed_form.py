@@ -16,7 +16,8 @@ from fegear.geometry.gear_data import measured
 from fegear.geometry.inspection import span
 from fegear.geometry.outline import gear_outline
 from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
-from fegear.geometry.pair import GearPair, active_profile, path_points, specific_sliding
+from fegear.geometry.pair import GearPair
+from fegear.geometry.path_of_contact import active_profile, path_points, specific_sliding
 from fegear.geometry.rack import BasicRack
 from fegear.results.gear.drawing import in_mesh
 from fegear.results.gear.geometry import drawing_of, pair_table, unmeasured_remarks

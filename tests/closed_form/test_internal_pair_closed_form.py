@@ -26,7 +26,8 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.outline import tooth_outline
-from fegear.geometry.pair import GearPair, active_profile, specific_sliding
+from fegear.geometry.pair import GearPair
+from fegear.geometry.path_of_contact import active_profile, specific_sliding
 
 MODULE = 4e-3
 

@@ -11,7 +11,7 @@ import pytest
 from fegear.base.errors import FegearError, InputError
 from fegear.case.reading import build_scene
 from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
-from fegear.geometry.pair import specific_sliding
+from fegear.geometry.path_of_contact import specific_sliding
 
 RULES = ("driver", "driven", "equal", "equal-sliding", "equal-root-stress")
 

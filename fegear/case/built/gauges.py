@@ -127,7 +127,7 @@ def check_gauge(scene: Scene, name: str) -> None:
             "measures no strain: in this direction it is zero", "choose a direction nearer to the profile, 0 deg",
         )  # fmt: skip
     if part.tooth_mesh is None or part.tooth_mesh_fillet == "rack":
-        place_gauge(found, FilletProfile.of_tooth(gear.tooth, gear.module))
+        place_gauge(found, FilletProfile.of_tooth(gear.symmetric_tooth, gear.module))
 
 
 def place_gauge(gauge: Gauge, profile: FilletProfile) -> float:

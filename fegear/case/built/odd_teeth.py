@@ -158,7 +158,7 @@ def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:
     """
     from fegear.fem.plane.odd.crack import Crack, mouth_at_radius, mouth_at_tangent, straight_crack
 
-    tooth, m = gear.tooth, gear.module
+    tooth, m = gear.symmetric_tooth, gear.module
     start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
     given, back = getattr(part, start), part.fillet == "compression"
     try:
@@ -194,7 +194,7 @@ def check_crack(scene: Scene, gear: str, number: int) -> None:
     crack = crack_of(made, part, prefix)
     start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
     try:
-        refuse_crack(made.tooth, made.bore_radius / made.module, mesh_settings(scene.case.accuracy), crack)
+        refuse_crack(made.symmetric_tooth, made.bore_radius / made.module, mesh_settings(scene.case.accuracy), crack)
     except InputError as error:
         raise _as_given(error, part, start, made.module).under(prefix) from None
 

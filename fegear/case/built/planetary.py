@@ -87,7 +87,7 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
                 f"pair.{one}.axial_offset", "(given)", "shifts the phase of one mesh of a helical planetary set",
                 "remove it: gears of a planetary set are centred axially",
             )  # fmt: skip
-    tooth, teeth = planet.tooth, set_teeth(scene.case, part)
+    tooth, teeth = planet.symmetric_tooth, set_teeth(scene.case, part)
     at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
     half = float(tooth.half_thickness_angle(at_pitch)) + float(inv(pair.working_pressure_angle))
     try:

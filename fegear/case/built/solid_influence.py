@@ -241,7 +241,7 @@ def _uneven(part: GearBodyPart) -> tuple[str, str]:
 def _in_modules(gear: Gear) -> tuple[InvoluteTooth, float, float, float]:
     """Tooth, twist, width and Poisson's ratio of a gear of module 1, what its solid is made of."""
     tau, width = gear.flank_twist * gear.module, gear.face_width / gear.module
-    return gear.tooth, tau, width, gear.material.poisson_ratio
+    return gear.symmetric_tooth, tau, width, gear.material.poisson_ratio
 
 
 @contextmanager

@@ -265,7 +265,9 @@ def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
 
     gear, key = scene.gears[name], f"gear.{name}.tooth_mesh"
     own = part.tooth_mesh_fillet == "own"
-    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, gear.bore_radius, key=key, own_fillet=own)
+    return read_sector_mesh(
+        scene.file(file, key), gear.symmetric_tooth, gear.module, gear.bore_radius, key=key, own_fillet=own
+    )
 
 
 #: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge

@@ -98,15 +98,16 @@ def _removed(e: Engagement, member: Member, points: Array, pairs: Sequence[int])
     relief: Relief = e.driver_relief if member == "driver" else e.driven_relief
     errors = e.driver_spacing if member == "driver" else e.driven_spacing
     radius, tooth = np.hypot(*points), gear.tooth
-    roll = tooth.roll(np.maximum(radius, tooth.base_radius))
-    half = tooth.half_thickness_angle(np.maximum(radius, tooth.base_radius))
-    angle = np.arctan2(*points)
-    on = (tooth.side * radius >= tooth.side * tooth.form_radius * (1.0 - tooth.side * 1e-9)) & (
-        np.abs(np.abs(angle) - half) < 1e-4
-    )
-    lean = tooth.base_half_angle - roll
-    inward = np.stack([-np.sign(angle) * np.cos(lean), np.sin(lean)])
-    found = np.tile(np.where(on, relief.removal(roll), 0.0) * inward, (len(pairs), 1, 1))
+    angle, taken = np.arctan2(*points), np.zeros(points.shape)
+    for flank, sign in ((tooth, 1.0), (tooth.back, -1.0)):  # what is ground off the loaded flank is ground off both
+        reached = np.maximum(radius, flank.base_radius)
+        roll, half = flank.roll(reached), flank.flank_angle(reached)
+        on = (flank.side * radius >= flank.side * flank.form_radius * (1.0 - flank.side * 1e-9)) & (
+            np.abs(sign * angle - half) < 1e-4
+        )
+        lean = flank.base_half_angle - roll
+        taken += np.where(on, relief.removal(roll), 0.0) * np.stack([-sign * np.cos(lean), np.sin(lean)])
+    found = np.tile(taken, (len(pairs), 1, 1))
     if errors.size:  # a whole tooth stands back, turned about the centre; its fillets hold on to the body
         above = np.clip((radius - tooth.root_radius) / (tooth.form_radius - tooth.root_radius), 0.0, 1.0)
         back = np.stack([-points[1], points[0]]) / tooth.base_radius * above

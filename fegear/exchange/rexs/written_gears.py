@@ -12,7 +12,8 @@ from fegear.geometry.internal_tooth import InternalTooth
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fegear.case.gear import GearPart, MaterialPart
+    from fegear.case.gear import GearPart
+    from fegear.case.gear_material import MaterialPart
     from fegear.case.part import Part as CasePart
     from fegear.case.reading import Scene
     from fegear.case.relief import EndReliefPart

@@ -13,7 +13,7 @@ from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.trace import loaded_flank
 from fegear.geometry.gear import Plane
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class GearField:
 
 
 def gear_field(
-    tooth: InvoluteTooth, mesh: SectorMesh, poisson_ratio: float, plane: Plane, radius: float, half_width: float
+    tooth: InvoluteSide, mesh: SectorMesh, poisson_ratio: float, plane: Plane, radius: float, half_width: float
 ) -> GearField:
     """Solve the whole gear under one semi-elliptic contact pressure on tooth 0.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     mesh : SectorMesh
     poisson_ratio : float
     plane : {"strain", "stress"}

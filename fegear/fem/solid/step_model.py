@@ -72,7 +72,8 @@ def write_step(
     gear : Gear
         Spur or helical.
     pieces : sequence of Drawn, optional
-        Another right half of the outline than the generated one, see `relieved_outline`.
+        Another right half of the outline than the generated one, see `relieved_outline`; of equal flanks another left
+        half, too.
     tolerance : float
         [modules].
 
@@ -88,13 +89,17 @@ def write_step(
     outline = smooth_pieces(pieces or gear.tooth.outline.values())
     scale, half = gear.module * _MM, 0.5 * gear.face_width * _MM
     right = [spline_of(piece, tolerance) for piece in outline]
-    left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in right]
+    back = right
+    if gear.asymmetric:
+        back = [spline_of(piece, tolerance) for piece in smooth_pieces(gear.tooth.back.outline.values())]
+    left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in back]
     helix = fitted(lambda z: _turn(gear, z), -half, half, tolerance / gear.tooth.tip_radius)
     bore = gear.bore_radius * _MM
-    area = abs(2.0 * abs(enclosed_area(right)) * gear.teeth * scale**2 - math.pi * bore**2)
+    tooth = enclosed_area(right) + enclosed_area(back)
+    area = abs(abs(tooth) * gear.teeth * scale**2 - math.pi * bore**2)
     with gmsh_session("fegear solid") as gmsh:
         try:
-            _build(gmsh.model.occ, gear, (*left, *right), scale, helix, bore)
+            _build(gmsh.model.occ, gear, (*left, *right), scale, helix, bore, len(left))
             solid = _alone(gmsh, path)
         except Exception as problem:
             raise FegearError(f"{path.name}: OpenCASCADE could not create a solid: {problem}") from problem
@@ -110,8 +115,11 @@ def write_step(
     return made
 
 
-def _build(occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: Spline, bore: float) -> None:
-    """The solid from the splines of one tooth's left and right half, beside what it was sewn from."""
+def _build(occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: Spline, bore: float, half: int) -> None:
+    """The solid from the splines of one tooth's left and right half, beside what it was sewn from.
+
+    The first `half` of them are those of the left one.
+    """
     height = gear.face_width * _MM
     flanks = _around(occ, [(2, _surface(occ, s, scale, helix)) for s in tooth], gear.teeth)
     low = _around(occ, [(1, _edge(occ, s, scale, helix)) for s in tooth], gear.teeth)
@@ -124,7 +132,7 @@ def _build(occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: S
     other, wall = occ.extrude([(1, circle)], 0.0, 0.0, height)[:2]
     inward = -1 if gear.tooth.internal else 1  # the outer loop of a face comes first: the teeth, or a ring's circle
     caps = [
-        (2, occ.addPlaneSurface([occ.addCurveLoop(_loop(ring)), occ.addCurveLoop([hole])][::inward]))
+        (2, occ.addPlaneSurface([occ.addCurveLoop(_loop(ring, half)), occ.addCurveLoop([hole])][::inward]))
         for ring, hole in zip(rings, (circle, other[1]), strict=True)
     ]
     parts = [*(face for one in flanks for face in one), *caps, wall]
@@ -200,11 +208,10 @@ def _around(occ: Any, one: list[tuple[int, int]], teeth: int) -> list[list[tuple
     return found
 
 
-def _loop(ring: list[list[tuple[int, int]]]) -> list[int]:
+def _loop(ring: list[list[tuple[int, int]]], half: int) -> list[int]:
     """Edges of all teeth clockwise: left half to the tip, right half back to the space, on to the next tooth."""
     tags: list[int] = []
     for tooth in (ring[0], *ring[:0:-1]):
-        half = len(tooth) // 2
         tags += [tag for _, tag in (*tooth[:half], *tooth[: half - 1 : -1])]
     return tags
 

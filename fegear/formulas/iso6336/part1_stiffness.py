@@ -198,7 +198,7 @@ def pair_stiffness(pair: GearPair, *, specific_load: float = math.inf, blank: fl
         pair.contact_ratio,
         helix_angle=pair.driver.helix_angle,
         profile_shift=(pinion.tooth.profile_shift, wheel.tooth.profile_shift),
-        dedendum=(pinion.tooth.dedendum, wheel.tooth.dedendum),
+        dedendum=(pinion.symmetric_tooth.dedendum, wheel.symmetric_tooth.dedendum),
         pressure_angle=pinion.normal_pressure_angle,
         blank=blank,
         specific_load=specific_load,

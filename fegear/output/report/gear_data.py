@@ -35,11 +35,12 @@ if TYPE_CHECKING:
 _GROUPS = (
     ("Teeth", (
         "gear", "teeth", "module", "pressure_angle", "helix_angle", "hand", "lead", "transverse_module",
-        "transverse_pressure_angle", "base_helix_angle", "profile_shift", "face_width",
+        "transverse_pressure_angle", "base_helix_angle", "back_pressure_angle", "profile_shift", "face_width",
     )),
     ("Diameters", (
-        "reference_diameter", "base_diameter", "tip_diameter", "tip_form_diameter", "active_tip_diameter",
-        "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
+        "reference_diameter", "base_diameter", "back_base_diameter", "tip_diameter", "tip_form_diameter",
+        "active_tip_diameter", "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter",
+        "back_root_form_diameter", "root_diameter",
     )),
     ("Measurement", (
         "tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls", "over_pins",

@@ -23,7 +23,8 @@ from fegear.engine.figure.items import Curve, Mark, Points, TriangleField, edges
 from fegear.engine.figure.panel import Panel
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
-from fegear.geometry.pair import MEMBERS, GearPair, Member, path_points, specific_sliding
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.path_of_contact import path_points, specific_sliding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -258,7 +259,7 @@ def placed_in_mesh(pair: GearPair, member: Member, points: Array, number: int, *
     """
     gear = pair.gear(member)
     working = _working_radius(pair, gear)
-    half = float(gear.tooth.half_thickness_angle(working / gear.module))
+    half = float(gear.tooth.flank_angle(working / gear.module))
     ahead = number if member == "driver" else -number
     x, y = turned(points, ahead * 2.0 * math.pi / gear.teeth - half)
     line = np.stack([x, y if moved else y - working])

@@ -66,6 +66,18 @@ class PairData:
         return self.pair if self.pair.driver.helix_angle != 0.0 else None
 
     @property
+    @shows("", "contact ratio of the non-working flanks")
+    def back_contact_ratio(self) -> float | None:
+        """Of asymmetric teeth, under reversed torque."""
+        return self.pair.from_the_back.contact_ratio if self.pair.asymmetric else None
+
+    @property
+    @shows("deg", "working pressure angle of the non-working flanks")
+    def back_working_pressure_angle(self) -> float | None:
+        """[rad]."""
+        return self.pair.from_the_back.working_pressure_angle if self.pair.asymmetric else None
+
+    @property
     @shows("", "tooth loss factor H_V (rigid gears)")
     def rigid_loss_factor(self) -> float | None:
         """Of teeth without deflection; None where at times none of them is in contact, and of internal pairs."""
@@ -115,9 +127,9 @@ def _gear_columns(gears: Callable[[Seen], tuple[GearData, ...]]) -> tuple[tuple[
     teeth = (
         Cell("name", meaning="gear"), "teeth", Cell("module", meaning=symbol("module m", "")),
         Cell("pressure_angle", meaning=symbol("pressure angle α", "")), "helix_angle", "hand", "lead",
-        "transverse_module", "transverse_pressure_angle", "base_helix_angle", "profile_shift", "face_width",
-        "reference_diameter", "base_diameter", "tip_diameter", "root_diameter", "root_form_diameter",
-        "tip_form_diameter",
+        "transverse_module", "transverse_pressure_angle", "base_helix_angle", "back_pressure_angle", "profile_shift",
+        "face_width", "reference_diameter", "base_diameter", "back_base_diameter", "tip_diameter", "root_diameter",
+        "root_form_diameter", "back_root_form_diameter", "tip_form_diameter",
     )  # fmt: skip
     measures = (
         Cell("tooth_thickness", of=gears, meaning=symbol("tooth thickness s", " at d")),
@@ -174,7 +186,11 @@ def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     spanless = tuple(
         f"Gear {name}: span measurement not possible, face width too small for the helix angle."
         for name, gear in drawing.gears.items()
-        if usual_span(gear) is None and not gear.tooth.internal
+        if usual_span(gear) is None and not gear.tooth.internal and not gear.asymmetric
+    ) + tuple(
+        f"Gear {name}: asymmetric teeth have no span and no chordal thickness (two base circles); dimension over balls."
+        for name, gear in drawing.gears.items()
+        if gear.asymmetric
     )
     return spanless + tuple(
         f"Gear {name} has no dimension over or between balls: no ball that contacts both flanks protrudes from the "
@@ -246,7 +262,10 @@ PAIR_VALUES = (
         Number(key, _exact, "helical", each=_pairs, owner="{key}")
         for key in ("overlap_ratio", "total_contact_ratio", "working_helix_angle", "circumferential_backlash")
     ),
-    Number("rigid_loss_factor", _exact, each=_pairs, owner="{key}"),
+    *(
+        Number(key, _exact, each=_pairs, owner="{key}")
+        for key in ("back_contact_ratio", "back_working_pressure_angle", "rigid_loss_factor")
+    ),
 )  # fmt: skip
 
 
@@ -273,6 +292,12 @@ def _values(seen: Seen) -> Iterator[Value]:
         yield from pair_values(name, seen.data)
 
 
+def _tips_in_roots(named: str, pair: GearPair) -> Iterator[str]:
+    for member in MEMBERS:
+        if sentence := interference(pair, member).sentence:
+            yield failing(f"{named}: {sentence}.")
+
+
 def _on_pairs(seen: Seen) -> Iterator[str]:
     """Say what is wrong with pairs: contact that is interrupted, tips that interfere."""
     pairs = seen.data.pairs
@@ -285,9 +310,9 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
                 )
             )
     for name, pair in pairs.items():
-        for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence):
-            if sentence:
-                yield failing(f"Pair {name}: {sentence}.")
+        yield from _tips_in_roots(f"Pair {name}", pair)
+        if pair.asymmetric:
+            yield from _tips_in_roots(f"Pair {name}, non-working flanks", pair.from_the_back)
     for name, pair in pairs.items():
         for one in pair.internal_checks:
             if one.margin < 0.0 and (one.fouls(pair.driver.module) or not one.refused):

@@ -164,20 +164,21 @@ def crack_figure(name: str, known: OddGearInfluence, tooth: int, crack: Crack, m
     """A cracked tooth and the mesh around its crack."""
     gear, m = known.gear, known.gear.module * 1e3
     mesh = known.fine.odd[known.from_middle(meshing_order(tooth, gear.teeth, member))].mesh
-    shape, path = tooth_outline(gear.tooth) * m, crack.path(gear.tooth) * m
+    shape, path = tooth_outline(gear.symmetric_tooth) * m, crack.path(gear.symmetric_tooth) * m
     points, t = mesh.points * m, mesh.triangles
     sides = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
     sides = sides[:, np.unique(sides[1], return_index=True)[1]]
     height, tip = float(np.ptp(shape[1])), path[:, -1]
-    half, near = 0.75 * max(height, float(np.ptp(shape[0]))), 1.3 * crack.length(gear.tooth) * m
+    half, near = 0.75 * max(height, float(np.ptp(shape[0]))), 1.3 * crack.length(gear.symmetric_tooth) * m
     middle = float(shape[1].max()) - 0.6 * height
 
-    line = outline(path, f"crack, {crack.length(gear.tooth) * m:.4g} mm", "red", width=2.2)
+    line = outline(path, f"crack, {crack.length(gear.symmetric_tooth) * m:.4g} mm", "red", width=2.2)
     return Figure(
         f"crack_{name}_{tooth}",
         f"Crack of tooth {tooth} of gear {name}",
-        f"Gear {name}: crack of tooth {tooth} (number in meshing order), {crack.length(gear.tooth) * m:.4g} mm long, "
-        "loaded flank on the right; FE mesh around the crack, quarter-point elements at its tip.",
+        f"Gear {name}: crack of tooth {tooth} (number in meshing order), "
+        f"{crack.length(gear.symmetric_tooth) * m:.4g} mm long, loaded flank on the right; FE mesh around the crack, "
+        "quarter-point elements at its tip.",
         (
             Panel(
                 Axis("x", "mm", limits=(-half, half)), Axis("y", "mm", limits=(middle - half, middle + half)),

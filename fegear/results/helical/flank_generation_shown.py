@@ -75,7 +75,7 @@ class DesignedGear:
     def of(cls, name: str, gear: Gear, *, helical: bool) -> DesignedGear:
         """Of a gear; whether all gears of the table are helical."""
         pitch = gear.pitch_radius * gear.angular_pitch
-        thickness = 2.0 * gear.pitch_radius * float(gear.tooth.half_thickness_angle(gear.tooth.pitch_radius))
+        thickness = 2.0 * gear.pitch_radius * float(gear.symmetric_tooth.half_thickness_angle(gear.tooth.pitch_radius))
         screw = (1.0 / abs(gear.twist), gear.lead) if helical else (None, None)
         return cls(
             name, gear.teeth, gear.normal_pressure_angle, gear.transverse_pressure_angle, gear.lead_angle,

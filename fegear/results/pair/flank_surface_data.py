@@ -11,7 +11,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.geometry.pair import MEMBERS, GearPair, specific_sliding
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.path_of_contact import specific_sliding
 
 if TYPE_CHECKING:
     from fegear.case.built.pair_surface import PairSurface

@@ -194,7 +194,7 @@ def turning_set(scene: Scene, name: str) -> TurningSet:
 def _half(found: PlanetarySet, gear: Gear, mesh: Mesh) -> float:
     """Half the angle of a gear's tooth at its working pitch circle of a mesh."""
     angle = found.sun_angle if mesh == "sun" else found.ring_angle
-    return float(gear.tooth.half_thickness_angle(gear.base_radius / math.cos(angle) / gear.module))
+    return float(gear.symmetric_tooth.half_thickness_angle(gear.base_radius / math.cos(angle) / gear.module))
 
 
 def _tooth(gear: Gear) -> Array:

@@ -96,7 +96,7 @@ def _below_flanks(inputs: FlankFractureInputs, upstream: Upstream) -> FlankFract
     from fegear.formulas.iso6336.part4_flank_fracture import half_width
     from fegear.formulas.iso6336.part22_micropitting import load_sharing, pressure
     from fegear.formulas.iso6336.safety import rate_pair
-    from fegear.geometry.pair import path_points
+    from fegear.geometry.path_of_contact import path_points
 
     asked = with_shares(inputs.asked, upstream)
     conditions = rated(asked)

@@ -20,7 +20,8 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.seen import Seen
-from fegear.geometry.pair import MEMBERS, GearPair, Member, active_profile
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
 from fegear.results.gear.drawing import roll_marks
 

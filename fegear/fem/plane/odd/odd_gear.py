@@ -328,7 +328,7 @@ def solve_cracked_gear(
         shape_codec(gear.tooth, _KINDS), _solve, ordinary.fine, gear.bore_radius / gear.module, ordinary.settings,
         tuple(zip(numbers, cracks.values(), strict=True)), reach, ordinary.fine.lower is not None,
     ).value  # fmt: skip
-    fine = _with_teeth(fine, dict(zip(numbers, cracks.values(), strict=True)), gear.tooth)
+    fine = _with_teeth(fine, dict(zip(numbers, cracks.values(), strict=True)), gear.symmetric_tooth)
     return OddGearInfluence(ordinary, fine, middle, {**fine.seconds, "total": time.perf_counter() - started})
 
 

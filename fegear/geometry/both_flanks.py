@@ -1,0 +1,77 @@
+"""The room between two external gears whose flanks differ: where both pairs of flanks touch, and the backlash.
+
+The drive flanks of both gears touch each other, or the coast flanks do. For each the mesh is that of an involute pair
+of the flank's own base circles (ISO 21771, 5.4); the two have the same pitch circles, for both divide the centre
+distance by the numbers of teeth. At the working pitch circles the teeth of both gears fill the pitch but for the
+backlash: a tooth reaches there from its centre line to psi_b - inv(alpha_w) of each flank, so that
+
+    z_1 + z_2 times the backlash's angle = 2 pi - sum of z (psi_b - inv(alpha_w)) over both gears and both flanks.
+
+Lengths are in normal modules, in the section across the axes.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fegear.base.errors import GeometryError
+from fegear.geometry.involute import inv
+from fegear.geometry.involute_side import InvoluteSide
+
+
+def _filled(one: InvoluteSide, other: InvoluteSide) -> float:
+    """Sum of z psi_b over both gears and both flanks [rad]."""
+    return sum(side.teeth * side.base_half_angle for side in (one, one.back, other, other.back))
+
+
+def _flanks(one: InvoluteSide, other: InvoluteSide) -> tuple[float, float]:
+    """Sums of the base radii of both pairs of flanks."""
+    return one.base_radius + other.base_radius, one.back.base_radius + other.back.base_radius
+
+
+def _free(one: InvoluteSide, other: InvoluteSide, distance: float) -> float:
+    """Angle of the pitch that is free, times z_1 + z_2 [rad]."""
+    angles = (math.acos(min(radii / distance, 1.0)) for radii in _flanks(one, other))
+    return 2.0 * math.pi - _filled(one, other) + (one.teeth + other.teeth) * sum(float(inv(a)) for a in angles)
+
+
+def free_arc(one: InvoluteSide, other: InvoluteSide, distance: float) -> float:
+    """j_wt, arc of the working pitch circles that is free [modules]; the same whichever flanks touch.
+
+    Parameters
+    ----------
+    one, other : InvoluteSide
+        Teeth of two external gears, seen from the flanks that touch.
+    distance : float
+        Centre distance [modules].
+    """
+    return distance / (one.teeth + other.teeth) * _free(one, other, distance)
+
+
+def touching_distance(one: InvoluteSide, other: InvoluteSide, *, allowance: bool) -> float:
+    """Centre distance at which both pairs of flanks touch [modules].
+
+    Parameters
+    ----------
+    one, other : InvoluteSide
+    allowance : bool
+        Whether the teeth are as thick as their thickness allowances leave them, or as profile shifts make them.
+
+    Raises
+    ------
+    GeometryError
+        If the profile shifts are too negative for any.
+    """
+    from scipy.optimize import brentq
+
+    # An allowance A_sn takes an arc A_sn / cos(beta) of the reference circle, z / (2 cos(beta)) in radius.
+    thicker = 0.0 if allowance else 2.0 * (one.thickness_allowance + other.thickness_allowance)
+    least = max(_flanks(one, other))
+    if _free(one, other, least) > thicker:
+        shifts = one.profile_shift + other.profile_shift
+        raise GeometryError(
+            "profile_shift", f"sum {shifts:.6g}", "is too negative: no working pressure angle", "increase one of them"
+        )
+    return float(
+        brentq(lambda distance: _free(one, other, distance) - thicker, least, 4.0 * least, xtol=1e-14, rtol=9e-16)
+    )
