@@ -11,7 +11,8 @@ from fegear.geometry.checks import tip_thickness
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.many_pairs import ManyGearPairs
-from fegear.geometry.pair import GearPair, specific_sliding
+from fegear.geometry.pair import GearPair
+from fegear.geometry.path_of_contact import specific_sliding
 from fegear.geometry.rack import BasicRack
 
 COUNT = 50
