@@ -150,7 +150,10 @@ RELIEF = Effect(
     "relief", "Include profile and flank line modifications.", "unmodified involute flanks",
     "`relief` on a gear; for 3D pairs also `lead`, `bias`, `topography`, and `modification` of the pair", "flanks",
     {"reliefs": "removal of a modified flank at many positions"},
-    lambda pair: pair.has("relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())), _LIN,
+    lambda pair: pair.has(
+        "relief", "coast_relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())
+    ),
+    _LIN,
 )  # fmt: skip
 SPACING_ERRORS = Effect(
     "spacing_errors", "Include pitch deviations (`spacing_errors`).", "uniform pitch",

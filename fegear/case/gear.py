@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from fegear.base.errors import GeometryError, InputError, shown
 from fegear.case.deviations import DeviationsPart
@@ -34,11 +34,13 @@ from fegear.case.relief import (
 )
 from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
+from fegear.case.tolerance_class import ToleranceClass
 from fegear.geometry.asymmetric_tooth import AsymmetricSide, AsymmetricTooth
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.involute_side import Flank
 from fegear.geometry.over_balls import over_balls
 
 #: Names of the geometry layer that a case file calls otherwise.
@@ -50,28 +52,6 @@ _KEYS = {
     "rack.drive.tip_radius": "rack.tip_radius",
     "rack.coast.tip_radius": "rack.coast_tip_radius",
 }
-
-#: Classes by name: ISO 1328-1 6, DIN ISO 1328-1:2013 class 6, ANSI/AGMA ISO 1328-1-B14 A6.
-_CLASS = re.compile(
-    r"(?:DIN |ANSI/AGMA )?ISO ?1328(?:-1)?(?::2013|-B14)?[ ,]*(?:class|grade|quality)? ?A?(\d+)|(\d+)", re.IGNORECASE
-)
-
-
-def _class_of(value: Any) -> Any:
-    """The number of a class of ISO 1328-1 that is given by name; those of other standards have other tolerances."""
-    if not isinstance(value, str):
-        return value
-    found = _CLASS.fullmatch(" ".join(value.split()))
-    if found is None:
-        raise refuse(
-            "is not a class of ISO 1328-1:2013",
-            'set "ISO 1328-1 6"; tolerances of DIN 3962, DIN 58405 or AGMA Q numbers can be given as deviations',
-            value=shown(value),
-        )  # fmt: skip
-    return int(found[1] or found[2])
-
-
-ToleranceClass = Annotated[int, BeforeValidator(_class_of, json_schema_input_type=int | str), Field(ge=1, le=11)]
 
 #: Keys of gears that an internal one has not, and what it has instead.
 _EXTERNAL_ONLY = {
@@ -93,7 +73,6 @@ _SYMMETRIC_ONLY = {
     "tooth_mesh": "remove it: its mesh is generated",
     "body": "remove it: asymmetric teeth are available for plane (2D) gears only",
     "odd_tooth": "remove it",
-    "relief": "remove it: modifications of asymmetric teeth are not available yet",
     "lead": "remove it",
     "bias": "remove it",
     "topography": "remove it",
@@ -173,6 +152,11 @@ class GearPart(TeethPart):
         default=None,
         description="Profile modification of all teeth (sum of its parts); active with the effect `relief`.",
     )
+    coast_relief: Table[ReliefPart] | None = Field(
+        default=None,
+        description="Profile modification of the coast flanks of asymmetric teeth; `relief` is that of the drive "
+        "flanks.",
+    )
     lead: Table[LeadPart] | None = Field(
         default=None,
         description="Flank line (lead) modification, the same at every tooth height; active with the effect `relief`.",
@@ -240,6 +224,10 @@ class GearPart(TeethPart):
         """b_s [m], of the body or for the ratings alone; None of a disc."""
         return self.web_thickness if self.body is None else self.body.web_thickness
 
+    def relief_of(self, flank: Flank | None) -> ReliefPart | None:
+        """Profile modification of a flank of asymmetric teeth, or of both of equal ones (None)."""
+        return self.coast_relief if flank == "coast" else self.relief
+
     @property
     def over_face(self) -> tuple[str, ...]:
         """Keys that say what is ground off over the face, of those that are given."""
@@ -250,7 +238,8 @@ class GearPart(TeethPart):
     @property
     def relieved(self) -> bool:
         """Whether its profile is drawn, or measured, to differ from an involute."""
-        return self.relief is not None or (self.measured is not None and self.measured.profile is not None)
+        measured = self.measured is not None and self.measured.profile is not None
+        return measured or self.relief is not None or self.coast_relief is not None
 
     @model_validator(mode="after")
     def _one_gear(self) -> Self:
@@ -308,6 +297,8 @@ class GearPart(TeethPart):
                 value=self.rack.tip_radius,
             )  # fmt: skip
         if not self.asymmetric:
+            if self.coast_relief is not None:
+                raise refuse("requires asymmetric teeth", "specify relief (both flanks)", key="coast_relief")
             return
         for key, remedy in _SYMMETRIC_ONLY.items():
             if key in self.given:

@@ -61,6 +61,8 @@ class FlankSpec:
         Flanks that differ from the others, by the number of the tooth in the order of meshing, for plane teeth.
     gear : str
         Name of the gear, for messages.
+    key : str
+        Key of the relief among those of the gear, for messages.
     measured : bool
         Whether the relief is a measured one, for messages.
     wrong : mapping of str to InputError
@@ -73,6 +75,7 @@ class FlankSpec:
     bias: BiasSpec | None = None
     odd: tuple[tuple[int, OddFlank], ...] = ()
     gear: str = field(default="", compare=False)
+    key: str = field(default="relief", compare=False)
     measured: bool = field(default=False, compare=False)
     wrong: Mapping[str, InputError] = field(default_factory=dict, compare=False)
 
@@ -104,7 +107,9 @@ class FlankSpec:
         try:
             return self.relief.built(pair, member, delta)
         except InputError as error:
-            raise error.under(self.prefix) from None
+            inside, point, rest = error.key.partition(".")
+            key = self.key + point + rest if inside == "relief" else error.key
+            raise error.under(self.prefix, {error.key: key}) from None
 
     def surface(self, pair: GearPair, member: Member) -> tuple[FlankModification, ...]:
         """All that is modified over the face, for one gear of a pair.

@@ -238,6 +238,11 @@ class AsymmetricSide(InvoluteSide):
         return self.tooth.side("coast" if self.flank == "drive" else "drive")
 
     @property
+    def working_flank(self) -> Flank:
+        """The flank that it is seen from."""
+        return self.flank
+
+    @property
     def rack(self) -> RackHalf:
         """What generates this side."""
         return self.tooth.rack.half(self.flank)

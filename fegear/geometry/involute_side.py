@@ -155,6 +155,11 @@ class InvoluteSide(ABC):
     def involute(self) -> Involute:
         """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
 
+    @property
+    def working_flank(self) -> Flank | None:
+        """Which flank of an asymmetric tooth it is seen from; None of equal flanks."""
+        return None
+
     # ---- circles and angles -------------------------------------------------------------------------------------
     @property
     def internal(self) -> bool:

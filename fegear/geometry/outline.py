@@ -53,7 +53,10 @@ def turned(points: Array, angle: float) -> Array:
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def tooth_outline(tooth: InvoluteSide, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+def tooth_outline(
+    tooth: InvoluteSide, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None,
+    back: Sequence[Drawn] | None = None,
+) -> Array:  # fmt: skip
     """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N).
 
     Parameters
@@ -64,13 +67,15 @@ def tooth_outline(tooth: InvoluteSide, tolerance: float = 1e-4, pieces: Sequence
         How far chords may lie off the curves [modules].
     pieces : sequence of Drawn, optional
         Another right half than the generated one, see `relieved_outline`; of equal flanks another left half, too.
+    back : sequence of Drawn, optional
+        Of asymmetric teeth another left half, as seen from its own flank.
     """
     right = _half(pieces or list(tooth.outline.values()), tolerance)
     if tooth.back is tooth:
         right[0, -1] = 0.0  # the tooth's centre line, free of round-off
         left = right * np.array([[-1.0], [1.0]])
     else:
-        left = _half(list(tooth.back.outline.values()), tolerance) * np.array([[-1.0], [1.0]])
+        left = _half(back or list(tooth.back.outline.values()), tolerance) * np.array([[-1.0], [1.0]])
     return np.hstack([left, right[:, -2::-1]])
 
 
@@ -79,12 +84,14 @@ def _half(pieces: Sequence[Drawn], tolerance: float) -> Array:
     return np.hstack([lines[0], *[line[:, 1:] for line in lines[1:]]])
 
 
-def gear_outline(gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+def gear_outline(
+    gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None, back: Sequence[Drawn] | None = None
+) -> Array:
     """The closed outline of all teeth [m], clockwise from tooth 0's left space; the first point is not repeated.
 
     Parameters as for `tooth_outline`.
     """
-    one = tooth_outline(gear.tooth, tolerance, pieces)[:, :-1] * gear.module
+    one = tooth_outline(gear.tooth, tolerance, pieces, back)[:, :-1] * gear.module
     pitch = 2.0 * math.pi / gear.teeth
     return np.hstack([turned(one, k * pitch) for k in range(gear.teeth)])
 
@@ -208,7 +215,7 @@ def relieved_outline(gear: Gear, relief: Relief) -> list[Drawn]:
     angle = math.atan2(x0, y0) - math.atan2(x, y)
     after: list[Drawn] = [] if tooth.tip_edge is None else [_turned_edge(tooth.tip_edge, angle)]
     left = tooth.tip_land.start - angle
-    if left < 0.0:
+    if left < tooth.tip_middle:
         raise InputError("relief", f"{float(relief.removal(end)) * 1e6:.6g} um at the tip", "removes the entire tip")
     after.append(replace(tooth.tip_land, start=left))
     return [*before, *flank, *after]

@@ -74,7 +74,12 @@ def _add_curve(space: Any, curve: Drawn, scale: float, turn: float, *, mirrored:
 
 
 def write_dxf(
-    gear: Gear, folder: Path, name: str, relief: Relief | None = None, flanks: str = AS_GENERATED
+    gear: Gear,
+    folder: Path,
+    name: str,
+    relief: Relief | None = None,
+    flanks: str = AS_GENERATED,
+    back_relief: Relief | None = None,
 ) -> list[Path]:
     """Write ``<name>_{tooth,gear}_{polyline,spline}.dxf``.
 
@@ -88,6 +93,8 @@ def write_dxf(
         What is ground off both flanks of every tooth.
     flanks : str
         What the drawings hold, for their property ``FLANKS``.
+    back_relief : Relief, optional
+        Of asymmetric teeth what is ground off the other flanks; `relief` is then that of the right ones only.
 
     Returns
     -------
@@ -95,9 +102,9 @@ def write_dxf(
         The tooth is drawn as its sector down to the bore, +y along its centre line; the gear with its bore circle.
     """
     bore, pitch, scale = gear.bore_radius * _MM, 2.0 * math.pi / gear.teeth, gear.module * _MM
-    pieces = list(gear.tooth.outline.values()) if relief is None else relieved_outline(gear, relief)
-    back = list(gear.tooth.back.outline.values()) if gear.asymmetric else pieces
-    sector = tooth_outline(gear.tooth, CHORD_TOLERANCE, pieces) * scale
+    pieces = _pieces(gear, relief)
+    back = _pieces(gear.from_the_back, back_relief) if gear.asymmetric else pieces
+    sector = tooth_outline(gear.tooth, CHORD_TOLERANCE, pieces, back) * scale
     known: Splines = {}
     ends = turned(np.array([[0.0], [bore]]), pitch / 2), turned(np.array([[0.0], [bore]]), -pitch / 2)
     arc = np.linspace(pitch / 2, -pitch / 2, 33)
@@ -112,7 +119,7 @@ def write_dxf(
     save(document, "tooth_polyline")
 
     document, space = _drawing(flanks)
-    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE, pieces) * _MM, "OUTLINE")
+    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE, pieces, back) * _MM, "OUTLINE")
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_polyline")
 
@@ -136,6 +143,10 @@ def write_dxf(
     return written
 
 
+def _pieces(gear: Gear, relief: Relief | None) -> list[Drawn]:
+    return list(gear.tooth.outline.values()) if relief is None else relieved_outline(gear, relief)
+
+
 def _one_by_one(halves: tuple[tuple[Sequence[Drawn], bool], ...]) -> Iterator[tuple[Drawn, bool]]:
     """Curves of both halves of a tooth in turn, as they are drawn: each right one, mirrored or not."""
     for row in zip_longest(*([(curve, mirrored) for curve in pieces] for pieces, mirrored in halves)):
@@ -145,8 +156,17 @@ def _one_by_one(halves: tuple[tuple[Sequence[Drawn], bool], ...]) -> Iterator[tu
 def written_dxf(request: Request) -> Written:
     """Write the drawings of a gear with the relief that the case gives it."""
     name, found = request.name, described_relief(request.scene, request.name)
-    flanks = AS_GENERATED if found.relief is None else "with the relief of the case, both flanks"
+    back = described_relief(request.scene, request.name, back=True).relief if request.gear.asymmetric else found.relief
+    if found.relief is None and back is None:
+        flanks = AS_GENERATED
+    elif request.gear.asymmetric:
+        working = [one is not None for one in (found.relief, back)]
+        seen = request.gear, request.gear.from_the_back
+        ground = [str(one.tooth.working_flank) for one, on in zip(seen, working, strict=True) if on]
+        flanks = f"with the relief of the case, {' and '.join(sorted(ground, reverse=True))} flank"
+    else:
+        flanks = "with the relief of the case, both flanks"
     flanks += f", as in pair {found.pair}" if found.pair else ""
     spur = name in request.scene.spur_gears
     remarks = () if spur else (f"Gear {name}, DXF: transverse section.",)
-    return write_dxf(request.gear, request.folder, file_name(name), found.relief, flanks), remarks
+    return write_dxf(request.gear, request.folder, file_name(name), found.relief, flanks, back), remarks

@@ -186,12 +186,13 @@ def _of_relief(scene: Scene, gear: str, names: Sequence[str]) -> list[str]:
     """Which relief formats of flanks hold."""
     if not names:
         return []
-    found, subject = described_relief(scene, gear), f"Gear {gear}, {', '.join(sorted(names)).upper()}"
     remarks = []
-    if found.pair:
-        remarks.append(f"{subject}: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
-    if found.left_out:
-        remarks.append(f"{subject}: flanks without relief, because {found.left_out}.")
+    for back in (False, True) if scene.gears[gear].asymmetric else (False,):
+        found, subject = described_relief(scene, gear, back=back), f"Gear {gear}, {', '.join(sorted(names)).upper()}"
+        if found.pair:
+            remarks.append(f"{subject}: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
+        if found.left_out:
+            remarks.append(f"{subject}: flanks without relief, because {found.left_out}.")
     return remarks
 
 
@@ -204,7 +205,7 @@ def _left_out(scene: Scene, gear: str, wanted: Mapping[str, Format], written: Se
     if scene.gears[gear].tooth.internal and (solid := _of(wanted, "solid mesh")):
         remarks.append(f"Gear {gear} is internal: no {', '.join(sorted(solid))} is written for it.")
     meshes = sorted(name for name in written if wanted[name].holds in ("plane mesh", "solid mesh"))
-    if meshes and part.relief is not None:
+    if meshes and (part.relief or part.coast_relief):
         remarks.append(f"Gear {gear}, {', '.join(meshes)}: flanks as generated, without the relief of the case.")
     if part.over_face:
         given = " and ".join(part.over_face)

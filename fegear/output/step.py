@@ -22,9 +22,13 @@ def seconds_of(gear: Gear) -> float:
 def written_step(request: Request) -> Written:
     """Write ``<gear>.step``."""
     name, gear, part = request.name, request.gear, request.scene.case.gear[request.name]
-    relief = described_relief(request.scene, name).relief
+    reliefs = [described_relief(request.scene, name, back=back).relief for back in (False, True)]
     path = request.folder / f"{file_name(name)}.step"
-    write_step(path, gear, None if relief is None else relieved_outline(gear, relief))
+    pieces, back = (
+        None if relief is None else relieved_outline(one, relief)
+        for one, relief in zip((gear, gear.from_the_back), reliefs, strict=True)
+    )
+    write_step(path, gear, pieces, back=back if gear.asymmetric else None)
     remarks = []
     if part.face_width is None:
         remarks.append(

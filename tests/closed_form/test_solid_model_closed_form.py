@@ -12,7 +12,6 @@ import pytest
 from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene
 from fegear.fem.plane.tooth_meshing import gmsh_session
-from fegear.fem.solid import step_model
 from fegear.fem.solid.step_model import write_step
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
@@ -110,11 +109,11 @@ def test_what_takes_long_is_said_before_it_starts(tmp_path, monkeypatch):
     document = {"results": ["geometry"], "gear": {"a": {"teeth": 150, "module": "3 mm", "bore_radius": "60 mm"}}}
     said = []
 
-    def writes(path, *_):
+    def writes(path, *_, **_more):
         path.touch()
         said.append(path.name)
 
-    monkeypatch.setattr(step_model, "write_step", writes)
+    monkeypatch.setattr("fegear.output.step.write_step", writes)
     export_gears(build_scene(document, "long", tmp_path), tmp_path, (), "step", say=said.append)
     assert said == ["Gear a, STEP: about 20 s of CPU time for 150 teeth.", "a.step"]
     document["gear"]["a"].update(teeth=20, bore_radius="10 mm")

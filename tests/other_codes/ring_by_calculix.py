@@ -103,13 +103,14 @@ def body(pair, member, share):
     mesh = extruded(section, np.array([-half_layer, half_layer]), 0.0)
     points = mesh.points * gear.module * MM
     working = gear.base_radius / math.cos(pair.working_pressure_angle)
-    half_angle = float(tooth.half_thickness_angle(working / gear.module))
+    half_angle = float(tooth.flank_angle(working / gear.module))
     # The loaded flanks touch at the pitch point when both are turned back by half a tooth; then both roll by x.
     points = clockwise(forward * x0 / gear.base_radius - half_angle, points)
     centre = np.zeros(3)
     if member == "driven":
-        points = points * np.array([[-1.0], [1.0], [-1.0]])  # half a turn about the centre line
-        centre[1] = -pair.centre_distance * MM
+        # half a turn about the centre line inside a ring, about the axis outside another gear
+        points = points * np.array([[-1.0], [-pair.side], [pair.side]])
+        centre[1] = pair.side * pair.centre_distance * MM
         points[1] += centre[1]
     return {"member": member, "gear": gear, "mesh": mesh, "points": points, "teeth": teeth, "centre": centre}
 

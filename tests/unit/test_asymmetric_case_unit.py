@@ -1,6 +1,7 @@
 """Asymmetric teeth in cases: keys of both flanks, which flank works, a sentence where equal flanks are needed."""
 
 import copy
+import math
 import random
 from pathlib import Path
 
@@ -9,10 +10,13 @@ import pytest
 from mutations import changed_value, processor_seconds
 
 from fegear.base.errors import FegearError, InputError
+from fegear.case.built.flank_modifications import described_relief
+from fegear.case.built.pair_spec import pair_spec
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.geometry.external_tooth import Tooth
+from fegear.output.dxf import write_dxf
 from fegear.output.export import export_gears
 from fegear.results.catalogue import RESULTS, STAGES
 
@@ -21,18 +25,20 @@ GEAR = {
     "rack": {"tip_radius": 0.15, "coast_tip_radius": 0.3}, "profile_shift": 0.2, "face_width": "20 mm",
     "thickness_allowance": "40 um", "bore_radius": "15 mm",
 }  # fmt: skip
+TIP = {"tip": {"amount": "20 um", "length": "1 mm"}}
+RELIEF = {"relief": True, "hertz": "load-dependent"}
 #: Results that take asymmetric teeth.
 KNOWN = {"geometry", "stiffness", "root-stress", "load-sharing", "transmission-error", "root-stress-history"}
 
 
-def case(flank=None, results=("geometry",), pair=(), **gear):
+def case(flank=None, results=("geometry",), pair=(), effects=(), **gear):
     """Two asymmetric gears in mesh."""
     one = {key: value for key, value in {**GEAR, **gear}.items() if value is not None}
     two = {**one, "teeth": 41, "profile_shift": 0.0, "bore_radius": "40 mm"}
     mesh = {"driver": "p", "driven": "w", "load": "4 kN", **dict(pair)}
     if flank:
         mesh["flank"] = flank
-    return {"gear": {"p": one, "w": two}, "pair": {"I": mesh}, "results": list(results)}
+    return {"gear": {"p": one, "w": two}, "pair": {"I": mesh}, "results": list(results), "effects": dict(effects)}
 
 
 def built(document):
@@ -105,7 +111,8 @@ def test_a_full_fillet_is_the_widest_of_both_angles():
         (case(profile_shift=None, span="23 mm", span_teeth=3), "gear.p.span"),
         (case(span_teeth=3), "no span can be measured"),
         (case(tooth_mesh="a.msh"), "gear.p.tooth_mesh"),
-        (case(relief={"tip": {"amount": "20 um", "length": "2 mm"}}), "modifications of asymmetric teeth"),
+        (case(lead={"crowning": "5 um"}), "gear.p.lead"),
+        (case(coast_pressure_angle=None, rack={"tip_radius": 0.1}, coast_relief=TIP), "requires asymmetric teeth"),
         (case(odd_tooth=[{"tooth": 0, "crack": {"depth": "1 mm"}}]), "gear.p.odd_tooth"),
         (case(module=None, normal_module="3 mm", helix_angle="20 deg", hand="left"), "spur gears only"),
         (case(internal=True, rack=None, bore_radius=None, cutter={"teeth": 12}), "asymmetric internal gears"),
@@ -210,3 +217,47 @@ def test_at_large_pressure_angles_only_the_given_tip_radius_must_fit():
     assert built(steep).gears["p"].external_tooth.rack.tip_radius == 0.1
     steep["gear"]["p"]["rack"] = {}
     assert "gear.p.rack.tip_radius = 0.25: exceeds the maximum of 0.110349 modules" in refused(steep)
+
+
+@pytest.mark.parametrize("flank", ["drive", "coast"])
+def test_the_loaded_flank_has_its_own_relief(flank):
+    other = {"tip": {"amount": "9 um", "length": "0.5 mm"}}
+    scene = built(case(flank, effects=RELIEF, relief=TIP, coast_relief=other))
+    spec = pair_spec(scene, "I")
+    for member in ("driver", "driven"):
+        found = spec.flanks(member).profile(spec.pair, member)
+        gear = spec.pair.gear(member)
+        at_tip = float(found.removal(gear.tooth.involute.end))
+        assert at_tip == pytest.approx(20e-6 if flank == "drive" else 9e-6, rel=1e-12)
+    only = built(case(flank, effects=RELIEF, relief=TIP))
+    assert (pair_spec(only, "I").driver.relief is None) == (flank == "coast")
+    for one, amount in (("drive", 20e-6), ("coast", 9e-6)):
+        drawn, tooth = described_relief(scene, "p", back=one != flank).relief, scene.gears["p"].tooth.tooth.side(one)
+        assert float(drawn.removal(tooth.involute.end)) == pytest.approx(amount, rel=1e-12)
+
+
+def test_drawings_have_the_relief_of_each_flank(tmp_path):
+    scene = built(case("coast", relief=TIP))
+    gear, relief = scene.gears["p"], described_relief(scene, "p", back=True).relief
+    assert described_relief(scene, "p").relief is None
+    (path,) = [one for one in write_dxf(gear, tmp_path, "p", None, "", relief) if one.name == "p_tooth_polyline.dxf"]
+    import ezdxf
+
+    (line,) = ezdxf.readfile(path).modelspace().query("LWPOLYLINE")
+    x, y = np.array(line.get_points("xy")).T
+    m, tip = gear.module * 1e3, gear.tip_radius * 1e3
+    corners = x[np.abs(np.hypot(x, y) - tip) < 1e-6 * tip] / y[np.abs(np.hypot(x, y) - tip) < 1e-6 * tip]
+    right, left = math.atan(corners.max()), math.atan(-corners.min())
+    tooth = gear.tooth
+    assert right == pytest.approx(tooth.tip_half_angle, abs=1e-9)
+    # the drive flank, drawn on the left, has lost 20 um along its normal, and a little more where it meets the tip
+    lost = 0.02 / (tip * math.cos(math.acos(tooth.back.base_radius * m / tip)))
+    assert tooth.back.tip_half_angle - left == pytest.approx(lost, rel=4e-2)
+
+
+def test_a_relief_of_the_coast_flank_is_refused_under_its_own_key():
+    long = {"tip": {"amount": "20 um", "length": "90 mm"}}
+    scene = built(case("coast", effects=RELIEF, coast_relief=long))
+    spec = pair_spec(scene, "I")
+    with pytest.raises(InputError, match=r"^gear\.p\.coast_relief"):
+        spec.driver.profile(spec.pair, "driver")

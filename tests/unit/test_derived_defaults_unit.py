@@ -95,6 +95,9 @@ SURFACE = joined(
 )
 LOSS = joined(SURFACE, {"results": ["gear-mesh-power-loss"]})
 
+ASYMMETRIC = joined(PAIR, {"results": ["geometry"], "gear.a.coast_pressure_angle": "22 deg",
+                           "gear.b.coast_pressure_angle": "22 deg", "pair.I.compliance": None})  # fmt: skip
+
 #: Key, case, where it is written, and what is written: a value, or how it follows from the case as it was built.
 ROWS = {
     "CrowningPart.start_radius": (RELIEVED, "gear.a.relief.crowning.start_radius", lambda s: metres(ends(s)[0])),
@@ -105,6 +108,12 @@ ROWS = {
     "GearPart.tip_diameter": (LOADED, "gear.b.tip_diameter", f"{3.0 * 34 + 2.0 * 1.2 * 3.0!r} mm"),
     "GearPart.bore_radius": (
         joined(PAIR, {"results": ["geometry"]}), "gear.a.bore_radius", _root),
+    "GearPart.coast_pressure_angle": (
+        joined(PAIR, {"results": ["geometry"]}), "gear.a.coast_pressure_angle", "20 deg"),
+    "RackPart.coast_tip_radius": (
+        joined(PAIR, {"results": ["geometry"], "gear.a.rack": {"tip_radius": 0.3}}),
+        "gear.a.rack.coast_tip_radius", 0.3),
+    "PairPart.flank": (ASYMMETRIC, "pair.I.flank", "drive"),
     "GearPart.face_width": ({"results": ["geometry"], "gear": {"a": {"teeth": 21, "module": "3 mm"}}},
                             "gear.a.face_width", "1 mm"),
     "GearPart.rim_thickness": (RING, "gear.r.rim_thickness", f"{3.5 * 3.0!r} mm"),

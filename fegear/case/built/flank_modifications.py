@@ -153,7 +153,7 @@ def _rolls(gear: Gear, radii: Array, key: str) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class DescribedRelief:
-    """Relief of both flanks of a gear.
+    """Relief of both flanks of a gear, or of one of asymmetric teeth.
 
     Parameters
     ----------
@@ -170,17 +170,25 @@ class DescribedRelief:
     pair: str = ""
 
 
-def described_relief(scene: Scene, gear: str) -> DescribedRelief:
+def described_relief(scene: Scene, gear: str, *, back: bool = False) -> DescribedRelief:
     """Relief of a gear from its own keys and, for lengths that count on the path of contact, from its pairs.
+
+    Parameters
+    ----------
+    scene : Scene
+    gear : str
+    back : bool
+        Whether that of the flanks is wanted that are not loaded; of equal flanks it is the same.
 
     Raises
     ------
     InputError
         If the relief does not fit the gear.
     """
-    if scene.case.gear[gear].relief is None:
+    seen = scene.gears[gear].from_the_back if back else scene.gears[gear]
+    if scene.case.gear[gear].relief_of(seen.tooth.working_flank) is None:
         return DescribedRelief()
-    flanks = gear_flanks(scene, gear, drawn=True)
+    flanks = gear_flanks(scene, gear, drawn=True, back=back)
     if RELIEF.name in flanks.wrong:
         raise flanks.wrong[RELIEF.name]
     if flanks.wants_delta:
@@ -189,11 +197,11 @@ def described_relief(scene: Scene, gear: str) -> DescribedRelief:
     for name, pair in scene.pairs.items():
         for member in MEMBERS:
             if gear_name(scene, name, member) == gear and name not in built:
-                built[name] = flanks.profile(pair, member)
+                built[name] = flanks.profile(pair.from_the_back if back else pair, member)
     if not built:
         return DescribedRelief(left_out="start and end depend on the path of contact, and the gear belongs to no pair")
     (first, relief), *others = built.items()
-    involute = scene.gears[gear].tooth.involute
+    involute = seen.tooth.involute
     roll = np.linspace(involute.start, involute.end, 101)
     differ = any(np.abs(other.removal(roll) - relief.removal(roll)).max() > 1e-9 for _, other in others)
     return DescribedRelief(relief, pair=first if differ else "")

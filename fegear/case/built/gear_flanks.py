@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _S = TypeVar("_S")
 
 
-def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
+def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = False) -> FlankSpec:
     """What a case says of the profiles and the spacing of a gear; data of effects that are off may be wrong.
 
     Parameters
@@ -34,15 +34,19 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
     gear : str
     drawn : bool
         Whether the relief is wanted that is drawn, where another one is measured.
+    back : bool
+        Whether the flanks that are not loaded are wanted; of equal flanks they are the same.
     """
     part, effects = scene.case.gear[gear], scene.case.effects
+    seen = scene.gears[gear].from_the_back if back else scene.gears[gear]
+    given, key = part.relief_of(seen.tooth.working_flank), relief_key(seen)
     relief: ReliefSpec | None = None
     spacing, wrong, measured = np.empty(0), {}, False
-    if part.relief is not None:
+    if given is not None:
         relief = ReliefSpec(
-            tuple(_spec(TipReliefSpec, tip) for tip in part.relief.tip),
-            tuple(_spec(RootReliefSpec, root) for root in part.relief.root),
-            tuple(_spec(CrowningSpec, crown) for crown in part.relief.crowning),
+            tuple(_spec(TipReliefSpec, tip) for tip in given.tip),
+            tuple(_spec(RootReliefSpec, root) for root in given.root),
+            tuple(_spec(CrowningSpec, crown) for crown in given.crowning),
         )
     try:
         if part.measured is not None and not drawn:
@@ -54,10 +58,9 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
             elif found.relief is not None:
                 relief, measured = ReliefSpec(tables=(found.relief,)), True
         if relief is not None and not measured:
-            tables = part.relief.table if part.relief is not None else ()
+            tables = given.table if given is not None else ()
             read = (
-                _table_relief(scene, scene.gears[gear], table, f"gear.{gear}.relief.table[{i}]")
-                for i, table in enumerate(tables)
+                _table_relief(scene, seen, table, f"gear.{gear}.{key}.table[{i}]") for i, table in enumerate(tables)
             )
             relief = replace(relief, tables=tuple(read))
     except InputError as error:
@@ -70,7 +73,12 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False) -> FlankSpec:
         if effects.spacing_errors:
             raise
         wrong[SPACING_ERRORS.name] = error
-    return FlankSpec(relief, spacing, gear=gear, measured=measured, wrong=wrong)
+    return FlankSpec(relief, spacing, gear=gear, key=key, measured=measured, wrong=wrong)
+
+
+def relief_key(gear: Gear) -> str:
+    """The key of the relief of the flanks that a gear is seen from."""
+    return "coast_relief" if gear.tooth.working_flank == "coast" else "relief"
 
 
 def _spec(kind: type[_S], part: Part) -> _S:

@@ -99,7 +99,8 @@ def _removed(e: Engagement, member: Member, points: Array, pairs: Sequence[int])
     errors = e.driver_spacing if member == "driver" else e.driven_spacing
     radius, tooth = np.hypot(*points), gear.tooth
     angle, taken = np.arctan2(*points), np.zeros(points.shape)
-    for flank, sign in ((tooth, 1.0), (tooth.back, -1.0)):  # what is ground off the loaded flank is ground off both
+    sides = ((tooth, 1.0),) if gear.asymmetric else ((tooth, 1.0), (tooth, -1.0))  # equal flanks are ground alike
+    for flank, sign in sides:
         reached = np.maximum(radius, flank.base_radius)
         roll, half = flank.roll(reached), flank.flank_angle(reached)
         on = (flank.side * radius >= flank.side * flank.form_radius * (1.0 - flank.side * 1e-9)) & (

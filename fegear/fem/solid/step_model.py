@@ -61,7 +61,11 @@ class SolidModel(NamedTuple):
 
 
 def write_step(
-    path: Path, gear: Gear, pieces: Sequence[Drawn] | None = None, tolerance: float = TOLERANCE
+    path: Path,
+    gear: Gear,
+    pieces: Sequence[Drawn] | None = None,
+    tolerance: float = TOLERANCE,
+    back: Sequence[Drawn] | None = None,
 ) -> SolidModel:
     """Write the whole gear with its bore as one solid, in millimetres, the axis along z and the face from -b/2 to b/2.
 
@@ -76,6 +80,8 @@ def write_step(
         half, too.
     tolerance : float
         [modules].
+    back : sequence of Drawn, optional
+        Of asymmetric teeth another left half, as seen from its own flank.
 
     Returns
     -------
@@ -89,13 +95,13 @@ def write_step(
     outline = smooth_pieces(pieces or gear.tooth.outline.values())
     scale, half = gear.module * _MM, 0.5 * gear.face_width * _MM
     right = [spline_of(piece, tolerance) for piece in outline]
-    back = right
+    behind = right
     if gear.asymmetric:
-        back = [spline_of(piece, tolerance) for piece in smooth_pieces(gear.tooth.back.outline.values())]
-    left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in back]
+        behind = [spline_of(piece, tolerance) for piece in smooth_pieces(back or gear.tooth.back.outline.values())]
+    left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in behind]
     helix = fitted(lambda z: _turn(gear, z), -half, half, tolerance / gear.tooth.tip_radius)
     bore = gear.bore_radius * _MM
-    tooth = enclosed_area(right) + enclosed_area(back)
+    tooth = enclosed_area(right) + enclosed_area(behind)
     area = abs(abs(tooth) * gear.teeth * scale**2 - math.pi * bore**2)
     with gmsh_session("fegear solid") as gmsh:
         try:
@@ -115,7 +121,9 @@ def write_step(
     return made
 
 
-def _build(occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: Spline, bore: float, half: int) -> None:
+def _build(
+    occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: Spline, bore: float, half: int = 1
+) -> None:
     """The solid from the splines of one tooth's left and right half, beside what it was sewn from.
 
     The first `half` of them are those of the left one.

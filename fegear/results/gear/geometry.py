@@ -23,6 +23,7 @@ from fegear.engine.value import Value
 from fegear.geometry.gear_data import MODIFICATIONS, GearData, MeshData, measured
 from fegear.geometry.inspection import usual_span
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.involute_side import Flank
 from fegear.geometry.mass import MassProperties
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.tip_interference import interference
@@ -146,7 +147,11 @@ def drawing_of(scene: Scene) -> Drawing:
     parts = scene.case.pair
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
-    ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
+    ground = {
+        name: amounts
+        for name, gear in scene.gears.items()
+        if (amounts := ground_off(scene.case.gear[name], gear.tooth.working_flank))
+    }
     spans = {name: k for name in scene.gears if (k := scene.case.gear[name].span_teeth) is not None}
     assumed = (*assumed_cutters(scene), *assumed_bodies(scene))
     return Drawing(scene.gears, scene.pairs, members, balls, spans, ground, assumed)
@@ -202,19 +207,23 @@ def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     )
 
 
-def ground_off(part: GearPart) -> dict[str, float]:
-    """Amounts that a case gives for a gear [m], by `MODIFICATIONS`; tables, files and amounts in Delta have none."""
+def ground_off(part: GearPart, flank: Flank | None) -> dict[str, float]:
+    """Amounts that a case gives for a gear [m], by `MODIFICATIONS`; tables, files and amounts in Delta have none.
+
+    Those of asymmetric teeth are for the working flank.
+    """
+    profile = part.relief_of(flank)
     found: dict[str, float] = {}
 
     def add(key: str, amount: float | None) -> None:
         if amount:
             found[key] = found.get(key, 0.0) + amount
 
-    if part.relief is not None:
-        for key, ends in (("tip_relief", part.relief.tip), ("root_relief", part.relief.root)):
+    if profile is not None:
+        for key, ends in (("tip_relief", profile.tip), ("root_relief", profile.root)):
             for end in ends:
                 add(key, end.amount)
-        for crown in part.relief.crowning:
+        for crown in profile.crowning:
             add("profile_crowning", crown.amount)
     if part.lead is not None:
         add("crowning", part.lead.crowning)

@@ -184,8 +184,8 @@ def _roll(scene: Scene, gear: str, radius: float) -> float:
 
 
 def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
-    part = scene.case.gear[gear].relief
-    if part is None or not isinstance(relief, CombinedRelief):
+    part = scene.case.gear[gear].relief  # whose handles move this key
+    if part is None or scene.gears[gear].asymmetric or not isinstance(relief, CombinedRelief):
         return []
     kinds: list[tuple[Literal["tip", "root", "crowning"], int]] = []
     for end in ENDS:
