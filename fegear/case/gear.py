@@ -72,6 +72,7 @@ _SYMMETRIC_ONLY = {
     "transverse_pressure_angle": "remove it",
     "tooth_mesh": "remove it: its mesh is generated",
     "body": "remove it: asymmetric teeth are available for plane (2D) gears only",
+    "rim_support": "remove it: asymmetric teeth are fixed all round the bore",
     "odd_tooth": "remove it",
     "lead": "remove it",
     "bias": "remove it",
