@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from fegear.case.derived import keys_of
 from fegear.case.evenly_spaced import EvenlySpaced
-from fegear.case.gear import MaterialPart, ToleranceClass
+from fegear.case.gear_material import MaterialPart
 from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.pair import IsoPart, TorquesPart
 from fegear.case.part import (
@@ -27,6 +27,7 @@ from fegear.case.part import (
 )
 from fegear.case.strength import StrengthPart
 from fegear.case.surface import LubricantPart, RoughnessPart
+from fegear.case.tolerance_class import ToleranceClass
 from fegear.design.sizing.limits import SizingLimits
 
 #: What variants can be compared by; each is better where it is smaller, but `safety` and `contact-ratio`.
