@@ -23,7 +23,8 @@ from fegear.engine.run import run_plan
 from fegear.formulas.iso6336.safety import rate_pair
 from fegear.geometry.checks import tip_thickness
 from fegear.geometry.involute import inv, pressure_angle_of_inv
-from fegear.geometry.pair import MEMBERS, specific_sliding
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.path_of_contact import specific_sliding
 from fegear.results.catalogue import STAGES
 from fegear.results.sizing.applied_variant import text_of_variant
 from fegear.results.sizing.variant_case import case_of_variant
