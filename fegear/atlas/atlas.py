@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
 
 #: Solved gears about a place of which the largest error counts there.
-_NEAREST = 8
+_NEAREST = 16
 
 
 @dataclass(frozen=True, eq=False)

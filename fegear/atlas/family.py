@@ -109,6 +109,14 @@ class Family:
                     "solve the gear",
                 )  # fmt: skip
 
+    def has(self, gear: Gear) -> bool:
+        """Whether a gear is of the family."""
+        try:
+            self.check(gear)
+        except RangeError:
+            return False
+        return True
+
     def least_shift(self, teeth: float) -> float:
         """x_E from which on the rack cuts nothing off the involute: the undercut line."""
         return ToothNumbers(teeth, self.pressure_angle, 0.0).least_shift(self._rack)  # type: ignore[arg-type]

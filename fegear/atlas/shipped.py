@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: h_fP and rho_fP of the basic racks of ISO 53 [modules].
 RACKS = {"A": (1.25, 0.38), "B": (1.25, 0.3), "C": (1.25, 0.25), "D": (1.4, 0.39)}
 #: Those whose atlas comes with fegear.
-SHIPPED = ("A",)
+SHIPPED = ("A", "C")
 #: Tooth numbers, profile shift (at the fewest teeth below the most), depth below the undercut line, tip height, bore.
 _FEWEST, _MOST = 12, 150
 _LOWEST, _HIGHEST, _AT_FEWEST, _AT_SPLIT = -0.3, 0.7, 0.45, 0.6
@@ -105,4 +105,11 @@ def fingerprint() -> str:
 
 def atlas_of(gear: Gear) -> Atlas | None:
     """The shipped atlas that holds a gear; None where none does."""
-    return next((atlas for rack in SHIPPED if (atlas := shipped_atlas(rack)).holds(gear)), None)
+    nearest = nearest_atlas(gear)
+    return nearest if nearest.holds(gear) else None
+
+
+def nearest_atlas(gear: Gear) -> Atlas:
+    """The shipped atlas of a gear's family, whether it holds the gear or not; the first one where none is."""
+    atlases = [shipped_atlas(rack) for rack in SHIPPED]
+    return next((atlas for atlas in atlases if atlas.family.has(gear)), atlases[0])

@@ -36,6 +36,8 @@ def test_it_states_its_errors_and_is_found_by_gear():
     assert atlas_of(_gear(31, 0.1)) is atlas
     assert atlas_of(_gear(14, 0.1)) is atlas  # undercut
     assert atlas_of(_gear(200, 0.0)) is None
+    default = Tooth(31, BasicRack(1.0, 1.25, 0.25), 0.1)
+    assert atlas_of(Gear(default, 3e-3, 1.5e-3 * default.root_radius)) is shipped_atlas("C")
     assert atlas_of(_gear(31, 0.1, plane="stress")) is None
     assert atlas.domains == tuple(domains_of(atlas.family))
     for rack in RACKS:

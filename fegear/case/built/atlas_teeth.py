@@ -73,10 +73,9 @@ def known_teeth(gear: Gear) -> AtlasGear:
     RangeError
         If it does not contain it.
     """
-    from fegear.atlas.shipped import SHIPPED, atlas_of, shipped_atlas
+    from fegear.atlas.shipped import nearest_atlas
 
-    atlas = atlas_of(gear)
-    return (atlas or shipped_atlas(SHIPPED[0])).gear(gear)
+    return nearest_atlas(gear).gear(gear)
 
 
 def check_atlas_gear(scene: Scene, name: str) -> None:
