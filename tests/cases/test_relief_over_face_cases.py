@@ -41,7 +41,7 @@ torques = ["25 N*m", "50 N*m"]
 width = "slices"
 
 [design]
-grind = ["parabolic", "linear"]
+grind = ["linear"]
 tolerances = {{ amount = "2 um", length = "0.2 mm" }}
 chart = {{ amounts = ["4 um", "12 um", "20 um"], lengths = [0.2, 0.5, 0.8] }}
 robustness = {{ spacing_errors = ["0 um", "3 um"], relief_errors = [-1e-9, 0.0, 0.3] }}
@@ -78,7 +78,8 @@ def ran(text, cache):
 
 @pytest.fixture(scope="module")
 def results(cache):
-    return ran(CASE_TEXT, cache)
+    """Without the chart, which searches once more."""
+    return ran(CASE_TEXT.replace('"relief-chart", ', ""), cache)
 
 
 def outcome(results, stage):
@@ -96,21 +97,27 @@ def test_the_best_relief_leaves_less_than_none_and_than_the_chart(results):
     worst = {label: (one.peak_to_peak * loads.max() / loads).max() for label, one in design.left.items()}
     assert worst["linear tip relief"] < 0.4 * worst["no relief"]
     assert worst["linear tip relief"] < worst["present relief"]
-    for shape in ("linear", "parabolic"):
+    for shape in ("linear",):
         assert worst[f"{shape} tip relief"] <= worst[f"{shape} tip relief for one load"] * (1.0 + 1e-6)
         assert design.left[f"{shape} tip relief for one load"].peak_to_peak[-1] <= (
             1.02 * design.left[f"{shape} tip relief"].peak_to_peak[-1]
         )
         assert (design.most[shape] >= 0.98 * design.left[f"{shape} tip relief"].peak_to_peak).all()
         assert design.found[shape].value == pytest.approx(worst[f"{shape} tip relief"], rel=0.1)
-    chart = outcome(results, "relief-chart-over-face").data
-    assert design.found["linear"].value < chart.chart.worst("peak_to_peak").min()
+
+
+@pytest.mark.long
+def test_the_optimum_is_that_of_relief_and_below_the_chart(results, cache):
+    design = outcome(results, "relief-over-face").data.design
+    chart = outcome(ran(CASE_TEXT, cache), "relief-chart-over-face").data
+    assert chart.best.value == pytest.approx(design.found["linear"].value, rel=1e-9)
+    assert chart.best.value < chart.chart.worst("peak_to_peak").min()
     assert chart.off < 0.05
 
 
 def test_the_designed_relief_typed_into_the_case_gives_what_is_stated(results, cache, tmp_path):
     tables = {table.name: table for one in results.outcomes.values() for table in one.tables}
-    for shape in ("linear", "parabolic"):
+    for shape in ("linear",):
         path = tmp_path / "case.toml"
         made = applied_design(CASE_TEXT, path, scene_of(CASE_TEXT).document, tables, "results", shape)
         text = made.text.replace('["relief", "relief-chart", "robustness"]', '["transmission-error"]')
@@ -127,7 +134,7 @@ def test_the_designed_relief_typed_into_the_case_gives_what_is_stated(results, c
 def test_deviations_of_nothing_change_nothing_and_deviations_leave_more(results):
     robust = outcome(results, "robustness-over-face").data.candidates
     design = outcome(results, "relief-over-face").data.design
-    assert set(robust) == {"linear tip relief", "parabolic tip relief", "relief of the case"}
+    assert set(robust) == {"linear tip relief", "relief of the case"}
     for label, one in robust.items():
         assert one.load_factors.tolist() == [0.5, 1.0]
         assert one.values[1, 0, 1] == one.nominal

@@ -13,9 +13,9 @@ from fegear.contact.fourier import Panels
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.families import FamilyBest, best_of_family, settled
-from fegear.design.flanks.grid import ReliefGrid
-from fegear.design.flanks.tip_bench import Read, TipTrials, tip_reader, tip_trials, without_tips
+from fegear.design.flanks.families import FamilyBest
+from fegear.design.flanks.tip_bench import Read, tip_reader, tip_trials, without_tips
+from fegear.design.flanks.tip_search import best_tips
 from fegear.design.flanks.trials import FlankTrials
 from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
@@ -25,10 +25,6 @@ from fegear.geometry.relief import EndRelief, Shape
 
 #: Exponents of the shapes.
 POWERS: Mapping[Shape, float] = {"linear": 1.0, "parabolic": 2.0}
-#: Amounts that are tried, over the mean transmission error, and lengths over the path of contact.
-_AMOUNTS, _LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), (0.1, 0.25, 0.45, 0.7, 1.0)
-#: What a tip may lose at most [modules].
-_DEEPEST = 0.1
 
 
 @dataclass(frozen=True)
@@ -92,36 +88,6 @@ class TipDesign(ReadOnlyArrays):
     for_one_load: Mapping[Shape, FamilyBest]
     left: Mapping[str, Read]
     most: Mapping[Shape, Array]
-
-
-def tip_grid(pair: GearPair, mean: float) -> ReliefGrid:
-    """Amounts and lengths that are tried; what is found lies between their ends.
-
-    Parameters
-    ----------
-    pair : GearPair
-    mean : float
-        Transmission error at the largest load [m].
-    """
-    deepest = _DEEPEST * pair.driver.module
-    amounts = tuple(min(mean * share, deepest) for share in _AMOUNTS)
-    return ReliefGrid(amounts, tuple(pair.path_length * share for share in _LENGTHS), (), (), (), (), ())
-
-
-def best_tips(trials: TipTrials) -> FamilyBest:
-    """The tip reliefs of both gears that leave the least, of the shape of the trials.
-
-    Parameters
-    ----------
-    trials : TipTrials
-        Under the loads that count.
-    """
-    few = trials.few
-    plain = few.of_gap(np.zeros(few.known.lines.x.shape)).found[0]
-    grid = tip_grid(few.pair, float(plain.mean_transmission_error[-1]))
-    force = plain.contact.force[:, :, -1]
-    best = best_of_family(few, "profile", grid, force)
-    return settled(trials.more, best, grid, ())
 
 
 def end_reliefs(numbers: Array, pair: GearPair, tip_power: float) -> tuple[EndRelief, EndRelief]:

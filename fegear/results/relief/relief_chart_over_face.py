@@ -95,7 +95,8 @@ class ChartOverFace(ReliefChartData):
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ChartOverFace:
     from fegear.design.flanks.tip_bench import tip_trials, without_tips
     from fegear.design.flanks.tip_chart import chart_error, quick_at_loads, tip_chart
-    from fegear.design.flanks.tip_design import POWERS, best_tips
+    from fegear.design.flanks.tip_design import POWERS
+    from fegear.design.flanks.tip_search import best_tips
     from fegear.design.load_range import LoadRange
 
     found, asked = loaded_flanks(upstream, inputs.name), inputs.part
