@@ -58,7 +58,7 @@ def test_approach_is_the_integral_of_johnsons_stresses(plane, depth_ratio):
     d = depth_ratio * a
     edges = [x for x in (0.0, a, 10 * a, 100 * a) if x < d] + [d]
     expected = sum(quad(strain, lo, hi, epsrel=1e-12)[0] for lo, hi in itertools.pairwise(edges))
-    assert float(hertz.approach(w, a, d, E, NU, plane)) == pytest.approx(expected, rel=1e-9)
+    assert float(hertz.approach(w, a, d, E, NU, plane)) == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
 def test_deep_approach_is_webers_logarithm():
@@ -100,11 +100,11 @@ def test_nearly_conforming_flanks_keep_their_digits(radius, bits):
     concave = -(radius + radius * 2.0**-bits)
     gap = -(radius + concave)
     expected = gap / radius / -concave
-    assert float(hertz.relative_curvature(radius, concave)) == pytest.approx(expected, rel=1e-14)
+    assert float(hertz.relative_curvature(radius, concave)) == pytest.approx(expected, rel=1e-14, abs=0.0)
 
 
 def test_curvature_of_extreme_radii_neither_overflows_nor_vanishes():
-    assert float(hertz.relative_curvature(1e200, 1e200)) == pytest.approx(2e-200, rel=1e-14)
+    assert float(hertz.relative_curvature(1e200, 1e200)) == pytest.approx(2e-200, rel=1e-14, abs=0.0)
     assert float(hertz.relative_curvature(1e-200, 1e-200)) == pytest.approx(2e200, rel=1e-14)
 
 

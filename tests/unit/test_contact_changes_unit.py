@@ -24,7 +24,7 @@ def crossing(start, slope, h, sign, moment):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_what_is_clear_of_zero_changes_in_its_own_time_however_soon(sign):
     for start in (1e-3, 6.6e-6, 1e-9, 1e-15):
-        assert crossing(sign * start, -sign * 1.9, 4.0, sign, 4e-6) == pytest.approx(start / 1.9, rel=1e-12)
+        assert crossing(sign * start, -sign * 1.9, 4.0, sign, 4e-6) == pytest.approx(start / 1.9, rel=1e-12, abs=0.0)
     assert crossing(sign * 6.6e-6, -sign * 1.9, 1e-6, sign, 4e-6) == -1.0  # not on this step
 
 

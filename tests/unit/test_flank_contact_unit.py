@@ -280,7 +280,7 @@ def test_active_sets_against_all_subsets(seed):
                 best = force, solution[-1]
         assert best is not None
         np.testing.assert_allclose(found.force[0, :, i], best[0], atol=1e-8 * total)
-        assert found.approach[0, i] == pytest.approx(best[1], rel=1e-8)
+        assert found.approach[0, i] == pytest.approx(best[1], rel=1e-8, abs=0.0)
 
 
 @pytest.mark.parametrize("seed", range(4))

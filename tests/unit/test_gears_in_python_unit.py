@@ -43,7 +43,7 @@ def same(found, case, changes, results):
     assert found.values.keys() == other.values.keys()
     for one, two in zip(found.values, other.values, strict=True):
         assert (one.unit, one.si_error) == (two.unit, two.si_error)
-        assert one.si == pytest.approx(two.si, rel=1e-12)
+        assert one.si == pytest.approx(two.si, rel=1e-12, abs=0.0)
     for one, two in zip(found.tables, other.tables, strict=True):
         for a, b in zip(one.columns, two.columns, strict=True):
             assert a.head == b.head

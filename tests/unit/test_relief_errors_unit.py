@@ -25,7 +25,7 @@ def test_compliances_without_an_error_still_leave_the_last_digits():
     for relief in design.reliefs.values():
         np.testing.assert_allclose(relief.error, 1e-9 * relief.table.deflection.max(), rtol=1e-12)
     assert design.left >= 1e-9 * design.te["designed"].mean
-    assert design.left == pytest.approx(1e-9 * design.te["designed"].mean, rel=1e-3)
+    assert design.left == pytest.approx(1e-9 * design.te["designed"].mean, rel=1e-3, abs=0.0)
     without = design_relief(e, [], task)
     assert without.left is None
     assert all(relief.error is None for relief in without.reliefs.values())

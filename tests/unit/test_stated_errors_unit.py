@@ -20,28 +20,28 @@ def value(name, si, error, unit="um"):
 
 def test_an_error_below_the_digits_of_a_value_is_raised():
     (found,) = Outcome(values=(value("efficiency", 0.99, 2.1e-18, ""),)).values
-    assert found.si_error == pytest.approx(ROUND_OFF * 0.99)
+    assert found.si_error == pytest.approx(ROUND_OFF * 0.99, rel=1e-6, abs=0.0)
 
 
 def test_a_difference_of_larger_numbers_has_their_digits():
     """Peak to peak of a mean fifty times as large: what is subtracted counts, not what is left."""
     mean, swing = Outcome(values=(value("te_mean", 20e-6, 1e-9), value("te_peak_to_peak", 0.4e-6, 1e-20))).values
-    assert swing.si_error == pytest.approx(ROUND_OFF * 20e-6)
+    assert swing.si_error == pytest.approx(ROUND_OFF * 20e-6, rel=1e-6, abs=0.0)
     assert mean.si_error == 1e-9
 
 
 def test_what_is_exact_unknown_or_larger_stays():
     given = (value("a", 1.0, 0.0), value("b", 1.0, None), value("c", 1.0, 1e-3), value("d", np.nan, 1e-30))
     assert Outcome(values=given).values[:3] == given[:3]
-    assert Outcome(values=given).values[3].si_error == pytest.approx(ROUND_OFF)
+    assert Outcome(values=given).values[3].si_error == pytest.approx(ROUND_OFF, rel=1e-6, abs=0.0)
 
 
 def test_units_are_not_mixed_and_pure_numbers_stand_alone():
     found = Outcome(
         values=(value("n", 1e6, None, ""), value("share", 0.5, 1e-12, ""), value("x", 1e3, 1e-20, "N"))
     ).values
-    assert found[1].si_error == pytest.approx(0.5 * ROUND_OFF)
-    assert found[2].si_error == pytest.approx(1e3 * ROUND_OFF)
+    assert found[1].si_error == pytest.approx(0.5 * ROUND_OFF, rel=1e-6, abs=0.0)
+    assert found[2].si_error == pytest.approx(1e3 * ROUND_OFF, rel=1e-6, abs=0.0)
 
 
 def test_a_value_that_is_zero_has_no_share_of_itself():

@@ -164,7 +164,7 @@ def test_a_mode_is_silent_by_its_share_of_the_largest_force_of_the_teeth_s_own_e
         cycle_extremes.cycle_extremes(modes, np.array([10.0, 40.0]), forces)
     ((loud, silent),) = asked
     assert loud == pytest.approx([1.5e8 / 10.0, 4e8 / 40.0])
-    assert silent == pytest.approx(cycle_extremes._SILENT * 2e8 * 4e-6)
+    assert silent == pytest.approx(cycle_extremes._SILENT * 2e8 * 4e-6, rel=1e-6, abs=0.0)
 
 
 def test_of_parts_all_but_as_high_as_each_other_the_highest_is_found():

@@ -174,7 +174,7 @@ def test_every_number_is_in_the_unit_beside_it(found, folder):
         assert (summary[value.name]["value"], summary[value.name]["unit"]) == (value.value, value.unit)
         assert summary[value.name]["error"] == value.error
         assert value.value == pytest.approx(value.si * (from_si(value.unit) if value.unit else 1.0), rel=1e-15)
-        assert value.quantity.to_base_units().magnitude == pytest.approx(value.si, rel=1e-12)
+        assert value.quantity.to_base_units().magnitude == pytest.approx(value.si, rel=1e-12, abs=0.0)
     for table in found.tables:
         head, *rows = (folder / "tables" / f"{table.name}.csv").read_text("utf-8").splitlines()
         assert head.split(",")[0] == table.columns[0].head
