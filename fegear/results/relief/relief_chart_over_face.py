@@ -132,7 +132,7 @@ def _chart_forecast(scene: Scene, name: str) -> Forecast:
     amounts = len((chart and (chart.amounts or chart.amounts_over_delta)) or ()) or 16
     lengths = len((chart and chart.lengths) or ()) or 26
     loads = len((chart and chart.loads) or ()) or forecasts.loads(scene, name)
-    base = over_face_forecast(scene, name, 0.5, loads).seconds or 0.0
+    base = over_face_forecast(scene, name, 1.0, loads).seconds or 0.0
     panels = pair_spec(scene, name, over_face=True).panel_count
     seconds = base + _QUICK * (amounts * lengths + 2500) * loads * (panels / 12.0)
     return Forecast({"candidates": amounts * lengths, "loads": loads}, seconds)

@@ -32,7 +32,7 @@ _PLANE = (
     "roll_angles",
 )  # fmt: skip
 #: Seconds of a contact line on both gears, and of what one shape takes under one load at 24 stations.
-_LINE, _SHAPE = 0.02, 1.3
+_LINE, _SHAPE = 0.02, 7.0
 #: Contact lines of reading and of the search, over those of one base pitch.
 _READ, _SEARCHED = 192.0, 48.0
 
@@ -108,7 +108,8 @@ def over_face_forecast(scene: Scene, name: str, shapes: float, loads: float) -> 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     over = design_range(scene, name)
-    return over_face_forecast(scene, name, len(design_part(scene).grind), 1 if over is None else len(over.loads))
+    loads = 1 if over is None else len(over.loads) + 1  # and for the design load only
+    return over_face_forecast(scene, name, len(design_part(scene).grind), loads)
 
 
 def relief_data(upstream: Upstream) -> TipReliefData:
