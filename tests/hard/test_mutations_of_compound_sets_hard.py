@@ -97,13 +97,15 @@ def judge(number):
     return ""
 
 
+@pytest.mark.dear
 def test_sets_that_are_not_mutated_run():
     for own in SETS:
         assert run(case(own))
 
 
+@pytest.mark.dear
 def test_a_sample_of_mutated_sets_is_refused_in_a_sentence_or_answered():
-    assert failures(judge, range(0, 500, 20)) == ""
+    assert failures(judge, range(0, 500, 25)) == ""
 
 
 @pytest.mark.long
