@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index, Mask
+    from fegear.base.arrays import Array, Index
 
-#: Costs that are compared at once with all of the front.
-_BLOCK = 2000
+#: Costs of one part, and the share that must be left of all for another round of parts not to pay.
+_BLOCK, _HELPS = 4000, 0.7
 #: Significant digits in which costs differ.
 _DIGITS = 9
 
@@ -26,30 +26,32 @@ def rounded_costs(costs: Array, digits: int = _DIGITS) -> Array:
     return np.where(np.isfinite(costs), np.round(costs * size) / size, costs)
 
 
-def _dominated(costs: Array, by: Array) -> Mask:
-    """Which costs, shape (N, k), are dominated by any of `by`, shape (M, k)."""
-    found = np.zeros(len(costs), dtype=bool)
-    for one in by:
-        found |= (costs >= one).all(axis=1) & (costs > one).any(axis=1)
-    return found
+def _front_of_few(costs: Array) -> Index:
+    """Places of the costs that none dominates, each compared with those that live."""
+    alive = np.lexsort(costs.T[::-1])  # what dominates a cost stands before it
+    front: list[int] = []
+    while alive.size:
+        one, rest = costs[alive[0]], costs[alive[1:]]
+        front.append(int(alive[0]))
+        alive = alive[1:][~((rest >= one).all(axis=1) & (rest > one).any(axis=1))]
+    return np.array(front, dtype=np.int64)
 
 
 def pareto_front(costs: Array) -> Index:
-    """Places of the costs, shape (N, k), that none dominates, ascending."""
+    """Places of the costs, shape (N, k), that none dominates, ascending.
+
+    The front of many is that of the fronts of their parts: parts are thinned until that helps no more.
+    """
     costs = rounded_costs(np.asarray(costs, dtype=float))
-    order = np.lexsort(costs.T[::-1])  # what dominates a cost stands before it
-    front: list[int] = []
-    for first in range(0, order.size, _BLOCK):
-        block = order[first : first + _BLOCK]
-        if front:
-            block = block[~_dominated(costs[block], costs[front])]
-        alive = list(block)
-        while alive:
-            one = alive.pop(0)
-            front.append(int(one))
-            rest = np.array(alive, dtype=int)
-            alive = list(rest[~_dominated(costs[rest], costs[[one]])]) if rest.size else []
-    return np.array(sorted(front), dtype=np.int64)
+    places = np.arange(len(costs))
+    while places.size > _BLOCK:
+        parts = [places[first : first + _BLOCK] for first in range(0, places.size, _BLOCK)]
+        left = np.concatenate([np.sort(part[_front_of_few(costs[part])]) for part in parts])
+        if left.size > _HELPS * places.size:
+            places = left
+            break
+        places = left
+    return np.sort(places[_front_of_few(costs[places])])
 
 
 def best_by_fronts(costs: Array, count: int) -> Index:
