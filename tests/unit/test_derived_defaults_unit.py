@@ -90,6 +90,7 @@ RATING = shipped("rating_spur", "rating")
 ROUGH = joined(RATING, {"gear.pinion.roughness": {"flank": "0.8 um", "root": "3 um"}})
 SET = shipped("planetary_set", "planet-set", "planet-modes")
 COMPOUND = shipped("ravigneaux_set", "compound-set")
+GROWTH = joined(shipped("cracked_tooth", "crack-path"), {"crack_growth": {"steps": 2}})
 SURFACE = joined(
     shipped("surface_and_loss", "flank-surface"), {"pair.I.compliance": {"source": "weber-banaschek"}, "effects": {}}
 )
@@ -100,6 +101,7 @@ ASYMMETRIC = joined(PAIR, {"results": ["geometry"], "gear.a.coast_pressure_angle
 
 #: Key, case, where it is written, and what is written: a value, or how it follows from the case as it was built.
 ROWS = {
+    "CrackGrowthPart.load_factors": (GROWTH, "crack_growth.load_factors", [1.0]),
     "CrowningPart.start_radius": (RELIEVED, "gear.a.relief.crowning.start_radius", lambda s: metres(ends(s)[0])),
     "CrowningPart.end_radius": (RELIEVED, "gear.a.relief.crowning.end_radius", lambda s: metres(ends(s)[1])),
     "RootReliefPart.end_radius": (RELIEVED, "gear.a.relief.root.end_radius", lambda s: metres(ends(s)[0])),
@@ -288,7 +290,7 @@ NOT_WRITTEN = {
         "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
     "CompoundPlanetPart.body", "CompoundShaftPart.body",
-    "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares", "CrackGrowthPart.load_factors",
+    "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares",
     "CrackGrowthPart.step", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
     "DesignPart.peak",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
