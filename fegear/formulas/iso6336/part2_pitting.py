@@ -205,7 +205,7 @@ def life_knots(strength: Strength) -> Knots:
     return Knots((1e5, 5e7, LONG), (1.6, 1.0, end))
 
 
-def _between(contact: float, soft: float, hard: float) -> float:
+def between(contact: float, soft: float, hard: float) -> float:
     """Constant of sigma_Hlim [Pa]: `soft` to 850 MPa, `hard` from 1200 MPa, straight in between."""
     part = min(max((contact - _SOFT) / (_HARD - _SOFT), 0.0), 1.0)
     return soft + part * (hard - soft)
@@ -213,20 +213,20 @@ def _between(contact: float, soft: float, hard: float) -> float:
 
 def lubricant_factor(contact: float, viscosity: float) -> float:
     """Z_L of the softer material's sigma_Hlim [Pa] and nu_40 [m^2/s] (ISO 6336-2, clause 12; Eq. 37 of 2006)."""
-    c = _between(contact, 0.83, 0.91)
+    c = between(contact, 0.83, 0.91)
     return c + 4.0 * (1.0 - c) / (1.2 + 134e-6 / viscosity) ** 2
 
 
 def velocity_factor(contact: float, velocity: float) -> float:
     """Z_v of the softer material's sigma_Hlim [Pa] and v at the pitch line [m/s] (ISO 6336-2, clause 12; Eq. 42)."""
-    c = _between(contact, 0.85, 0.93)
+    c = between(contact, 0.85, 0.93)
     return c + 2.0 * (1.0 - c) / math.sqrt(0.8 + 32.0 / velocity)
 
 
 def roughness_factor(contact: float, roughness: Both, curvature_radius: float) -> float:
     """Z_R = (3 um / Rz10)^C_ZR, Rz10 the mean Rz of a flank with rho_red = 10 mm (ISO 6336-2, clause 12; Eq. 48)."""
     relative = 0.5 * sum(roughness) * (10e-3 / curvature_radius) ** (1.0 / 3.0)
-    return float((3e-6 / relative) ** _between(contact, 0.15, 0.08))
+    return float((3e-6 / relative) ** between(contact, 0.15, 0.08))
 
 
 def equivalent_roughness(roughness: Both, curvature_radius: float, viscosity: float, velocity: float) -> float:

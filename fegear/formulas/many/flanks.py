@@ -23,11 +23,6 @@ if TYPE_CHECKING:
     from fegear.formulas.many.shared import ManyConditions
 
 
-def _between(contact: float, soft: float, hard: float) -> float:
-    """Constant of sigma_Hlim [Pa]: `soft` to 850 MPa, `hard` from 1200 MPa, straight in between."""
-    return soft + min(max((contact - 850e6) / 350e6, 0.0), 1.0) * (hard - soft)
-
-
 def tip_relief_factor(asked: ManyConditions) -> float:
     """f_ZCa of helical pairs."""
     if asked.edition == 2006:
@@ -105,11 +100,11 @@ def flank_lines(asked: ManyConditions) -> tuple[ManyKnots, ManyKnots]:
     velocity = pairs.pitch_line_velocity(duty.speed)
     softer = min(s.contact for s in strength)
     z_l = one_pair.lubricant_factor(softer, duty.viscosity)
-    c_v = _between(softer, 0.85, 0.93)
+    c_v = one_pair.between(softer, 0.85, 0.93)
     z_v = c_v + 2.0 * (1.0 - c_v) / np.sqrt(0.8 + 32.0 / velocity)
     mean = 0.5 * sum(asked.quality.flank_roughness)
     relative = mean * (10e-3 / pairs.relative_curvature_radius) ** (1.0 / 3.0)
-    z_r = (3e-6 / relative) ** _between(softer, 0.15, 0.08)
+    z_r = (3e-6 / relative) ** one_pair.between(softer, 0.15, 0.08)
     z_w, z_w_static = _work_hardening(asked, velocity)
     lines = []
     for i, material in enumerate(strength):
