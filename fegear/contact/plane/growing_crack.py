@@ -103,7 +103,7 @@ def growing_crack(
     """
     m, radius, force = gear.module, loads[0] / gear.module, loads[1]
     found = grow(
-        gear.tooth, gear.bore_radius / m, gear.material.poisson_ratio, gear.plane_assumption, crack,
+        gear.symmetric_tooth, gear.bore_radius / m, gear.material.poisson_ratio, gear.plane_assumption, crack,
         (radius, force), step=step / m, steps=steps, support=gear.support_in_modules,
     )  # fmt: skip
     length, corners = found.length * m, found.path[:, -found.length.size :]
