@@ -61,7 +61,7 @@ def sized(asked: dict, *, cache: SolutionCache | None = None, executor: Executor
 
 def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
     """All variants one by one, through the case of each: how many there are, and the costs of those that live."""
-    limits, enumerated, living = SizingLimits(), 0, {}
+    limits, enumerated, feasible = SizingLimits(), 0, {}
     alpha = math.radians(20.0)
     widths = [asked["face_width"]] if "face_width" in asked else asked["width_ratios"]
     fixed = isinstance(asked["centre_distance"], str)
@@ -99,8 +99,8 @@ def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
                         b = math.ceil(width * m * z_1 / math.cos(beta) - 1e-6)
                     costs = one_by_one(asked, limits, (z_1, z_2), (x_1, total_here - x_1), m, beta, a, b)
                     if costs is not None:
-                        living[z_1, z_2, m, round(math.degrees(beta)), x_1, total, b] = costs
-    return enumerated, living
+                        feasible[z_1, z_2, m, round(math.degrees(beta)), x_1, total, b] = costs
+    return enumerated, feasible
 
 
 def one_by_one(asked, limits, z, x, m, beta, a, b) -> tuple[float, ...] | None:
@@ -172,15 +172,15 @@ def front_by_loops(costs: dict[tuple, tuple[float, ...]]) -> set[tuple]:
 
 @pytest.mark.parametrize("asked", [FIXED, pytest.param(FREE, marks=pytest.mark.dear)], ids=["fixed", "free"])
 def test_plain_loops_over_single_pairs_find_the_same_variants_and_the_same_front(asked):
-    enumerated, living = by_plain_loops(asked)
+    enumerated, feasible = by_plain_loops(asked)
     results, tables = sized(asked)
     values = {value.name: value.si for value in results.values}
     assert values["sizing.variants"] == enumerated
-    assert values["sizing.variants_living"] == len(living)
-    assert sum(tables["excluded_variants"]["variants"]) + len(living) == enumerated
-    front, table = front_by_loops(living), tables["sizing"]
+    assert values["sizing.variants_feasible"] == len(feasible)
+    assert sum(tables["excluded_variants"]["variants"]) + len(feasible) == enumerated
+    front, table = front_by_loops(feasible), tables["sizing"]
     assert values["sizing.variants_on_front"] == len(front)
-    assert 3 < len(front) < len(living)
+    assert 3 < len(front) < len(feasible)
     fixed = isinstance(asked["centre_distance"], str)
     found = {
         (

@@ -157,10 +157,10 @@ class SizingData:
 
     Parameters
     ----------
-    count, living : int
+    count, feasible : int
         Variants enumerated, and those that keep all limits.
     on_front : int
-        Of the living, on the front by formulas.
+        Of the feasible, on the front by formulas.
     reasons : tuple of Excluded
     chosen : tuple of SizedVariant
         Compared by all criteria, the front first, by its order.
@@ -170,7 +170,7 @@ class SizingData:
     """
 
     count: int = shown("", "variants enumerated")
-    living: int = shown("", "variants that keep all limits", name="variants_living")
+    feasible: int = shown("", "variants that keep all limits", name="variants_feasible")
     on_front: int = shown("", "variants on the Pareto front by formulas", name="variants_on_front")
     reasons: tuple[Excluded, ...] = ()
     chosen: tuple[SizedVariant, ...] = ()

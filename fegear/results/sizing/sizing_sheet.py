@@ -101,7 +101,7 @@ def _answers(seen: Seen) -> Iterator[str]:
     best = data.best
     yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}."
     yield (
-        f"{data.living:,} variants keep all limits; {data.on_front:,} are on the Pareto front by formulas, "
+        f"{data.feasible:,} variants keep all limits; {data.on_front:,} are on the Pareto front by formulas, "
         f"{len(data.front):,} of {len(data.chosen):,} compared on that by all criteria."
     )
     if data.present is not None:
@@ -119,8 +119,7 @@ def _present(seen: Seen) -> Iterator[str]:
         yield f"Variant {better.number} is better by all criteria: {better.words}; {_said_of(better)}."
         return
     yield (
-        "No variant compared is better than the present design by all criteria "
-        f"({placed.dominating:,} are by formulas)."
+        f"No variant compared is better than the present design by all criteria (by formulas: {placed.dominating:,})."
     )
 
 
@@ -147,11 +146,11 @@ def _failed(seen: Seen) -> tuple[Note, ...]:
 def _unseen(seen: Seen) -> tuple[Note, ...]:
     """Variants of the front by formulas that finite elements did not look at."""
     data: SizingData = seen.data
-    if not _has_te(seen) or len(data.chosen) >= data.living:
+    if not _has_te(seen) or len(data.chosen) >= data.feasible:
         return ()
     return (
         exceeding(
-            f"Transmission error known for {len(data.chosen):,} of {data.living:,} variants, evenly along the Pareto "
+            f"Transmission error known for {len(data.chosen):,} of {data.feasible:,} variants, evenly along the Pareto "
             "front by formulas; increase sizing.screened for more."
         ),
     )
@@ -186,7 +185,7 @@ SIZING_SHEET = Sheet(
     ),
     values=(
         Number("count", exact, owner="sizing", name="variants"),
-        Number("living", exact, owner="sizing"),
+        Number("feasible", exact, owner="sizing"),
         Number("on_front", exact, owner="sizing"),
         Number("te_verified", lambda seen: seen.data.best.te_verified_error, "best", owner="sizing"),
         Number("mass", exact, "best", owner="sizing"),
