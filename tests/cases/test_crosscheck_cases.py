@@ -156,8 +156,8 @@ def test_unloaded_pairs_say_which_load_they_use():
 
 
 def test_c_prime_outside_the_stated_range_is_remarked_and_where_it_has_no_value_the_reason_is():
-    def with_mate(shift):
-        mate = "teeth=40, diametral_pitch='8 / inch', rack={addendum=1.0, dedendum=1.25, tip_radius=0.25}"
+    def with_mate(shift, addendum=1.0):
+        mate = f"teeth=40, diametral_pitch='8 / inch', rack={{addendum={addendum}, dedendum=1.25, tip_radius=0.25}}"
         return run(
             "cornell_test_gear",
             "stiffness={gear='test', positions=2}",
@@ -169,8 +169,11 @@ def test_c_prime_outside_the_stated_range_is_remarked_and_where_it_has_no_value_
     assert values["I.single_stiffness_iso"] > 0.0
     assert any("x_1 = 0 is below x_2 = 0.3" in remark for remark in results.remarks)
     _, values, results = with_mate(-0.6)
+    assert values["I.single_stiffness_iso"] > 0.0
+    assert any("x_1 + x_2 = -0.6 is outside -0.5 to 2" in remark for remark in results.remarks)
+    _, values, results = with_mate(0.0, addendum=0.1)
     assert "I.single_stiffness_iso" not in values
-    assert any("ISO 6336-1 gives no c'" in remark and "x_1 + x_2" in remark for remark in results.remarks)
+    assert any("ISO 6336-1 gives no c': contact ratio = 0.9162" in remark for remark in results.remarks)
 
 
 # ---- ISO 6336's root stress of pairs --------------------------------------------------------------------------------

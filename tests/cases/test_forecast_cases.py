@@ -90,7 +90,8 @@ def test_effects_that_nothing_uses_are_reported_by_plan_and_run():
     scene, plan = planned("lin_tip_relief", "effects.friction=true")
     assert plan.idle_effects == ("friction",)
     lines = [line for line in plan_lines(scene, plan) if line.startswith("Note: ")]
-    assert 'request "tooth-friction" or "dynamic-factor" or "design-chart", or switch the effect off' in lines[0]
+    asked = 'request "tooth-friction" or "dynamic-factor" or "vibration-revolution" or "design-chart"'
+    assert f"{asked}, or switch the effect off" in lines[0]
 
 
 @pytest.mark.parametrize(

@@ -205,7 +205,7 @@ def test_folders_of_work_are_held_by_one_at_a_time(tmp_path):
 
 def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
     case = tmp_path / "case.toml"
-    case.write_text('results = ["stiffness"]\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')
+    case.write_text('results = ["stiffness"]\naccuracy.tolerance = 1e-6\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')
     run = subprocess.Popen(
         [sys.executable, "-m", "fegear", "run", str(case), "--out", str(tmp_path / "out")],
         env=ENVIRONMENT, stderr=subprocess.PIPE, text=True,

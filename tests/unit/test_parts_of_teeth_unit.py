@@ -166,11 +166,11 @@ def test_a_plane_section_s_compliance_is_that_of_loads_that_are_even_over_its_wi
 def test_an_exchanged_engagement_takes_reliefs_and_spacing_along():
     one = SimpleNamespace(
         compliance=SimpleNamespace(reversed=lambda: "reversed"), driver_relief="r1", driven_relief="r2",
-        driver_spacing="s1", driven_spacing="s2", corner_contact=True,
+        driver_spacing="s1", driven_spacing="s2", corner_contact=True, driver_odd="o1", driven_odd="o2",
     )  # fmt: skip
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fegear.contact.plane.engagement.Engagement", lambda *given: given)
-        assert Engagement.reversed(one) == ("reversed", "r2", "r1", "s2", "s1", True)
+        assert Engagement.reversed(one) == ("reversed", "r2", "r1", "s2", "s1", True, "o2", "o1")
 
 
 @pytest.mark.parametrize("enough", [1.0, 2.0, 1e9])

@@ -20,7 +20,7 @@ TOOTH = Tooth(20, BasicRack(1.0, 1.25, 0.25))
 
 # ---- outlines in mesh ------------------------------------------------------------------------------------------------
 def engagement(member, spacing, removal=0.0):
-    gear = SimpleNamespace(tooth=TOOTH)
+    gear = SimpleNamespace(tooth=TOOTH, asymmetric=False)
     none = SimpleNamespace(removal=lambda roll: np.full(np.shape(roll), removal))
     other = SimpleNamespace(removal=lambda roll: np.full(np.shape(roll), 99.0))
     own = (none, other, np.array(spacing), np.array([7.0, 8.0, 9.0]))
