@@ -22,15 +22,16 @@ DOCS = ROOT / "docs"
 
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
-    "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export", "fem",
+    "cases-and-runs", "choose-a-tolerance", "commands", "compound-planetary-set", "corner-contact-warning", "cost",
+    "cracked-gear", "dynamic-factor", "export", "fem",
     "gear-with-its-width", "helical", "helical-misalignment", "design",
-    "load-over-the-face", "mesh-as-fmu", "mesh-in-adams",
+    "load-over-the-face", "measured-root-strain", "mesh-as-fmu", "mesh-in-adams",
     "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python", "python-formulas",
     "python-mechanics", "python-output", "python-planetary", "python-speeds", "python-wide-pair", "several-meshes",
     "relief-for-torques", "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table",
     "studies-and-output",
     "sweep-on-a-cluster",
-    "sweeps", "tutorial",
+    "shafts-and-bearings", "size-a-pair", "stability", "sweeps", "torque-ripple", "tutorial",
     "rate-a-pair", "tolerances", "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",
 }  # fmt: skip
 
