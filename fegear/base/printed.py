@@ -40,6 +40,12 @@ def percent(share: float, signed: bool = False, whole: bool = False) -> str:
     return f"{100.0 * share:{'+' if signed else ''}.{decimals}f} %"
 
 
+def percents(low: float, high: float) -> str:
+    """A range of shares in per cent, as `percent`: ``"41 % to 52 %"``; one value where both read the same."""
+    first, last = percent(low), percent(high)
+    return first if first == last else f"{first} to {last}"
+
+
 def plain(value: float) -> str:
     """A value without an error: six significant digits, whole numbers written out."""
     if math.isfinite(value) and value == round(value) and abs(value) < _WHOLE:

@@ -52,6 +52,11 @@ class CrackPart(Part):
         description="Angle between crack and tooth centre line: 0 runs into the gear body, 90 deg across the tooth. "
         "Default: 70 deg.",
     )
+    crack_faces: Literal["open", "closing"] = Field(
+        default="open",
+        description="Contact of the crack faces: open (none, exact where the load opens the crack) or closing "
+        "(frictionless contact, needed where the load presses the crack together). Default: open.",
+    )
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:

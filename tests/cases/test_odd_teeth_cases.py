@@ -103,7 +103,26 @@ def test_a_crack_that_its_load_presses_together_is_said():
         run('results=["odd-tooth-stiffness"]', crack % fillet) for fillet in (", fillet = 'compression'", "")
     )
     assert any("loads on tooth 3 press its crack together (K_I negative over 100 %" in said for said in shut.remarks)
+    assert any('set crack_faces = "closing"' in said for said in shut.remarks)
     assert not any("press its crack together" in said for said in usual.remarks)
+
+
+@pytest.mark.dear
+def test_faces_that_close_leave_a_tooth_nearly_ordinary():
+    """In the opposite fillet a few per cent are left; from that of the loaded flank the crack stays open."""
+    crack = "gear.pinion.odd_tooth=[{ tooth = 3, crack = { depth_ratio = 0.4, crack_faces = 'closing'%s } }]"
+    both = 'results=["odd-tooth-stiffness", "mesh-stiffness-revolution"]'
+    shut, usual = (run(both, crack % fillet) for fillet in (", fillet = 'compression'", ""))
+    plain = run(both, "gear.pinion.odd_tooth=[{ tooth = 3, crack = { depth_ratio = 0.4 } }]")
+    assert 0.02 < number(shut, "pinion.stiffness_loss_tooth_3") < 0.05
+    assert 0.0 < number(shut, "I.mesh_stiffness_loss") < 0.02
+    assert any("loads on tooth 3 close 100 % of its crack faces" in said for said in shut.remarks)
+    assert any("100 % of its crack faces are closed. Their contact is the same" in said for said in shut.remarks)
+    assert any('open its crack over the full length; crack_faces = "open"' in said for said in usual.remarks)
+    for name in ("pinion.stiffness_loss_tooth_3", "I.mesh_stiffness_loss", "I.te_residual_max"):
+        assert number(usual, name) == pytest.approx(number(plain, name), rel=1e-9)
+    chart = next(one for one in shut.figures if one.name == "odd_tooth_stiffness_pinion")
+    assert "closing crack faces" in chart.caption
 
 
 @pytest.mark.dear

@@ -20,7 +20,8 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.odd_gear import OddGearInfluence, solve_cracked_gear
-from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
+from fegear.fem.plane.odd.odd_influence import solve_odd_influence
+from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth

@@ -10,8 +10,9 @@ from fegear.base.errors import InputError
 from fegear.fem.plane.influence import SIDES, solve_influence
 from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
-from fegear.fem.plane.odd.odd_influence import OddTooth, solve_odd_influence
+from fegear.fem.plane.odd.odd_influence import solve_odd_influence
 from fegear.fem.plane.odd.stress_intensity import RINGS
+from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth

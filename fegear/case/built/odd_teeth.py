@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -160,7 +160,7 @@ def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:
 
     tooth, m = gear.symmetric_tooth, gear.module
     start = next((key for key in STARTS if getattr(part, key) is not None), "tangent_angle")
-    given, back = getattr(part, start), part.fillet == "compression"
+    given, back, closing = getattr(part, start), part.fillet == "compression", part.crack_faces == "closing"
     try:
         if start == "arc":
             mouth = given / m
@@ -169,10 +169,11 @@ def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:
         else:
             mouth = mouth_at_radius(tooth, given / m * (0.5 if start == "diameter" else 1.0))
         if part.path is not None:
-            return Crack(mouth, tuple((x / m, y / m) for x, y in part.path), back)
-        return straight_crack(
+            return Crack(mouth, tuple((x / m, y / m) for x, y in part.path), back, closing)
+        straight = straight_crack(
             tooth, mouth, part.angle, depth=(part.depth or 0.0) / m, share=part.depth_ratio or 0.0, back=back
         )
+        return replace(straight, closing=closing)
     except InputError as error:
         raise _as_given(error, part, start, m).under(prefix) from None
 

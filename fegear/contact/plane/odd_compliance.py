@@ -201,9 +201,19 @@ def odd_compliance(influence: OddGearInfluence) -> OddCompliance:
     ordinary, kept = finite_element_compliance(influence.ordinary), influence.tabulated
     if "odd" not in kept:
         there = (near for near in influence.touched if near not in influence.fine.missing)
-        own = {near: tabulated_own(influence.alone(near))[0] for near in there}
+        own = {near: _own(influence, near) for near in there}
         kept["odd"] = own, _series(influence, ordinary, own)
     return OddCompliance(influence, ordinary, *kept["odd"])
+
+
+def _own(influence: OddGearInfluence, near: int) -> Spline:
+    """c_ii of a tooth, faces of cracks that may close pressed on each other."""
+    curve = tabulated_own(influence.alone(near))[0]
+    if not influence.fine.closing:
+        return curve
+    low, high = influence.ends(near)
+    radius = np.clip(np.hypot(influence.gear.base_radius, curve.x), low, high)
+    return spline(curve.x, curve.y + influence.by_closing(near, radius))
 
 
 def _series(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.notes import exceeding
-from fegear.base.printed import percent
+from fegear.base.printed import percent, percents
 from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of, reshaped_gears
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
@@ -59,17 +59,29 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 def _closed(seen: Seen) -> Iterator[str]:
-    """Cracks that loads on their own tooth press together: their faces are taken as open."""
+    """Cracks that loads on their own tooth press together: whether open faces are exact, and what they are taken as."""
     found: OddGearInfluence = seen.data
-    for tooth, _ in seen.asked.cracks:
+    for tooth, crack in seen.asked.cracks:
         number = meshing_order(tooth, found.gear.teeth, seen.asked.member)
         low, high = found.ends(found.from_middle(number))
-        shut = found.stress_intensity(number, number, np.linspace(low, high, _PLACES)[1:-1])[0][0] < 0.0
+        radii = np.linspace(low, high, _PLACES)[1:-1]
+        who = f"Gear {seen.asked.name}: loads on tooth {tooth}"
+        if crack.closing:
+            share = found.closed_share(number, radii)
+            if share.any():
+                yield (
+                    f"{who} close {percents(float(share.min()), float(share.max()))} of its crack faces "
+                    "(frictionless contact). Stress intensity is that of open faces."
+                )
+            else:
+                yield f'{who} open its crack over the full length; crack_faces = "open" gives the same results.'
+            continue
+        shut = found.stress_intensity(number, number, radii)[0][0] < 0.0
         if shut.mean() > _MOSTLY:
             yield exceeding(
-                f"Gear {seen.asked.name}: loads on tooth {tooth} press its crack together (K_I negative over "
-                f"{percent(float(shut.mean()))} of the flank). Open faces are assumed: its deflection, and the "
-                "reduction of the mesh stiffness, are overestimated many times."
+                f"{who} press its crack together (K_I negative over {percent(float(shut.mean()))} of the flank). Open "
+                "faces are assumed: its deflection, and the reduction of the mesh stiffness, are overestimated many "
+                'times; set crack_faces = "closing".'
             )
 
 

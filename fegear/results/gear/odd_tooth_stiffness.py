@@ -93,6 +93,13 @@ class OddTeethData:
     influence: OddGearInfluence = field(repr=False)
 
     @property
+    def faces(self) -> str:
+        """Of its cracks, in words."""
+        fine = self.influence.fine
+        closing = {near in fine.closing for near, kind in fine.odd.items() if kind.cracked}
+        return "open and closing" if len(closing) > 1 else "closing" if True in closing else "open"
+
+    @property
     def largest(self) -> dict[str, LargestLoss]:
         """Of each cracked tooth."""
         found = {}
@@ -229,7 +236,7 @@ _SHEET = Sheet(
         Chart(
             "odd_tooth_stiffness_{name}", "Stiffness of the teeth of gear {name}",
             "Gear {name}: stiffness of single teeth over the load position, complete ring, and its loss compared with "
-            "an ordinary tooth. Numbers in meshing order; open crack faces.",
+            "an ordinary tooth. Numbers in meshing order; {d.faces} crack faces.",
             (
                 Over("roll_angle", (Line("stiffness", each=Family("teeth", "{one.label}")),), of=_first),
                 Over("roll_angle", (Line("stiffness_loss", each=Family("teeth", "{one.label}")),), of=_first),

@@ -14,10 +14,13 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
-from fegear.base.printed import percent
+from fegear.base.notes import neglecting
+from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
 from fegear.case.built.odd_teeth import odd_gears_of, odd_teeth_of
 from fegear.case.built.pair_checks import check_odd_teeth
+from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
+from fegear.contact.plane.odd_compliance import OddCompliance
 from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
 from fegear.contact.plane.revolution_orders import (
     AlongRevolution,
@@ -51,6 +54,8 @@ if TYPE_CHECKING:
 POSITIONS = 100
 #: Condition indicators, as values.
 INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor")
+#: Changes of deflections so small beside the transmission error are none.
+_EXACT = 1e-6
 #: Seconds of a base pitch.
 _PITCH = 0.4
 
@@ -107,6 +112,7 @@ class RevolutionData:
     orders: RevolutionOrders
     indicators: ConditionIndicators
     stress: tuple[StressByTooth, ...]
+    faces: tuple[FacesInMesh, ...] = ()
 
     @cached_property
     def along(self) -> AlongRevolution:
@@ -191,7 +197,19 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
         if loaded.spec.compliance == "fe" and loaded.spec.table is None
     )
     odd = [pair.gear(member).teeth for member, _ in asked.odd] or [pair.driver.teeth]
-    return RevolutionData(pair, over, revolution_orders(over), condition_indicators(over, odd), stress)
+    orders, indicators = revolution_orders(over), condition_indicators(over, odd)
+    return RevolutionData(pair, over, orders, indicators, stress, tuple(_faces(asked, loaded, over)))
+
+
+def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) -> Iterator[FacesInMesh]:
+    """Of each crack that may close."""
+    for member, teeth in asked.cracked:
+        source = loaded.engagement.compliance.source(member)
+        for order in teeth if isinstance(source, OddCompliance) else ():
+            known = source.influence
+            number = meshing_order(order, known.gear.teeth, member)
+            if known.from_middle(number) in known.fine.closing:
+                yield faces_in_mesh(loaded.engagement, over, member, known, number)
 
 
 def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
@@ -201,6 +219,25 @@ def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
     order, largest = order[seen], found.largest[seen]
     at = np.argsort(order)
     return StressByTooth(gear, order[at], largest[at], largest[at] / np.median(largest) - 1.0)
+
+
+def _closing(seen: Seen) -> Iterator[str]:
+    """How far the faces of cracks are closed, and what is left out of their contact."""
+    data: RevolutionData = seen.data
+    for one in data.faces:
+        if one.closed.any():
+            gear, off = seen.asked.gears[MEMBERS.index(one.member)], float(one.off.max())
+            text = (
+                f"Pair {seen.name}: while tooth {one.tooth} of gear {gear} carries load, "
+                f"{percents(float(one.closed.min()), float(one.closed.max()))} of its crack faces are closed."
+            )
+            if off < _EXACT * data.te_max:
+                yield f"{text} Their contact is the same under the loads of all teeth."
+            else:
+                yield neglecting(
+                    f"{text} The contact is that under the load on this tooth; loads on the other teeth would change "
+                    f"deflections by up to {off * 1e6:.2g} µm."
+                )
 
 
 def _answer(seen: Seen) -> Iterator[str]:
@@ -284,6 +321,7 @@ _SHEET = Sheet(
             "odd_teeth = true under [effects] for teeth that differ.",
             when=lambda seen: seen.data.found.solved == 1,
         ),
+        _closing,
     ),
     settings={"positions": lambda _seen: POSITIONS, "base_pitches_solved": "found.solved"},
 )  # fmt: skip

@@ -35,11 +35,14 @@ class Crack:
         Where it bends, and its tip last [modules], in the frame of its tooth.
     back : bool
         Whether it starts in the fillet of the flank that is not loaded.
+    closing : bool
+        Whether its faces may press on each other; open ones go through each other.
     """
 
     mouth: float
     corners: tuple[tuple[float, float], ...]
     back: bool = False
+    closing: bool = False
 
     def path(self, tooth: InvoluteTooth) -> Array:
         """Mouth, bends and tip, shape (2, n) [modules]."""

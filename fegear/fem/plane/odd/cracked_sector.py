@@ -59,6 +59,8 @@ class CrackedSector:
         Arc length of the mouth up its fillet [modules].
     back : bool
         Whether that is the fillet of the flank that is not loaded.
+    closing : bool
+        Whether its faces may press on each other.
     """
 
     mesh: SectorMesh
@@ -67,6 +69,7 @@ class CrackedSector:
     room: float
     mouth: float
     back: bool
+    closing: bool = False
 
 
 def cracked_sector(
@@ -117,7 +120,8 @@ def crack_in(
             scale *= _FINER
             continue
         way = path[:, -1] - path[:, -2]
-        return CrackedSector(mesh, path[:, -1], way / np.hypot(*way), room, crack.mouth, crack.back)
+        way = way / np.hypot(*way)
+        return CrackedSector(mesh, path[:, -1], way, room, crack.mouth, crack.back, crack.closing)
     raise FegearError(
         f"No valid mesh of the cracked tooth: it still {refused.rule}; change depth or angle of the crack a little."
     ) from refused

@@ -21,11 +21,13 @@ from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import GENERATED, SectorMesh
+from fegear.fem.plane.odd.crack_faces import CrackFaces
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
-from fegear.fem.plane.odd.odd_influence import OddInfluence, OddTooth, ToothKind, solve_odd_influence
+from fegear.fem.plane.odd.odd_influence import OddInfluence, solve_odd_influence
 from fegear.fem.plane.odd.odd_ring import OddRing
 from fegear.fem.plane.odd.other_outline import Missing, OtherTip
 from fegear.fem.plane.odd.other_sector import empty_sector, shorter_sector
+from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind
 from fegear.fem.plane.root_stress import CutFillet, FilletStrain
 from fegear.fem.plane.settings import LEVEL_RATIO
 from fegear.fem.plane.solution import shape_codec
@@ -46,7 +48,7 @@ if TYPE_CHECKING:
     Oddity = Crack | OtherTip | Missing
 
 #: What a solved ring with odd teeth consists of.
-_KINDS: tuple[type, ...] = (OddInfluence, ToothKind, OddRing, SectorMesh, LoadedFlank, FilletStrain)
+_KINDS: tuple[type, ...] = (OddInfluence, ToothKind, CrackFaces, OddRing, SectorMesh, LoadedFlank, FilletStrain)
 #: So many teeth on either side of the outermost odd ones are known by number at least.
 _BESIDE = 2
 #: Teeth on either side of the outermost odd ones that answer otherwise than ordinary ones. A crack half of the way
@@ -161,7 +163,45 @@ class OddGearInfluence:
         r, b = self._on_flank(near, radius), np.asarray(half_width, dtype=float) / self.gear.module
         if self.fine.lower is None:
             return np.full(np.broadcast_shapes(r.shape, b.shape), np.nan)
-        return self._estimate(near).self_error(r, b) / self._modulus
+        error = self._estimate(near).self_error(r, b)
+        if self.fine.closing:
+            finer, lower = (one.by_closing(near, r, self._patch) for one in (self.fine, self.fine.lower))
+            error = error + np.abs(finer - lower)
+        return error / self._modulus
+
+    def by_closing(self, near: int, radius: ArrayLike) -> Array:
+        """What the faces of cracks change of c_ii(p, p) by pressing on each other, shape (P,) [m^2/N].
+
+        By the tooth's number from the middle one.
+        """
+        return self.fine.by_closing(near, self._on_flank(near, radius), self._patch) / self._modulus
+
+    def closed_share(self, i: int, radius: ArrayLike) -> Array:
+        """Share of the nodes of a crack's faces that press on each other under a load on its tooth, shape (P,)."""
+        (near,) = self._near(i)
+        loads = self.fine.tooth(near).remote(self._modules(radius), self._patch)
+        return np.asarray((self.fine.face_forces(near, near, loads) > 0.0).mean(axis=0))
+
+    def faces_under(self, i: int, loads: Mapping[int, tuple[Array, Array]]) -> tuple[Array, dict[int, Array]]:
+        """The crack of tooth i, which may close, under loads on several teeth at once.
+
+        Parameters
+        ----------
+        i : int
+        loads : mapping of int to (ndarray, ndarray), shape (P,) each
+            Radii [m] and line loads [N/m], by tooth; tooth i among them.
+
+        Returns
+        -------
+        share : ndarray, shape (P,)
+            Of the nodes of its faces that press on each other.
+        off : dict of int to ndarray, shape (P,)
+            By what the deflection of each tooth differs from that by `own` and `between` [m].
+        """
+        near = dict(zip(loads, self._near(*loads), strict=True))
+        here = {near[j]: (self._modules(radius), load) for j, (radius, load) in loads.items()}
+        forces, off = self.fine.faces_under(near[i], here, self._patch)
+        return (forces > 0.0).mean(axis=0), {j: off[k] / self._modulus for j, k in near.items()}
 
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [m^2/N]."""

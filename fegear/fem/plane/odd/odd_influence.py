@@ -19,121 +19,23 @@ from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.influence import SIDES, Influence, Side
-from fegear.fem.plane.odd.cracked_sector import CrackedSector
+from fegear.fem.plane.odd.crack_faces import CrackFaces, pressed
 from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
-from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
+from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, tooth_kind
 from fegear.fem.plane.rim import rigid_motions
-from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, fillet_strain
-from fegear.fem.plane.sector_sides import (
-    BetweenSides,
-    between_sides,
-    bore_of_side,
-    condensed_sector,
-    ports_of,
-)
+from fegear.fem.plane.sector_sides import between_sides, bore_of_side, condensed_sector
 from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
-from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array, Mask
+    from fegear.base.arrays import Array
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
     from fegear.geometry.rim_support import RimSupport
-
-#: How far below the flank a patch may reach into the fillet [modules], and how near to a crack's mouth, as a share of
-#: the way there.
-_MARGIN, _ABOVE_MOUTH = 0.15, 0.97
-_FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
-
-
-@dataclass(frozen=True)
-class OddTooth:
-    """What stands in a sector instead of the ordinary tooth.
-
-    Parameters
-    ----------
-    tooth : InvoluteTooth
-        Its outline.
-    sector : SectorMesh or CrackedSector
-        Its mesh; sides as the ordinary sector's.
-    """
-
-    tooth: InvoluteTooth
-    sector: SectorMesh | CrackedSector
-
-    @property
-    def mesh(self) -> SectorMesh:
-        """Of its sector."""
-        return self.sector.mesh if isinstance(self.sector, CrackedSector) else self.sector
-
-
-@dataclass(frozen=True)
-class ToothKind:
-    """How flank, fillets and crack of one kind of sector follow its sides, and a load on its flank.
-
-    Parameters
-    ----------
-    tooth : InvoluteTooth
-    mesh : SectorMesh
-    flank : LoadedFlank
-    fillets : mapping of {"tension", "compression"} to FilletStrain
-    flank_follows : ndarray, shape (2n, 2m)
-        Motion of the unknowns of the loaded run under that of sides A and B.
-    flank_own : ndarray, shape (2n, 2n)
-        The same under forces on itself, the sides held.
-    stress_follows, stress_own : mapping of side to ndarray, shape (points, 2m) and (points, 2n)
-        Tangential stress of the fillets likewise.
-    intensity_follows, intensity_own : ndarray, shape (rings, 2, 2m) and (rings, 2, 2n)
-        K_I and K_II of its crack likewise, by each ring of integration; of none without a crack.
-    mouth : float
-        Where its crack starts, arc length up the fillet [modules].
-    back : bool
-        Whether that is the fillet of the flank that is not loaded.
-    unknowns : int
-        Size of the sector's system.
-    """
-
-    tooth: InvoluteTooth
-    mesh: SectorMesh
-    flank: LoadedFlank
-    fillets: Mapping[Side, FilletStrain]
-    flank_follows: Array
-    flank_own: Array
-    stress_follows: Mapping[Side, Array]
-    stress_own: Mapping[Side, Array]
-    intensity_follows: Array
-    intensity_own: Array
-    mouth: float
-    back: bool
-    unknowns: int
-
-    @property
-    def cracked(self) -> bool:
-        """Whether it has a crack."""
-        return self.intensity_own.size > 0
-
-    def pieces(self, side: Side) -> list[tuple[float, FilletCurve, slice]]:
-        """Start, curve and points of the pieces of a fillet: two where a crack starts in it."""
-        fillet, flank = self.fillets[side], self.flank
-        ends = float(flank.roll_squared[0]), float(flank.roll_squared[-1])
-        whole = FilletCurve(side, fillet.arc, fillet.length, flank.base_radius, ends)
-        if not self.cracked or self.back != (side == "compression"):
-            return [(0.0, whole, slice(None))]
-        n = int(np.searchsorted(whole.arc, self.mouth))
-        return [
-            (0.0, replace(whole, arc=whole.arc[:n], length=self.mouth), slice(0, n)),
-            (
-                self.mouth,
-                replace(whole, arc=whole.arc[n:] - self.mouth, length=whole.length - self.mouth),
-                slice(n, None),
-            ),
-        ]
 
 
 @dataclass(frozen=True)
@@ -226,17 +128,116 @@ class OddInfluence:
 
     def own(self, i: int, radius: ArrayLike, patch: float, half_width: ArrayLike | None = None) -> Array:
         """c_ii(p, p): as `Influence.self_compliance`, shape (P,) [1/E]."""
-        return self.tooth(i).self_compliance(radius, patch, half_width)
+        found = self.tooth(i).self_compliance(radius, patch, half_width)
+        return found + self.by_closing(i, radius, patch) if self.closing else found
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """Teeth with a crack whose faces may press on each other."""
+        return tuple(number for number, kind in self.odd.items() if kind.faces is not None)
+
+    def by_closing(self, i: int, radius: ArrayLike, patch: float) -> Array:
+        """What faces of cracks take away of c_ii(p, p) by pressing on each other, shape (P,) [1/E]."""
+        loads = self.tooth(i).remote(radius, patch)
+        found = np.zeros(loads.shape[1])
+        for k in self.closing:
+            found += (self.opening(k, i, loads) * self.face_forces(k, i, loads)).sum(axis=0)
+        return found
+
+    def opening(self, i: int, j: int, loads: Array) -> Array:
+        """Opening of the crack of tooth i under loads on the flank of tooth j, its faces free, shape (N, P).
+
+        Of a crack that may close.
+        """
+        faces = self._faces(i)
+        found = faces.follows @ self._sides(i, j, loads)
+        return np.asarray(found + faces.by_flank @ loads if i == j else found)
+
+    def face_compliance(self, i: int) -> Array:
+        """Opening of the crack of tooth i under pairs of forces on its faces, shape (N, N)."""
+        faces = self._faces(i)
+        found = faces.own + faces.follows @ self.ring.between(i, i) @ faces.follows.T
+        return np.asarray(0.5 * (found + found.T))
+
+    def face_forces(self, i: int, j: int, loads: Array) -> Array:
+        """Forces between the faces of the crack of tooth i that loads on the flank of tooth j make, shape (N, P).
+
+        By loads on tooth i itself where its faces press. Loads on other teeth find them as a load on the middle of
+        its flank does, shut or open: with it they come to the forces of all of them, and stay linear.
+        """
+        opening = self.opening(i, j, loads)
+        return pressed(self.face_compliance(i), opening) if i == j else -self._shut(i) @ opening
+
+    def _shut(self, i: int) -> Array:
+        """Forces per opening at the nodes that a load on the middle of the flank shuts, zero elsewhere, (N, N)."""
+        if i not in self._sets:
+            flank, compliance = self.kind(i).flank, self.face_compliance(i)
+            middle = np.array([0.5 * (flank.lowest_radius + flank.highest_radius)])
+            forces = self.face_forces(i, i, self.tooth(i).remote(middle, REFERENCE_HALF_WIDTH))
+            at = np.flatnonzero(forces[:, 0] > 0.0)
+            found = np.zeros_like(compliance)
+            found[np.ix_(at, at)] = np.linalg.inv(compliance[np.ix_(at, at)])
+            self._sets[i] = found
+        return self._sets[i]
+
+    @cached_property
+    def _sets(self) -> dict[int, Array]:
+        return {}
+
+    def faces_under(
+        self, i: int, loads: Mapping[int, tuple[Array, Array]], patch: float
+    ) -> tuple[Array, dict[int, Array]]:
+        """The crack of tooth i, which may close, under loads on several teeth at once.
+
+        Parameters
+        ----------
+        i : int
+        loads : mapping of int to (ndarray, ndarray), shape (P,) each
+            Radii [modules] and line loads, by tooth; tooth i among them.
+        patch : float
+
+        Returns
+        -------
+        forces : ndarray, shape (N, P)
+            Between its faces.
+        off : dict of int to ndarray, shape (P,)
+            By what the deflection of each tooth differs from that by `own` and `between` [1/E].
+        """
+        pushed = {j: self.tooth(j).remote(radius, patch) * load for j, (radius, load) in loads.items()}
+        opening = {j: self.opening(i, j, one) for j, one in pushed.items()}
+        total = np.sum(list(opening.values()), axis=0)
+        forces, alone = pressed(self.face_compliance(i), total), self.face_forces(i, i, pushed[i])
+        beside = -self._shut(i) @ (total - opening[i])
+        off = {j: (one * (forces - alone - beside)).sum(axis=0) for j, one in opening.items()}
+        # By reciprocity: what loads beside it do to the tooth goes with the forces of its own load.
+        off[i] = (opening[i] * (forces - alone) - alone * (total - opening[i])).sum(axis=0)
+        return forces, {j: _over(one, loads[j][1]) for j, one in off.items()}
+
+    def _faces(self, i: int) -> CrackFaces:
+        found = self.kind(i).faces
+        if found is None:
+            raise InputError("tooth", i, "has no crack whose faces may close")
+        return found
 
     def _sides(self, i: int, j: int, loads: Array) -> Array:
         """Motion of the sides of sector i under loads on the flank of tooth j, shape (2 m, P)."""
         return self.ring.between(i, j) @ (self.kind(j).flank_follows.T @ loads)
 
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
-        """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [1/E]."""
+        """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [1/E].
+
+        Cracks that may close do so by `face_forces`: c_ij(p, q) = c_ji(q, p) stays.
+        """
         there, here = self.tooth(i).remote(radius_p, patch), self.tooth(j).remote(radius_q, patch)
         found = (there.T @ self.kind(i).flank_follows) @ self._sides(i, j, here)
-        return found + there.T @ self.kind(i).flank_own @ here if i == j else found
+        if i == j:
+            found = found + there.T @ self.kind(i).flank_own @ here
+        for k in self.closing:
+            if k == i != j:
+                found = found + self.face_forces(k, i, there).T @ self.opening(k, j, here)
+            else:
+                found = found + self.opening(k, i, there).T @ self.face_forces(k, j, here)
+        return found
 
     def fillet_stress(
         self, i: int, j: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
@@ -246,9 +247,16 @@ class OddInfluence:
         Beside the mouth of a crack a fillet is free of stress.
         """
         if i == j:
-            return self.tooth(i).fillet_stress(0, side, radius_q, half_width)
-        loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T
-        return self.kind(i).stress_follows[side] @ self._sides(i, j, loads.toarray())
+            found = self.tooth(i).fillet_stress(0, side, radius_q, half_width)
+        else:
+            loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T
+            found = self.kind(i).stress_follows[side] @ self._sides(i, j, loads.toarray())
+        for k in self.closing:
+            faces = self._faces(k)
+            forces = self.face_forces(k, j, self.tooth(j).remote(radius_q, REFERENCE_HALF_WIDTH))
+            pushed = self.kind(i).stress_follows[side] @ (self.ring.between(i, k) @ (faces.follows.T @ forces))
+            found = found + pushed + (faces.stress[side] @ forces if i == k else 0.0)
+        return np.asarray(found)
 
     def largest_root_stress(
         self, i: int, j: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
@@ -295,6 +303,11 @@ class OddInfluence:
             return usual, np.full(usual.shape, np.nan)
         below = self.lower.by_ring(i, j, radius_q, patch)[0]
         return usual, np.abs(usual - other) + np.abs(usual - below)
+
+
+def _over(values: Array, load: Array) -> Array:
+    """Work over the load that does it: a deflection; zero without load."""
+    return np.divide(values, load, out=np.zeros_like(values), where=load > 0.0)
 
 
 @tallied("tooth shapes")
@@ -356,16 +369,16 @@ def solve_odd_influence(
         found = []
         for elasticity in orders:
             started = time.perf_counter()
-            usual, part = _kind(ordinary, elasticity[0], poisson_ratio, plane, free=half is not None)
+            usual, part = tooth_kind(ordinary, elasticity[0], poisson_ratio, plane, free=half is not None)
             far, held, bore = None, None, None
             if half is not None:
                 bore = bore_of_side(mesh, elasticity[0])
-                far, beyond = _kind(ordinary, elasticity[0], poisson_ratio, plane, bore=bore)
+                far, beyond = tooth_kind(ordinary, elasticity[0], poisson_ratio, plane, bore=bore)
                 held = Held(half, ~bore, beyond)
             others = []
             for number, one, each in zip(odd, odd.values(), elasticity[1 : len(every)], strict=True):
                 free = half is not None and abs(number) <= half
-                others.append(_kind(one, each, poisson_ratio, plane, free=free, bore=None if free else bore))
+                others.append(tooth_kind(one, each, poisson_ratio, plane, free=free, bore=None if free else bore))
             kinds = {number: kind for number, (kind, _) in zip(odd, others, strict=True)}
             parts = {number: each for number, (_, each) in zip(odd, others, strict=True)}
             for number, empty, each in zip(bare, bare.values(), elasticity[len(every) :], strict=True):
@@ -390,57 +403,3 @@ def solve_odd_influence(
                 )
             )
     return replace(found[0], lower=found[1]) if two_orders else found[0]
-
-
-def _kind(
-    odd: OddTooth,
-    elasticity: SectorElasticity,
-    poisson_ratio: float,
-    plane: Plane,
-    *,
-    free: bool = False,
-    bore: Mask | None = None,
-) -> tuple[ToothKind, BetweenSides]:
-    """Condense a sector, and gather what of it is loaded and looked at; its condensed part for the ring.
-
-    Its bore may be `free`; or it is held, in terms of free sectors, of whose sides `bore` says what is on it.
-    """
-    tooth, mesh, cracked = odd.tooth, odd.mesh, isinstance(odd.sector, CrackedSector)
-    fillets = {side: fillet_strain(mesh, elasticity, name, tooth.side) for side, name in _FILLETS.items()}
-    margin, mouth, back = _MARGIN, 0.0, False
-    if isinstance(odd.sector, CrackedSector):
-        mouth, back = odd.sector.mouth, odd.sector.back
-        margin = margin if back else min(margin, _ABOVE_MOUTH * (fillets["tension"].length - mouth))
-    flank = loaded_flank(mesh, elasticity, tooth, margin)
-    ports = np.unique(np.concatenate([flank.dofs, *(fillets[side].dofs for side in SIDES)]))
-    motions = rigid_motions(elasticity) if free else None
-    condensed, side_size, turn, _ = condensed_sector(mesh, elasticity, ports, expandable=cracked, motions=motions)
-    part = between_sides(condensed, side_size, turn)
-    if bore is not None:
-        part = held_sectors(0, bore, part).part
-    follow = np.hstack([part.follow_a, part.follow_b])
-    run = ports_of(condensed, flank.dofs)
-    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
-    rows = {side: ports_of(condensed, fillet.dofs) for side, fillet in fillets.items()}
-    intensity_follows, intensity_own = np.zeros((0, 2, follow.shape[1])), np.zeros((0, 2, run.size))
-    if isinstance(odd.sector, CrackedSector):
-        each = [interaction(odd.sector, poisson_ratio, plane, elasticity.order, ring) for ring in RINGS]
-        forces = condensed.collect(np.hstack(each)).T
-        intensity_follows = (forces @ follow).reshape(len(RINGS), 2, -1)
-        intensity_own = (forces @ part.own[:, run]).reshape(len(RINGS), 2, -1)
-    kind = ToothKind(
-        tooth=tooth,
-        mesh=mesh,
-        flank=flank,
-        fillets=fillets,
-        flank_follows=follow[run],
-        flank_own=part.own[np.ix_(run, run)],
-        stress_follows={side: modulus * (fillets[side].strain @ follow[rows[side]]) for side in SIDES},
-        stress_own={side: modulus * (fillets[side].strain @ part.own[np.ix_(rows[side], run)]) for side in SIDES},
-        intensity_follows=intensity_follows,
-        intensity_own=intensity_own,
-        mouth=mouth,
-        back=back,
-        unknowns=condensed.size,
-    )
-    return kind, part

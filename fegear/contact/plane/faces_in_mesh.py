@@ -1,0 +1,84 @@
+"""Faces of a crack on its way through the mesh: how much of them presses under the loads that the teeth share.
+
+Compliances of a gear whose crack may close take its faces as pressed by the load on their own tooth, so that they are
+of degree one in it and are shared like any others. Under all loads together other nodes may press; what that changes
+of the deflections is known afterwards, and is zero where the crack is open, or shut, all along under both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.teeth import meshing_order
+from fegear.geometry.pair import Member
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.over_revolution import OverRevolution
+    from fegear.fem.plane.odd.odd_gear import OddGearInfluence
+
+
+@dataclass(frozen=True)
+class FacesInMesh:
+    """Faces of one crack while its tooth carries load, shape (P,).
+
+    Parameters
+    ----------
+    tooth : int
+        In meshing order.
+    member : {"driver", "driven"}
+    closed : ndarray
+        Share of the faces' nodes that press on each other.
+    off : ndarray
+        Largest change of a loaded tooth's deflection by all loads together [m].
+    """
+
+    tooth: int
+    member: Member
+    closed: Array
+    off: Array
+
+
+def faces_in_mesh(
+    engagement: Engagement, found: OverRevolution, member: Member, influence: OddGearInfluence, tooth: int
+) -> FacesInMesh:
+    """Follow the faces of a crack that may close.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    found : OverRevolution
+        Its loads.
+    member : {"driver", "driven"}
+        The gear that has the crack.
+    influence : OddGearInfluence
+        Of this gear.
+    tooth : int
+        The cracked tooth by its own number.
+    """
+    compliance, gear = engagement.compliance, engagement.pair.gear(member)
+    contacts = engagement.grid(found.x).contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    low, high = influence.ordinary.lowest_radius, influence.ordinary.highest_radius
+    order, cycles = meshing_order(tooth, gear.teeth, member), found.loads.shape[0]
+    closed, off = [np.zeros(0)], [np.zeros(0)]
+    for number in found.number:  # base pitches in which its tooth is on this pair
+        cycle = order + int(number)
+        loads = found.loads[cycle % cycles]
+        at = np.flatnonzero(loads[found.number == number][0] > 0.0)
+        if not at.size:
+            continue
+        teeth = [compliance.tooth(member, int(other), cycle) for other in found.number]
+        here = {
+            one: (np.clip(radius[row, at], low, high), loads[row, at] / compliance.face_width)
+            for row, one in enumerate(teeth)
+            if (loads[row, at] > 0.0).any()
+        }
+        share, changes = influence.faces_under(compliance.tooth(member, int(number), cycle), here)
+        closed.append(share)
+        off.append(np.max([np.where(here[one][1] > 0.0, np.abs(changes[one]), 0.0) for one in here], axis=0))
+    return FacesInMesh(order, member, np.concatenate(closed), np.concatenate(off))

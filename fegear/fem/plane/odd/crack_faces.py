@@ -1,0 +1,139 @@
+"""Faces of a crack that may press on each other, without friction; E = 1, lengths in modules.
+
+The opening w of opposite nodes follows the loads as any displacement does, w_0, and the pairs of forces p that push
+the faces apart: w = w_0 + C p >= 0, p >= 0, p w = 0. The answer is the least of p'C p / 2 + w_0'p over p >= 0, one and
+only, and of degree one in the loads: twice the loads, twice the forces, on the same nodes. A load's own deflection
+changes by w_0'p, never upward. Which nodes press depends on where the loads are and on their ratios.
+
+Forces act at the nodes of the elements, whose shares of an even pressure are positive up to the fourth order. The tip
+belongs to both faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.plane.odd.cracked_sector import FACES
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Index, Mask
+    from fegear.fem.plane.elasticity import SectorElasticity
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.plane.mesh import SectorMesh
+
+#: Sets of pressed nodes that are tried one from the other, before nodes are taken one by one.
+_MOST_SETS = 40
+#: An opening, or a force, so small beside the largest one is none.
+_NONE = 1e-12
+
+
+@dataclass(frozen=True)
+class CrackFaces:
+    """How opposite nodes of a crack's faces open, of one kind of sector, from the mouth to the tip.
+
+    Parameters
+    ----------
+    follows : ndarray, shape (N, 2m)
+        Opening under motions of the sector's sides.
+    by_flank : ndarray, shape (N, 2n)
+        Under forces on the unknowns of its flank, the sides held.
+    own : ndarray, shape (N, N)
+        Under pairs of forces on the faces, the sides held.
+    stress : mapping of side to ndarray, shape (points, N)
+        Stress of its fillets under such pairs, the sides held.
+    """
+
+    follows: Array
+    by_flank: Array
+    own: Array
+    stress: Mapping[Side, Array]
+
+
+def opening_rows(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Array]:
+    """Opening of opposite nodes of a crack as rows of its sector's displacement.
+
+    Returns
+    -------
+    unknowns : ndarray of int, shape (F,)
+        Of the faces.
+    rows : ndarray, shape (N, F)
+        Opening per displacement of these; as a right factor, what a pair of unit forces does to them.
+    """
+    (_, left), (edges, right) = ((mesh.edges[name], elasticity.edge_dofs[name]) for name in FACES)
+    way = mesh.points[:, edges[1]] - mesh.points[:, edges[0]]
+    nodes, first = np.unique(_along(right)[0], return_index=True)
+    pairs = np.stack([_along(left)[:, first], _along(right)[:, first]])  # (2 faces, 2, N + 1)
+    normal = np.zeros((2, nodes.size))
+    # At a bend, and at every node between two edges, the mean of both, by their lengths.
+    each = np.searchsorted(nodes, right[0]).ravel()
+    for component, part in enumerate((-way[1], way[0])):
+        normal[component] = np.bincount(each, np.broadcast_to(part, right[0].shape).ravel(), nodes.size)
+    normal /= np.hypot(*normal)
+    apart = pairs[0, 0] != pairs[1, 0]
+    order = np.argsort(first[apart], kind="stable")
+    pairs, normal = pairs[:, :, apart][:, :, order], normal[:, apart][:, order]
+    unknowns = np.unique(pairs)
+    rows, each = np.zeros((normal.shape[1], unknowns.size)), np.arange(normal.shape[1])
+    for sign, face in zip((1.0, -1.0), pairs, strict=True):
+        for component in range(2):
+            rows[each, np.searchsorted(unknowns, face[component])] = sign * normal[component]
+    return unknowns, rows
+
+
+def _along(unknowns: Index) -> Index:
+    """Unknowns (x and y) of the nodes of edges one after the other, shape (2, nodes)."""
+    return unknowns.transpose(0, 2, 1).reshape(2, -1)
+
+
+def pressed(compliance: Array, opening: Array) -> Array:
+    """Forces with which the faces of a crack press on each other, shape (N, P).
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (N, N)
+        C, opening under pairs of forces; symmetric, positive definite.
+    opening : ndarray, shape (N, P)
+        w_0 of faces that do not feel each other, by load.
+    """
+    found = np.zeros(opening.shape)
+    # Nodes near the tip open little: in units of their own compliance all count alike.
+    unit = 1.0 / np.sqrt(np.diagonal(compliance))
+    scaled = compliance * unit * unit[:, None]
+    closed = np.zeros(opening.shape[0], dtype=bool)
+    for load, w in enumerate((opening * unit[:, None]).T):
+        size = np.abs(w).max(initial=0.0)
+        if (w < -_NONE * size).any():
+            force, closed = _one(scaled, w / size, closed)
+            found[:, load] = size * unit * force
+    return found
+
+
+def _one(compliance: Array, opening: Array, begin: Mask) -> tuple[Array, Mask]:
+    """Forces of one load whose largest opening is one, and which nodes press; tried from those that `begin`."""
+    closed = begin if begin.any() else opening < 0.0
+    for _ in range(_MOST_SETS):
+        force = _on(closed, compliance, opening)
+        gap = opening + compliance @ force
+        slack = _NONE * max(1.0, float(np.abs(force).max()))
+        after = np.where(closed, force > slack, gap < -_NONE)
+        if np.array_equal(after, closed):
+            return force, closed
+        closed = after
+    from scipy.optimize import nnls
+
+    factor = np.linalg.cholesky(compliance)
+    closed = nnls(factor.T, -np.linalg.solve(factor, opening))[0] > 0.0
+    return np.maximum(_on(closed, compliance, opening), 0.0), closed
+
+
+def _on(closed: Mask, compliance: Array, opening: Array) -> Array:
+    """Forces at the closed nodes that shut them, of either sign."""
+    force = np.zeros(opening.shape)
+    at = np.flatnonzero(closed)
+    if at.size:
+        force[at] = np.linalg.solve(compliance[np.ix_(at, at)], -opening[at])
+    return force
