@@ -122,5 +122,5 @@ def test_an_intensity_errs_by_another_ring_and_the_lower_order_and_is_not_known_
 
 def test_a_tooth_answers_for_itself_as_an_ordinary_one():
     tooth = SimpleNamespace(self_compliance=lambda *given: given)
-    one = SimpleNamespace(tooth=lambda i: tooth if i == 4 else None)
+    one = SimpleNamespace(tooth=lambda i: tooth if i == 4 else None, closing=())
     assert OddInfluence.own(one, 4, "radius", "patch", "width") == ("radius", "patch", "width")

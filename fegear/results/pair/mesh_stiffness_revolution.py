@@ -205,8 +205,10 @@ def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) ->
     """Of each crack that may close."""
     for member, teeth in asked.cracked:
         source = loaded.engagement.compliance.source(member)
-        for order in teeth if isinstance(source, OddCompliance) else ():
-            known = source.influence
+        if not isinstance(source, OddCompliance):
+            continue
+        known = source.influence
+        for order in teeth:
             number = meshing_order(order, known.gear.teeth, member)
             if known.from_middle(number) in known.fine.closing:
                 yield faces_in_mesh(loaded.engagement, over, member, known, number)
