@@ -12,13 +12,16 @@ from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import Crack, fillet_point, mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.crack_faces import opening_rows, pressed
 from fegear.fem.plane.odd.cracked_sector import FACES, cracked_sector
+from fegear.fem.plane.odd.odd_gear import solve_cracked_gear
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.supported_section import assemble_section
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import lagrange
 from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
 
 NU, SETTINGS = 0.3, settings_at(-3)
@@ -139,6 +142,26 @@ def test_a_reversed_flank(depth, opened, shut):
     assert (softer + less) / usual - 1.0 == pytest.approx(shut, abs=1e-3)
 
 
+@pytest.mark.parametrize("depth", [0.5, 1.4])
+def test_contact_is_softer_than_no_crack_and_stiffer_than_none(depth):
+    """Faces grown together may not slide, free ones may go through each other; at 1.4 modules only a part is shut."""
+    healthy, found, free = solved(0.0), solved(depth), solved(depth, closing=False)
+    least, own, most = (one.own(0, RADII, PATCH) for one in (healthy, found, free))
+    assert (least < own).all()
+    assert (own < 1.1 * least).all()
+    assert (own < 0.9 * most).all()
+    share = (found.face_forces(0, 0, loads(found, 0, RADII)) > 0.0).mean(axis=0)
+    assert (share.min() < 1.0) == (depth > 1.0)
+    for side in SIDES:  # root stress goes by the forces between the faces as well
+        off = [
+            np.abs(
+                one.largest_root_stress(1, 0, side, RADII)[0] / healthy.largest_root_stress(1, 0, side, RADII)[0] - 1
+            )
+            for one in (found, free)
+        ]
+        assert (off[0] < off[1]).all()
+
+
 def _edge():
     """Radii of an edge of that program's flank, and the direction of its load."""
     radii = np.array([13.84325798, 14.23357694])
@@ -204,3 +227,20 @@ def test_what_all_loads_together_change_is_known():
             free = solved(1.4, closing=False).between(i, other, r, radii[other], PATCH)
             known += (coupled - free)[0, 0] * given[other][1][0]
             assert exact == pytest.approx(known + off[i][0], rel=1e-8, abs=1e-11 * np.abs(opening[0]).max())
+
+
+@pytest.mark.dear
+def test_the_stated_error_is_that_of_closing_faces():
+    """No less than the true one, and not that of open faces, which is ten times as large."""
+    gear = Gear(TOOTH, 2e-3, BORE * 2e-3, 20e-3, Material(206e9))
+    radii, width = np.array([27e-3, 28.2e-3, 29.2e-3]), np.full(3, 1e-4)
+    coarse, fine = (solve_gear(gear, settings_at(level), reach=2, estimate_error=level < -2) for level in (-3, -1))
+    one, other, free = (
+        solve_cracked_gear(known, {0: crack(0.9, back=True, closing=closing)})
+        for known, closing in ((coarse, True), (fine, True), (coarse, False))
+    )
+    stated, true = one.own_error(0, radii, width), np.abs(one.own(0, radii, width) - other.own(0, radii, width))
+    assert (stated > true).all()
+    assert (stated < 15.0 * true).all()
+    assert (stated < 0.5 * free.own_error(0, radii, width)).all()
+    assert (one.closed_share(0, radii) == 1.0).all()

@@ -163,11 +163,7 @@ class OddGearInfluence:
         r, b = self._on_flank(near, radius), np.asarray(half_width, dtype=float) / self.gear.module
         if self.fine.lower is None:
             return np.full(np.broadcast_shapes(r.shape, b.shape), np.nan)
-        error = self._estimate(near).self_error(r, b)
-        if self.fine.closing:
-            finer, lower = (one.by_closing(near, r, self._patch) for one in (self.fine, self.fine.lower))
-            error = error + np.abs(finer - lower)
-        return error / self._modulus
+        return self._estimate(near).self_error(r, b) / self._modulus
 
     def by_closing(self, near: int, radius: ArrayLike) -> Array:
         """What the faces of cracks change of c_ii(p, p) by pressing on each other, shape (P,) [m^2/N].
@@ -305,8 +301,8 @@ class OddGearInfluence:
         if i not in self._estimates:
             assert self.fine.lower is not None  # noqa: S101
             coarser = self.settings.refined(LEVEL_RATIO)
-            other = replace(self.fine.lower.tooth(i), corner_distance=coarser.corner_distance)
-            self._estimates[i] = Estimate(self.fine.tooth(i), other, self._patch, coarser.patch_half_width)
+            other = replace(self.fine.lower.shut_tooth(i), corner_distance=coarser.corner_distance)
+            self._estimates[i] = Estimate(self.fine.shut_tooth(i), other, self._patch, coarser.patch_half_width)
         return self._estimates[i]
 
     @cached_property

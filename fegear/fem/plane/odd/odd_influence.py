@@ -180,6 +180,15 @@ class OddInfluence:
             self._sets[i] = found
         return self._sets[i]
 
+    def shut_tooth(self, i: int) -> Influence:
+        """As `tooth`, the faces of cracks shut where a load on the middle of their own flanks shuts them."""
+        usual = self.tooth(i)
+        found, each = usual.compliance[0], np.eye(usual.compliance[0].shape[0])
+        for k in self.closing:
+            opening = self.opening(k, i, each)
+            found = found - opening.T @ self._shut(k) @ opening
+        return replace(usual, compliance={**usual.compliance, 0: found}) if self.closing else usual
+
     @cached_property
     def _sets(self) -> dict[int, Array]:
         return {}
