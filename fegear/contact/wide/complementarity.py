@@ -104,8 +104,8 @@ def solve_contact(
     gap : ndarray, shape (P, M) or (P, M, L)
         Distance of the unloaded flanks at the stations along the line of action [m], removal positive; the last of
         them one for each load.
-    load : ndarray, shape (L,)
-        Total loads along the transverse line of action [N], positive.
+    load : ndarray, shape (L,) or (P, L)
+        Total loads along the transverse line of action [N], positive: the same at all roll positions, or each its own.
     most_steps : int
         After which it gives up.
     progress : callable, optional
@@ -122,10 +122,10 @@ def solve_contact(
     """
     lines = known.lines
     positions, most = lines.x.shape
-    cases = load.size
+    cases = load.shape[-1]
     averaged = np.moveaxis(averaged_gaps(lines, gap, cases), 2, 1).reshape(-1, most)
     place = np.repeat(np.arange(positions), cases)
-    total = np.tile(load, positions)
+    total = np.broadcast_to(load, (positions, cases)).ravel()
     nearest = np.where(lines.present[place], averaged, np.inf).min(axis=1)
     found = _Found(
         np.zeros((place.size, most)), np.zeros(place.size), np.zeros(place.size), np.zeros(place.size)

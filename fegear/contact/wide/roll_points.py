@@ -9,6 +9,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.contact.fourier import Panels
@@ -37,7 +38,9 @@ def line_breaks(pair: GearPair, beyond: tuple[float, float] = (0.0, 0.0)) -> Arr
     return np.unique(np.mod(np.array(places) - pair.x_start, pair.base_pitch)) + pair.x_start
 
 
-def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0)) -> Panels:
+def roll_points(
+    pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0), others: ArrayLike = ()
+) -> Panels:
     """Roll positions and what part of a base pitch each stands for.
 
     Parameters
@@ -47,6 +50,8 @@ def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 
         Number of positions. With fewer than three to a piece they are the middles of equal parts of the base pitch.
     beyond : (float, float)
         How far lines go on along tip edges before the start and after the end of the path [m].
+    others : array_like
+        Places at which pieces end besides: where lines of another half of the gears begin and end [m].
 
     Returns
     -------
@@ -54,6 +59,8 @@ def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 
     """
     pitch = pair.base_pitch
     breaks = line_breaks(pair, beyond)
+    if np.size(others):
+        breaks = np.unique([*breaks, *(np.mod(np.asarray(others) - pair.x_start, pitch) + pair.x_start)])
     ends = np.append(breaks, breaks[0] + pitch)
     pieces = [(a, b) for a, b in pairwise(ends.tolist()) if b - a > _SHORTEST * pitch]
     if count < _FEWEST * len(pieces):

@@ -39,7 +39,7 @@ def solve_spots(
     known : FlankCompliance
     gap : ndarray, shape (P, M) or (P, M, L)
         [m].
-    load : ndarray, shape (L,)
+    load : ndarray, shape (L,) or (P, L)
         [N].
     progress : callable, optional
         Receives the fraction of problems solved.
@@ -62,7 +62,9 @@ def solve_spots(
     except ConvergenceError:
         pass
     # Each load on its own, so that what it does hangs on no other.
-    parts = [_own_width(known, gap[..., i] if gap.ndim > 2 else gap, load[i : i + 1]) for i in range(load.size)]
+    parts = [
+        _own_width(known, gap[..., i] if gap.ndim > 2 else gap, load[..., i : i + 1]) for i in range(load.shape[-1])
+    ]
     widest = max((one for one, _ in parts), key=lambda one: 0.0 if one.spot is None else float(one.spot.max()))
     contacts = [one for _, one in parts]
 

@@ -1,0 +1,169 @@
+"""What the mechanics needs of a double helical pair: both halves, the gap between them, and how it is held axially."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+from fegear.base.errors import InputError
+from fegear.contact.double_helical.balance import AxialSeat
+from fegear.contact.wide.lines import base_twist
+
+if TYPE_CHECKING:
+    from fegear.contact.pair_spec import PairSpec
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import Member
+
+#: Largest difference of what both halves must have in common, as a share of it.
+_EQUAL = 1e-9
+
+
+@dataclass(frozen=True)
+class DoubleHelicalSpec:
+    """Two helical pairs of opposite hand on common shafts.
+
+    Shafts are rigid between the halves; each half's gear bodies deflect by themselves.
+
+    Parameters
+    ----------
+    halves : (PairSpec, PairSpec)
+        At end I and at end II, each with its own face width, flanks and effects; their loads are not looked at.
+    loads : tuple of float
+        Of both halves together, along the transverse line of action [N].
+    gap : float
+        Axial distance between the halves [m]; the halves of a misaligned pair stand apart by it.
+    apex_offset : float
+        Axial distance of the driver's apex from the driven's, toward end II, as both are mounted [m].
+    floating : {"driver", "driven"} or None
+        The member that moves along its axis; None for two located members.
+    axial_play : float
+        How far it moves between its stops in all, half of it to either side [m].
+    axial_force : float
+        What else pushes the floating member toward end II, of a coupling, say [N].
+    stagger : float
+        By which share of a pitch the teeth at end II are ahead of those at end I.
+    name : str
+        For messages.
+    """
+
+    halves: tuple[PairSpec, PairSpec]
+    loads: tuple[float, ...]
+    gap: float = 0.0
+    apex_offset: float = 0.0
+    floating: Member | None = None
+    axial_play: float = math.inf
+    axial_force: float = 0.0
+    stagger: float = 0.0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse halves that do not go together, and numbers that are none."""
+        object.__setattr__(self, "loads", tuple(sorted(set(self.loads))))
+        if not self.loads or not all(math.isfinite(load) and load > 0.0 for load in self.loads):
+            said = ", ".join(f"{load:.6g} N" for load in self.loads) or "(not given)"
+            raise self._wrong("loads", said, "must be positive and finite")
+        for key, low in (("gap", 0.0), ("apex_offset", -math.inf), ("axial_force", -math.inf)):
+            value = getattr(self, key)
+            if not (math.isfinite(value) and value >= low):
+                rule = "must be finite" if low < 0.0 else "must be finite and not negative"
+                raise self._wrong(key, f"{value}", rule)
+        if not self.axial_play >= 0.0:
+            raise self._wrong("axial_play", f"{self.axial_play}", "must not be negative")
+        if not 0.0 <= self.stagger < 1.0:
+            raise self._wrong("stagger", f"{self.stagger:.6g}", "must be at least 0 and below 1 (share of a pitch)")
+        if self.floating is None and (self.axial_force or math.isfinite(self.axial_play)):
+            key = "axial_force" if self.axial_force else "axial_play"
+            rule = "requires a floating member"
+            raise self._wrong(key, f"{getattr(self, key):.6g}", rule, 'set floating = "driver" or "driven"')
+        self._check_halves()
+
+    def _wrong(self, key: str, value: str, rule: str, remedy: str = "") -> InputError:
+        return InputError(".".join(filter(None, (self.name, key))), value, rule, *filter(None, (remedy,)))
+
+    def _check_halves(self) -> None:
+        one, two = (half.pair for half in self.halves)
+        for half in self.halves:
+            if half.width == "plane" or not half.pair.driver.helix_angle:
+                raise self._wrong("halves", f'width "{half.width}"', "must be helical pairs with their face width",
+                                  'set width = "slices" or "solid"')  # fmt: skip
+            if half.face.errors.shafts.given:
+                raise self._wrong("halves", "(on shafts)", "must not be on shafts that bend",
+                                  "specify line_error or misalignment")  # fmt: skip
+            if self.stagger and half.spacing_errors and half.has_data("spacing_errors"):
+                raise self._wrong("stagger", f"{self.stagger:.6g}", "is not available with spacing errors",
+                                  "set effects.spacing_errors = false or stagger = 0")  # fmt: skip
+        if base_twist(one) * base_twist(two) > 0.0:
+            raise self._wrong("hand", f"{one.driver.hand} in both halves", "must be opposite",
+                              "change the hand of one half")  # fmt: skip
+        for key, first, second in (
+            ("teeth", one.driver.teeth, two.driver.teeth),
+            ("teeth", one.driven.teeth, two.driven.teeth),
+            ("base_pitch", one.base_pitch, two.base_pitch),
+            ("centre_distance", one.centre_distance, two.centre_distance),
+        ):
+            if abs(first - second) > _EQUAL * abs(first):
+                raise self._wrong(key, f"{first:.9g} and {second:.9g}", "must be equal in both halves")
+
+    @property
+    def total_width(self) -> float:
+        """Common face width of both halves, without the gap [m]."""
+        return sum(half.pair.face_width for half in self.halves)
+
+    @property
+    def nominal_parts(self) -> tuple[float, float]:
+        """Share of either half where the load is even over the face width."""
+        first = self.halves[0].pair.face_width / self.total_width
+        return first, 1.0 - first
+
+    @property
+    def middles(self) -> tuple[float, float]:
+        """Where the middles of the halves' faces stand from that of the gap [m]."""
+        return tuple(  # type: ignore[return-value]
+            side * 0.5 * (self.gap + half.pair.face_width) for side, half in zip((-1.0, 1.0), self.halves, strict=True)
+        )
+
+    @property
+    def constant_gaps(self) -> tuple[float, float]:
+        """What a tilt of the axes, which is counted about the middle of the gap, opens all over either half [m]."""
+        first, second = (
+            half.face.errors.tilt.in_plane_of_action(half.placed) * z if half.misalignment else 0.0
+            for half, z in zip(self.halves, self.middles, strict=True)
+        )
+        return first, second
+
+    @property
+    def seat(self) -> AxialSeat:
+        """How the members are held along the axis."""
+        first, second = (base_twist(half.placed) for half in self.halves)
+        room = 0.0 if self.floating is None else 0.5 * self.axial_play
+        sign = -1.0 if self.floating == "driven" else 1.0
+        return AxialSeat((first, second), self.apex_offset, room, sign * self.axial_force)
+
+    def of_half(self, number: int) -> PairSpec:
+        """The helical pair that a half is, under its even part of every load and under all of it."""
+        half, part = self.halves[number], self.nominal_parts[number]
+        loads = (*(part * load for load in self.loads), *self.loads)
+        return replace(half, loads=loads, nominal=part * self.loads[-1])
+
+
+def mirrored(half: PairSpec) -> PairSpec:
+    """The same half of the other hand, for the other end: flanks that are the same all over the face.
+
+    Raises
+    ------
+    InputError
+        If anything of the half changes along its face: then both halves are specified.
+    """
+    given = [flank.gear or "(unnamed)" for flank in half.both if flank.over_face]
+    if given or half.face.cutter or half.face.errors.given:
+        raise InputError("halves", ", ".join(given) or "(misaligned)", "must not vary along the face to be mirrored",
+                         "specify both halves")  # fmt: skip
+    pair = half.pair
+    driver, driven = _other_hand(pair.driver), _other_hand(pair.driven)
+    return replace(half, pair=replace(pair, driver=driver, driven=driven, axial_offset=-pair.axial_offset))
+
+
+def _other_hand(gear: Gear) -> Gear:
+    hand: Literal["left", "right"] = "left" if gear.hand == "right" else "right"
+    return replace(gear, hand=hand)

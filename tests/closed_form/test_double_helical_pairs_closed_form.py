@@ -1,0 +1,204 @@
+"""Double helical pairs of coupled slices: each half is today's helical pair, and the laws of both together."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored
+from fegear.contact.double_helical.loaded_double import load_double
+from fegear.contact.load import load
+from fegear.contact.pair_spec import PairSpec
+from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide_spec import Misalignment, WideSpec
+from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.settings import SolidSettings
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.shaft_tilt import ShaftTilt
+
+MODULE, WIDTH, LOAD = 3e-3, 12e-3, 6000.0
+CACHE = SolutionCache()
+
+
+def gear(teeth, hand, width=WIDTH):
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(20.0))
+    return Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, width, hand=hand)
+
+
+def sliced(one):
+    settings = replace(SolidSettings().scaled(1.7), source="slices")
+    return solid_influence(
+        one.tooth, one.twist * MODULE, one.face_width / MODULE, 0.3, one.bore_radius / MODULE, settings, cache=CACHE
+    )
+
+
+def half(first="right", width=WIDTH, **errors):
+    second = "left" if first == "right" else "right"
+    pair = GearPair(gear(20, first, width), gear(31, second, width))
+    wide = WideSpec(Misalignment(**errors), positions=8, panels=6)
+    return PairSpec(pair, width="slices", wide=wide, misalignment=bool(errors))
+
+
+def solved(*halves):
+    return [[sliced(one) for one in (own.pair.driver, own.pair.driven)] for own in halves]
+
+
+RIGHT = half()
+LEFT = mirrored(RIGHT)
+
+
+@pytest.fixture(scope="module")
+def gears():
+    return solved(RIGHT, LEFT)
+
+
+def double(gears, halves=(RIGHT, LEFT), loads=(2000.0, LOAD), **given):
+    return load_double(DoubleHelicalSpec(halves, loads, **given), gears, cache=CACHE)
+
+
+@pytest.fixture(scope="module")
+def floating(gears):
+    return double(gears, floating="driver")
+
+
+def alone(gears, number, spec, load_at):
+    """The helical pair that a half is, made without the other one."""
+    found = load(spec.of_half(number), gears[number], cache=CACHE, estimates=False).found
+    return found, found.load.tolist().index(load_at)
+
+
+def test_each_half_that_carries_all_is_the_helical_pair_to_the_last_bit(gears):
+    for number, apex in ((0, 1e-3), (1, -1e-3)):
+        both = double(gears, apex_offset=apex)
+        found, i = alone(gears, number, both.spec, LOAD)
+        carries, idle = both.halves[number], both.halves[1 - number]
+        assert (both.share[number] == 1.0).all()
+        assert (carries.contact.force[:, :, 1] == found.contact.force[:, :, i]).all()
+        assert (carries.transmission_error[:, 1] == found.transmission_error[:, i]).all()
+        assert (carries.face_load_factor[1] == found.face_load_factor[i]).all()
+        assert not idle.contact.force.any()
+        assert np.isnan(both.face_load_factors[1 - number]).all()
+        assert both.load_factor == pytest.approx([2.0, 2.0])
+        assert both.touches_back.all()  # a millimetre is more than the backlash of these gears
+        moved = both.spec.seat.twist[number] * apex
+        np.testing.assert_allclose(both.transmission_error, carries.transmission_error - moved, rtol=1e-12)
+
+
+def test_each_half_of_a_floating_pair_is_the_helical_pair_under_half_of_the_load(gears, floating):
+    for number in range(2):
+        found, i = alone(gears, number, floating.spec, 0.5 * LOAD)
+        assert (floating.halves[number].contact.force[:, :, 1] == found.contact.force[:, :, i]).all()
+    assert (floating.share == 0.5).all()
+    assert floating.load_factor == pytest.approx([1.0, 1.0], rel=1e-14)
+    assert floating.axial_force == pytest.approx(0.0, abs=1e-9)
+
+
+def test_equal_halves_need_no_float(gears, floating):
+    located = double(gears)
+    np.testing.assert_allclose(located.share, 0.5, atol=1e-9)
+    np.testing.assert_allclose(located.transmission_error, floating.transmission_error, rtol=1e-9)
+    assert np.abs(floating.axial_motion).max() < 1e-14
+    assert floating.face_load_factors[0] == pytest.approx(floating.face_load_factors[1], rel=1e-6)
+
+
+def test_a_gap_changes_nothing_of_straight_shafts(gears, floating):
+    apart = double(gears, floating="driver", gap=20e-3)
+    assert (apart.transmission_error == floating.transmission_error).all()
+
+
+def test_apex_error_moves_load_and_a_floating_member_takes_it(gears, floating):
+    """Both halves in contact: W_1 - W_2 by the tangent stiffness of both, within what the contact's widths change."""
+    apex = 2e-6
+    located, moved = double(gears, apex_offset=apex), double(gears, floating="driven", apex_offset=apex)
+    span = 2.0 * abs(base_twist(RIGHT.pair))
+    k = located.halves[0].contact.stiffness[:, 1]
+    by_hand = 0.5 + 0.5 * k * span * apex / LOAD  # k_1 k_2 / (k_1 + k_2) of equal halves
+    assert located.share[0, :, 1] == pytest.approx(by_hand, rel=2e-3)
+    np.testing.assert_allclose(moved.transmission_error, floating.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(moved.axial_motion, apex, rtol=1e-6)  # the driven follows the driver's apex
+    assert located.axial_force[0, 1] * base_twist(RIGHT.pair) < 0.0
+    assert "(K_gamma = 1." in located.answer()
+
+
+def test_one_half_is_carried_free_at_its_closed_form(gears):
+    """The share reaches 1 where (t_1 - t_2) q is what the half at end I gives under all of the load."""
+    all_of_it = double(gears, apex_offset=1e-3)
+    first = all_of_it.halves[0].transmission_error[:, 1]
+    touch = 0.0  # unmodified flanks touch at no approach on the path
+    ends = (first - touch) / (2.0 * base_twist(RIGHT.pair))
+    below, above = (double(gears, loads=(LOAD,), apex_offset=part * one)
+                    for part, one in ((0.999, ends.min()), (1.001, ends.max())))  # fmt: skip
+    assert (below.share[0] < 1.0).all()
+    assert (above.share[0] == 1.0).all()
+    assert not above.touches_back.any() or RIGHT.pair.free_backlash == 0.0
+
+
+def test_exchanged_halves_exchange_their_shares(gears):
+    there = double(gears, apex_offset=1.5e-6)
+    back = double(gears[::-1], (LEFT, RIGHT), apex_offset=1.5e-6)
+    np.testing.assert_allclose(back.share[::-1], there.share, rtol=1e-9)
+    np.testing.assert_allclose(back.transmission_error, there.transmission_error, rtol=1e-9)
+
+
+def test_a_tilt_of_the_axes_counts_with_the_gap_and_a_float_takes_its_even_part(gears):
+    """Half the sum of both faces and the gap is the arm: kappa (g + b) of the halves' gaps differ."""
+    tilt = ShaftTilt(out_of_plane=1e-4)
+    halves = half(tilt=tilt), half("left", tilt=tilt)
+    arm = 30e-3 + WIDTH
+    kappa = tilt.in_plane_of_action(RIGHT.pair)
+    located = double(gears, halves, gap=30e-3)
+    apex = -kappa * arm / (2.0 * base_twist(RIGHT.pair))
+    against = double(gears, halves, gap=30e-3, apex_offset=apex)
+    even = double(gears, halves, gap=30e-3, floating="driver")
+    assert located.load_factor[1] > 1.05
+    assert abs(against.load_factor[1] - 1.0) < 0.1 * (located.load_factor[1] - 1.0)
+    assert (even.share == 0.5).all()
+    assert (even.face_load_factors > 1.02).all()
+    mean = even.mean(even.axial_motion)[1]
+    assert mean == pytest.approx(apex, rel=0.2)
+
+
+def test_staggered_teeth_of_half_a_pitch_have_the_halves_curve_moved_by_it(gears, floating):
+    """Floating: zeta is the mean of both halves' curves, here of one curve and of itself half a pitch on."""
+    staggered = double(gears, floating="driver", stagger=0.5)
+    pitch = RIGHT.pair.base_pitch
+    found, i = alone(gears, 0, staggered.spec, 0.5 * LOAD)
+    ahead = np.interp(staggered.points.x + 0.5 * pitch, found.lines.roll, found.transmission_error[:, i], period=pitch)
+    own = staggered.halves[0].transmission_error[:, 1]
+    assert np.ptp(staggered.transmission_error[:, 1]) < 0.7 * np.ptp(floating.transmission_error[:, 1])
+    np.testing.assert_allclose(staggered.transmission_error[:, 1], 0.5 * (own + ahead), rtol=0.03)
+    assert np.ptp(staggered.axial_motion[:, 1]) > 1e-9
+    assert staggered.halves[1].lines.weight.sum() == pytest.approx(1.0)
+
+
+def test_halves_of_unequal_width_carry_by_their_width():
+    wide = half("left", 1.5 * WIDTH)
+    both = double(solved(RIGHT, wide), (RIGHT, wide), loads=(LOAD,))
+    assert both.mean(both.share[1])[0] == pytest.approx(0.6, abs=0.02)
+    even = double(solved(RIGHT, wide), (RIGHT, wide), loads=(LOAD,), floating="driver")
+    assert (even.share == 0.5).all()
+    assert even.load_factor[0] == pytest.approx(1.25)
+    assert even.halves[1].mean_over_face.mean() * 1.5 * WIDTH == pytest.approx(0.5 * LOAD, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"gap": -1e-3}, "gap = -0.001: must be finite and not negative"),
+        ({"axial_play": 1e-4}, 'axial_play = 0.0001: requires a floating member; set floating = "driver" or "driven"'),
+        ({"floating": "driver", "axial_play": -1.0}, "axial_play = -1.0: must not be negative"),
+        ({"stagger": 1.0}, "stagger = 1: must be at least 0 and below 1"),
+        ({"loads": ()}, r"loads = \(not given\): must be positive and finite"),
+        ({"halves": (RIGHT, RIGHT)}, "hand = right in both halves: must be opposite"),
+        ({"halves": (RIGHT, replace(RIGHT, width="plane"))}, 'halves = width "plane"'),
+    ],
+)
+def test_what_is_no_double_helical_pair_is_refused(given, message):
+    with pytest.raises(InputError, match=message):
+        DoubleHelicalSpec(**{"halves": (RIGHT, LEFT), "loads": (1.0,), **given})
