@@ -119,6 +119,73 @@ def test_loads_that_are_none_and_halves_of_one_hand_are_refused():
         balance(bar(1e8), bar(1e8), 1.0, AxialSeat((0.3, 0.3)))
 
 
+@dataclass(frozen=True)
+class Springs:
+    """A half of parallel springs behind gaps, all of them along the transverse line of action."""
+
+    stiffness: np.ndarray
+    gap: np.ndarray
+
+    @property
+    def touch(self):
+        return np.array([[self.gap.min()]])
+
+    def under(self, load):
+        order = np.argsort(self.gap)
+        k, gap = np.cumsum(self.stiffness[order]), np.cumsum((self.stiffness * self.gap)[order])
+        ends = np.append(self.gap[order][1:], np.inf)
+        on = (load[..., None] <= k * ends - gap).argmax(axis=-1)  # how many springs are closed
+        return (load + gap[on]) / k[on], k[on]
+
+
+def _turned(angle):
+    return np.array([[math.cos(angle), -math.sin(angle), 0.0], [math.sin(angle), math.cos(angle), 0.0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize("floating", [True, False])
+def test_a_rigid_body_on_springs_along_the_normals_turns_and_moves_as_the_balance_has_it(floating):
+    """The driver in space: points of its flanks in the plane of action, forces along the helices' normals.
+
+    Torque about its axis and force along it come from vector products; turn and axial place are searched for.
+    """
+    generator = np.random.default_rng(17)
+    radius, beta, torque, apex = 0.04, math.radians(24.0), 250.0, 0.0 if floating else 3e-6
+    rows = []
+    for sign, low in ((1.0, -0.06), (-1.0, 0.02)):
+        for _ in range(9):
+            along, z = generator.uniform(-0.01, 0.01), generator.uniform(low, low + 0.04)
+            normal = np.array([math.cos(beta), 0.0, sign * math.sin(beta)])
+            rows.append((np.array([along, radius, z]), normal, generator.uniform(1e7, 6e7), generator.uniform(0, 8e-6)))
+
+    def forces(turn, move):
+        """Clockwise turn seen from +z, which drives the flanks along +x, and way along the axis."""
+        total, moment = np.zeros(3), 0.0
+        for point, normal, k, gap in rows:
+            way = _turned(-turn) @ point + [0.0, 0.0, move] - point
+            push = k * max(normal @ way - gap * normal[0], 0.0)
+            total -= push * normal
+            moment -= np.cross(point, push * normal)[2]
+        return total, moment
+
+    def turn_at(move):
+        return brentq(lambda turn: forces(turn, move)[1] - torque, -1e-2, 1e-2, xtol=1e-16, rtol=1e-14)
+
+    move = brentq(lambda q: forces(turn_at(q), q)[0][2], -5e-5, 5e-5, xtol=1e-15) if floating else apex
+    turn = turn_at(move)
+    # A force along the normal has cos(beta_b) of itself in the section, and so has its way.
+    halves = [
+        Springs(np.array([k for _, n, k, _ in rows if n[2] * sign > 0.0]) * math.cos(beta) ** 2,
+                np.array([gap for _, n, _, gap in rows if n[2] * sign > 0.0]))
+        for sign in (1.0, -1.0)
+    ]  # fmt: skip
+    seat = AxialSeat((math.tan(beta), -math.tan(beta)), apex, math.inf if floating else 0.0)
+    found = balance(*halves, torque / radius, seat)
+    assert found.approach.item() == pytest.approx(turn * radius, rel=1e-4)  # the turn is not small to the last digit
+    assert found.position.item() == pytest.approx(move, rel=2e-3)
+    thrust = -(2.0 * found.share.item() - 1.0) * torque / radius * math.tan(beta)
+    assert thrust == pytest.approx(forces(turn, move)[0][2], rel=1e-3, abs=0.5)
+
+
 def _random(generator, count):
     shape = (count, 1)
     return Curved(

@@ -20,11 +20,13 @@ from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.roll_points import line_breaks, roll_points
 from fegear.contact.wide.spots import solve_spots
 from fegear.contact.wide.tip_edges import edge_reach
+from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from fegear.contact.double_helical.double_error import DoubleError
     from fegear.contact.double_helical.double_spec import DoubleHelicalSpec
     from fegear.contact.fourier import Panels
     from fegear.contact.wide.compliance import FlankCompliance
@@ -103,12 +105,15 @@ class LoadedDoublePair:
         Under what each carries; the `load` of either is the mean of that over the base pitch [N], and their roll
         positions are their own, ascending.
     balance : Balance
+    error : DoubleError or None
+        Estimated, if that was asked for.
     """
 
     spec: DoubleHelicalSpec
     points: Panels
     halves: tuple[LoadedFlanks, LoadedFlanks]
     balance: Balance
+    error: DoubleError | None = None
 
     @property
     def load(self) -> Array:
@@ -124,6 +129,21 @@ class LoadedDoublePair:
     def transmission_error(self) -> Array:
         """zeta [m], shape (P, L)."""
         return self.balance.approach
+
+    @property
+    def mean_transmission_error(self) -> Array:
+        """Mean over a base pitch [m], shape (L,)."""
+        return self.mean(self.transmission_error)
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Of the transmission error at the mesh positions [m], shape (L,)."""
+        return np.asarray(np.ptp(self.transmission_error, axis=0))
+
+    @property
+    def share_of_first(self) -> Array:
+        """Of the half at end I, shape (P, L)."""
+        return self.balance.share
 
     @property
     @shows("", "load of each half over the total load")
@@ -180,14 +200,15 @@ class LoadedDoublePair:
     def answer(self, case: int = -1) -> str:
         """What the sharing comes to under one load, in a sentence."""
         ends, motion = self.share[:, :, case], self.axial_motion[:, case]
-        te = self.transmission_error[:, case]
         most = int(np.argmax(self.load_factors[:, case]))
         where = (
             f"the {self.spec.floating} moves {np.ptp(motion) * 1e6:.3g} µm along its axis over the base pitch"
             if self.spec.floating
             else "both members located"
         )
-        limits = "" if self.balance.free[:, case].all() or self.spec.floating is None else ", touching a stop of its play"
+        limits = (
+            "" if self.balance.free[:, case].all() or self.spec.floating is None else ", touching a stop of its play"
+        )
         idle = [f"the half at end {end} carries nothing at some mesh positions" for end, half in
                 zip(("I", "II"), ends, strict=True) if (half == 0.0).any()]  # fmt: skip
         back = "; its other flanks touch, which is not included" if self.touches_back[case] else ""
@@ -196,7 +217,7 @@ class LoadedDoublePair:
             f"Double helical pair: the half at end {('I', 'II')[most]} carries "
             f"{float(self.mean(ends[most])) * 100.0:.3g} % of {self.load[case]:.5g} N "
             f"(K_gamma = {float(self.load_factor[case]):.3f}); {where}{limits}; transmission error "
-            f"{float(np.ptp(te)) * 1e6:.3g} µm peak-to-peak.{alone}"
+            f"{float(self.peak_to_peak[case]) * 1e6:.3g} µm peak-to-peak.{alone}"
         )
 
 
@@ -205,6 +226,7 @@ def load_double(
     gears: Sequence[Sequence[SolidInfluence]],
     *,
     cache: SolutionCache | None = None,
+    estimates: bool = True,
 ) -> LoadedDoublePair:
     """Load both halves of a double helical pair together.
 
@@ -215,6 +237,8 @@ def load_double(
         Solved driver and driven of the halves at end I and II.
     cache : SolutionCache, optional
         Of compliances.
+    estimates : bool
+        Whether errors are estimated, for twice or three times the work.
 
     Returns
     -------
@@ -222,10 +246,34 @@ def load_double(
     """
     cache = SolutionCache() if cache is None else cache
     made = [_made(spec, number, own, cache) for number, own in enumerate(gears)]
-    points, rolls = _common_positions(spec, [flanks for flanks, _ in made])
-    halves = [
-        _half(spec, number, *one, roll) for number, (one, roll) in enumerate(zip(made, rolls, strict=True))
-    ]  # fmt: skip
+    common = _common_positions(spec, [flanks for flanks, _ in made])
+    found = _balanced(spec, made, common)
+    if not estimates:
+        return found
+    from fegear.contact.double_helical.double_error import LONGER, double_error
+
+    longer = [(replace(flanks, panel=LONGER * flanks.panel), gaps) for flanks, gaps in made]
+    steps = [found, _balanced(spec, longer, common)]
+    if any(one.coarse for own in gears for one in own):
+        softer = [
+            (replace(flanks, gears={member: one.coarse or one.fine for member, one in zip(MEMBERS, own, strict=True)}),
+             gaps)
+            for (flanks, gaps), own in zip(longer, gears, strict=True)
+        ]  # fmt: skip
+        steps.append(_balanced(spec, softer, common))
+    sliced = [half for half in spec.halves if half.width == "slices"]
+    missed = max((missed_by_slices(half.pair.driver.twist)["contact"] for half in sliced), default=0.0)
+    return replace(found, error=double_error(steps, missed))
+
+
+def _balanced(
+    spec: DoubleHelicalSpec,
+    made: Sequence[tuple[FlankPair, FlankGaps]],
+    common: tuple[Panels, tuple[Panels | None, Panels | None]],
+) -> LoadedDoublePair:
+    """Both halves in balance at mesh positions that they have in common."""
+    points, rolls = common
+    halves = [_half(spec, number, *one, roll) for number, (one, roll) in enumerate(zip(made, rolls, strict=True))]
     found = balance(halves[0], halves[1], spec.loads, spec.seat)
     loads = np.array(spec.loads)
     first, second = (

@@ -38,9 +38,7 @@ def line_breaks(pair: GearPair, beyond: tuple[float, float] = (0.0, 0.0)) -> Arr
     return np.unique(np.mod(np.array(places) - pair.x_start, pair.base_pitch)) + pair.x_start
 
 
-def roll_points(
-    pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0), others: ArrayLike = ()
-) -> Panels:
+def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0), others: ArrayLike = ()) -> Panels:
     """Roll positions and what part of a base pitch each stands for.
 
     Parameters
