@@ -12,7 +12,7 @@ from scipy.optimize import nnls
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored
-from fegear.contact.double_helical.loaded_double import load_double
+from fegear.contact.double_helical.load_double import load_double
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.wide.complementarity import tangent_compliance
 from fegear.contact.wide.lines import base_twist

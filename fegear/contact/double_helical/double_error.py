@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.arrays import Array, ReadOnlyArrays
-from fegear.base.shown import shown
+from fegear.base.arrays import Array
+from fegear.contact.double_helical.loaded_double import DoubleError
 from fegear.contact.wide.over_pitch import every_second
 
 if TYPE_CHECKING:
@@ -21,29 +20,6 @@ if TYPE_CHECKING:
 LONGER = 1.5
 #: What is taken for an error of what half of the mesh positions change of a mean.
 _OF_MEAN = 0.5
-
-
-@dataclass(frozen=True)
-class DoubleError(ReadOnlyArrays):
-    """Estimated errors; each solution's changes add up, with what slices are known to miss and positions leave open.
-
-    Parameters
-    ----------
-    transmission_error, share, axial_motion : ndarray, shape (P, L)
-        [m], of the half at end I, [m].
-    mean, peak_to_peak : ndarray, shape (L,)
-        Of the transmission error [m].
-    load_factor : ndarray, shape (L,)
-    face_load_factors : ndarray, shape (2, L)
-    """
-
-    transmission_error: Array
-    share: Array
-    axial_motion: Array
-    mean: Array = shown("um", "mean transmission error of both halves", name="te_mean")
-    peak_to_peak: Array = shown("um", "both halves, over the base pitch", name="te_peak_to_peak")
-    load_factor: Array = shown("", "mean load of the half that carries more for its face width", name="K_gamma")
-    face_load_factors: Array = shown("", "maximum / mean load per face width of each half", name="K_Hbeta")
 
 
 def double_error(steps: Sequence[LoadedDoublePair], missed: float) -> DoubleError:

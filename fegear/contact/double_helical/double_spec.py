@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+from fegear.base.effects import SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.contact.double_helical.balance import AxialSeat
 from fegear.contact.wide.lines import base_twist
@@ -90,9 +91,9 @@ class DoubleHelicalSpec:
             if half.face.errors.shafts.given:
                 raise self._wrong("halves", "(on shafts)", "must not be on shafts that bend",
                                   "specify line_error or misalignment")  # fmt: skip
-            if self.stagger and half.spacing_errors and half.has_data("spacing_errors"):
+            if self.stagger and half.spacing_errors and half.has_data(SPACING_ERRORS.name):
                 raise self._wrong("stagger", f"{self.stagger:.6g}", "is not available with spacing errors",
-                                  "set effects.spacing_errors = false or stagger = 0")  # fmt: skip
+                                  f"set effects.{SPACING_ERRORS.name} = false or stagger = 0")  # fmt: skip
         if base_twist(one) * base_twist(two) > 0.0:
             raise self._wrong("hand", f"{one.driver.hand} in both halves", "must be opposite",
                               "change the hand of one half")  # fmt: skip
