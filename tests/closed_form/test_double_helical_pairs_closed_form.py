@@ -262,6 +262,35 @@ def test_errors_cover_more_panels_and_vanish_with_what_is_even(gears):
         assert (off <= getattr(found.error, own)).all(), key
 
 
+def test_coarser_gears_add_to_the_errors(gears):
+    stiffer = [[replace(one, coarse=replace(one.fine, compliance={k: 0.9 * c for k, c in one.fine.compliance.items()}))
+                for one in own] for own in gears]  # fmt: skip
+    plain, more = (double(one, floating="driver", estimates=True).error for one in (gears, stiffer))
+    found = double(gears, floating="driver")
+    assert (more.mean - plain.mean > 0.05 * found.mean_transmission_error).all()
+    assert (more.mean - plain.mean < 0.11 * found.mean_transmission_error).all()
+
+
+def test_the_answer_says_who_carries_and_what_is_at_its_stop(gears, floating):
+    assert floating.answer() == (
+        f"Double helical pair: the half at end I carries 50 % of {LOAD:.0f} N (K_gamma = 1.000); the driver moves 0 µm "
+        f"along its axis over the base pitch; transmission error {floating.peak_to_peak[1] * 1e6:.3g} µm peak-to-peak."
+    )
+    stopped = double(gears, floating="driven", apex_offset=8e-6, axial_play=12e-6)
+    assert not stopped.balance.free.any()
+    assert stopped.axial_motion == pytest.approx(6e-6)  # after the driver's apex, as far as it can
+    assert ", touching a stop of its play;" in stopped.answer()
+    apart = double(gears, apex_offset=-1e-3).answer()
+    assert "the half at end II carries 100 % of 6000 N (K_gamma = 2.000); both members located" in apart
+    assert "the half at end I carries nothing at some mesh positions; its other flanks touch, which is not" in apart
+
+
+def test_flanks_that_change_along_the_face_are_not_mirrored():
+    with pytest.raises(InputError, match="must not vary along the face to be mirrored; specify both halves"):
+        mirrored(half(tilt=ShaftTilt(1e-5)))
+    assert mirrored(LEFT) == RIGHT
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [

@@ -150,7 +150,7 @@ class LoadedDoublePair:
         ends, motion = self.share[:, :, case], self.axial_motion[:, case]
         most = int(np.argmax(self.load_factors[:, case]))
         where = (
-            f"the {self.spec.floating} moves {np.ptp(motion) * 1e6:.3g} µm along its axis over the base pitch"
+            f"the {self.spec.floating} moves {round(float(np.ptp(motion)) * 1e6, 3):.3g} µm along its axis over the base pitch"
             if self.spec.floating
             else "both members located"
         )
