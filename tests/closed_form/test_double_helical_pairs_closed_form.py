@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored
+from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored, twist_between
 from fegear.contact.double_helical.load_double import load_double
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.wide.complementarity import tangent_compliance
@@ -262,6 +262,29 @@ def test_errors_cover_more_panels_and_vanish_with_what_is_even(gears):
         assert (off <= getattr(found.error, own)).all(), key
 
 
+def test_shafts_that_twist_between_the_halves_unload_the_half_away_from_the_coupling(gears):
+    """A tube's twist by hand; where both halves touch the shares are those of springs in series; a float feels none."""
+    gap, pair = 40e-3, RIGHT.pair
+    lag = twist_between(pair, gap, "I", "II")
+    shear = pair.driver.material.young_modulus / 2.6
+    tube = math.pi / 2.0 * (pair.driver.root_radius**4 - pair.driver.bore_radius**4)
+    assert lag[1] == pytest.approx(pair.driver.base_radius**2 * gap / (shear * tube))
+    assert lag[0] < lag[1]  # the larger gear twists less
+    both_at_one = twist_between(pair, gap, "I", "I")
+    assert both_at_one == (0.0, pytest.approx(sum(lag)))
+    found = double(gears, gap=gap, twist_compliance=both_at_one)
+    k = found.halves[0].contact.stiffness[:, 1]
+    softer = both_at_one[1] * k  # of a half, with the tube in series: s / (1 - s) = 1 + softer
+    assert found.share[0, :, 1] == pytest.approx((1.0 + softer) / (2.0 + softer), rel=5e-3)
+    assert (found.share[0] > 0.51).all()
+    even = double(gears, gap=gap, twist_compliance=both_at_one, floating="driver")
+    assert (even.share == 0.5).all()
+    none = double(gears, floating="driver").transmission_error
+    np.testing.assert_allclose(
+        even.transmission_error - none, 0.25 * both_at_one[1] * even.load[None] * np.ones((6, 1))
+    )
+
+
 def test_coarser_gears_add_to_the_errors(gears):
     stiffer = [[replace(one, coarse=replace(one.fine, compliance={k: 0.9 * c for k, c in one.fine.compliance.items()}))
                 for one in own] for own in gears]  # fmt: skip
@@ -297,6 +320,7 @@ def test_flanks_that_change_along_the_face_are_not_mirrored():
         ({"gap": -1e-3}, "gap = -0.001: must be finite and not negative"),
         ({"axial_play": 1e-4}, 'axial_play = 0.0001: requires a floating member; set floating = "driver" or "driven"'),
         ({"floating": "driver", "axial_play": -1.0}, "axial_play = -1.0: must not be negative"),
+        ({"twist_compliance": (0.0, -1e-9)}, "twist_compliance = 0 and -1e-09: must be finite and not negative"),
         ({"stagger": 1.0}, "stagger = 1: must be at least 0 and below 1"),
         ({"loads": ()}, r"loads = \(not given\): must be positive and finite"),
         ({"halves": (RIGHT, RIGHT)}, "hand = right in both halves: must be opposite"),

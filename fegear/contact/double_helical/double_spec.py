@@ -14,8 +14,10 @@ from fegear.contact.wide.lines import base_twist
 if TYPE_CHECKING:
     from fegear.contact.pair_spec import PairSpec
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import Member
+    from fegear.geometry.pair import GearPair, Member
 
+#: End of the pair at which a half is.
+End = Literal["I", "II"]
 #: Largest difference of what both halves must have in common, as a share of it.
 _EQUAL = 1e-9
 
@@ -24,7 +26,7 @@ _EQUAL = 1e-9
 class DoubleHelicalSpec:
     """Two helical pairs of opposite hand on common shafts.
 
-    Shafts are rigid between the halves; each half's gear bodies deflect by themselves.
+    Each half's gear bodies deflect by themselves; between the halves shafts twist as far as `twist_compliance` says.
 
     Parameters
     ----------
@@ -44,6 +46,9 @@ class DoubleHelicalSpec:
         What else pushes the floating member toward end II, of a coupling, say [N].
     stagger : float
         By which share of a pitch the teeth at end II are ahead of those at end I.
+    twist_compliance : (float, float)
+        What the approach of either half lags per its own load, of shafts that twist between the halves [m/N]: see
+        `twist_between`.
     name : str
         For messages.
     """
@@ -56,6 +61,7 @@ class DoubleHelicalSpec:
     axial_play: float = math.inf
     axial_force: float = 0.0
     stagger: float = 0.0
+    twist_compliance: tuple[float, float] = (0.0, 0.0)
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -73,6 +79,9 @@ class DoubleHelicalSpec:
             raise self._wrong("axial_play", f"{self.axial_play}", "must not be negative")
         if not 0.0 <= self.stagger < 1.0:
             raise self._wrong("stagger", f"{self.stagger:.6g}", "must be at least 0 and below 1 (share of a pitch)")
+        if not all(math.isfinite(one) and one >= 0.0 for one in self.twist_compliance):
+            said = " and ".join(f"{one:.6g}" for one in self.twist_compliance)
+            raise self._wrong("twist_compliance", said, "must be finite and not negative")
         if self.floating is None and (self.axial_force or math.isfinite(self.axial_play)):
             key = "axial_force" if self.axial_force else "axial_play"
             rule = "requires a floating member"
@@ -146,6 +155,30 @@ class DoubleHelicalSpec:
         half, part = self.halves[number], self.nominal_parts[number]
         loads = (*(part * load for load in self.loads), *self.loads)
         return replace(half, loads=loads, nominal=part * self.loads[-1])
+
+
+def twist_between(pair: GearPair, gap: float, torque_in: End, torque_out: End) -> tuple[float, float]:
+    """Compliances of both halves by the twist of tubes from bore to root circle over the gap [m/N].
+
+    The half away from where the driver is driven lags behind the other one, and so does the half away from where the
+    driven gear's torque is taken.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Either half.
+    gap : float
+        Length of the tubes [m].
+    torque_in, torque_out : {"I", "II"}
+        Ends at which the driver is driven and the driven gear's torque is taken.
+    """
+    found = [0.0, 0.0]
+    for gear, end in ((pair.driver, torque_in), (pair.driven, torque_out)):
+        material = gear.material
+        shear = material.young_modulus / (2.0 * (1.0 + material.poisson_ratio))
+        polar = 0.5 * math.pi * abs(gear.root_radius**4 - gear.bore_radius**4)
+        found[0 if end == "II" else 1] += gear.base_radius**2 * gap / (shear * polar)
+    return found[0], found[1]
 
 
 def mirrored(half: PairSpec) -> PairSpec:

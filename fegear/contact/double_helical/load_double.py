@@ -51,6 +51,8 @@ class _LoadedHalf:
         At its own roll positions [m].
     constant : float
         Gap all over the half [m].
+    lag : float
+        Of its approach per its own load, by shafts that twist between the halves [m/N].
     order : ndarray, shape (P,)
         Mesh positions of the pair in the order of its own roll positions.
     """
@@ -59,6 +61,7 @@ class _LoadedHalf:
     known: FlankCompliance
     gap: Array
     constant: float
+    lag: float
     order: Index
 
     @property
@@ -76,7 +79,8 @@ class _LoadedHalf:
         """See `fegear.contact.double_helical.balance.Half`."""
         with one_thread(with_scipy=False):
             _, contact = solve_spots(self.known, self.gap, load[self.order])
-        return contact.approach[self._back] + self.constant, contact.stiffness[self._back]
+        stiffness = contact.stiffness[self._back]
+        return contact.approach[self._back] + self.constant + self.lag * load, stiffness / (1.0 + self.lag * stiffness)
 
     def loaded(self, load: Array, approach: Array) -> LoadedFlanks:
         """Flanks under loads of their own, which may be none, shape (P, L) [N]; their `load` is the mean of these."""
@@ -199,5 +203,5 @@ def _half(
         order = np.argsort(points.x, kind="stable")
         known = flanks.compliance(about, points.x[order])
         known = replace(known, lines=replace(known.lines, weight=points.weights[order] / points.period))
-    constant = spec.constant_gaps[number]
-    return _LoadedHalf(flanks, known, gaps.at(flanks.pair, known.lines), constant, order)
+    constant, lag = spec.constant_gaps[number], spec.twist_compliance[number]
+    return _LoadedHalf(flanks, known, gaps.at(flanks.pair, known.lines), constant, lag, order)

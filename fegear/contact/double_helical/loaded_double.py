@@ -148,9 +148,9 @@ class LoadedDoublePair:
     def answer(self, case: int = -1) -> str:
         """What the sharing comes to under one load, in a sentence."""
         ends, motion = self.share[:, :, case], self.axial_motion[:, case]
-        most = int(np.argmax(self.load_factors[:, case]))
+        most, way = int(np.argmax(self.load_factors[:, case])), round(float(np.ptp(motion)) * 1e6, 3)
         where = (
-            f"the {self.spec.floating} moves {round(float(np.ptp(motion)) * 1e6, 3):.3g} µm along its axis over the base pitch"
+            f"the {self.spec.floating} moves {way:.3g} µm along its axis over the base pitch"
             if self.spec.floating
             else "both members located"
         )
