@@ -219,17 +219,28 @@ def test_a_tilt_of_the_axes_counts_with_the_gap_and_a_float_takes_its_even_part(
     assert mean == pytest.approx(apex, rel=0.01)
 
 
-def test_staggered_teeth_of_half_a_pitch_have_the_halves_curve_moved_by_it(gears, floating):
-    """Floating: zeta is the mean of both halves' curves, here of one curve and of itself half a pitch on."""
-    staggered = double(gears, floating="driver", stagger=0.5)
+@pytest.mark.parametrize("part", [1.0 / 3.0, 0.5])
+def test_staggered_teeth_have_the_halves_curve_moved_by_it(gears, floating, part):
+    """Floating: zeta is the mean of both halves' curves, here of one curve and of itself a part of a pitch on."""
+    staggered = double(gears, floating="driver", stagger=part)
     pitch = RIGHT.pair.base_pitch
     found, i = alone(gears, 0, staggered.spec, 0.5 * LOAD)
-    ahead = np.interp(staggered.points.x + 0.5 * pitch, found.lines.roll, found.transmission_error[:, i], period=pitch)
+    ahead = np.interp(staggered.points.x + part * pitch, found.lines.roll, found.transmission_error[:, i], period=pitch)
     own = staggered.halves[0].transmission_error[:, 1]
-    assert np.ptp(staggered.transmission_error[:, 1]) < 0.5 * np.ptp(floating.transmission_error[:, 1])
+    assert staggered.peak_to_peak[1] < floating.peak_to_peak[1]
     np.testing.assert_allclose(staggered.transmission_error[:, 1], 0.5 * (own + ahead), rtol=1e-12)
-    assert np.ptp(staggered.axial_motion[:, 1]) > 1e-9
+    # The driver moves so far that the approaches differ by twice the half of their difference.
+    apart = (own - ahead) / (2.0 * base_twist(RIGHT.pair))
+    np.testing.assert_allclose(staggered.axial_motion[:, 1], apart, rtol=1e-9, atol=1e-15)
     assert staggered.halves[1].lines.weight.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("member", "sign"), [("driver", -1.0), ("driven", 1.0)])
+def test_the_halves_hold_what_pushes_the_floating_member(gears, member, sign):
+    """The mesh pushes the driver with `axial_force` and the driven with the opposite, against the coupling's force."""
+    found = double(gears, floating=member, axial_force=150.0)
+    np.testing.assert_allclose(found.axial_force, sign * 150.0, rtol=1e-9)
+    assert (found.load_factor > 1.0).all()
 
 
 def test_halves_of_unequal_width_carry_by_their_width():
