@@ -219,6 +219,18 @@ def test_a_tilt_of_the_axes_counts_with_the_gap_and_a_float_takes_its_even_part(
     assert mean == pytest.approx(apex, rel=0.01)
 
 
+def test_a_tilt_over_a_long_gap_is_an_apex_error_until_one_half_carries_all(gears):
+    """Over metres a tilt that is nothing within a half opens one of them."""
+    for tilt, alone_ in ((1e-6, False), (2e-5, True)):
+        axes = ShaftTilt(out_of_plane=tilt)
+        tilted = double(gears, (half(tilt=axes), half("left", tilt=axes)), loads=(LOAD,), gap=3.0)
+        apex = axes.in_plane_of_action(RIGHT.pair) * (3.0 + WIDTH) / (2.0 * base_twist(RIGHT.pair))
+        shifted = double(gears, loads=(LOAD,), apex_offset=apex)
+        np.testing.assert_allclose(tilted.share, shifted.share, atol=2e-3)
+        np.testing.assert_allclose(tilted.balance.separation, shifted.balance.separation, atol=3e-7)
+        assert (tilted.share[0] == 1.0).all() == alone_
+
+
 @pytest.mark.parametrize("part", [1.0 / 3.0, 0.5])
 def test_staggered_teeth_have_the_halves_curve_moved_by_it(gears, floating, part):
     """Floating: zeta is the mean of both halves' curves, here of one curve and of itself a part of a pitch on."""
