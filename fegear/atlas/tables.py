@@ -71,6 +71,10 @@ class Layout:
         first = _OWN + self.reach * _NEIGHBOUR**2 + self.kernels.index(kernel) * _LOADS * _POINTS
         return row[..., first : first + _LOADS * _POINTS].reshape(*row.shape[:-1], _LOADS, _POINTS)
 
+    def stresses(self, row: Array) -> Array:
+        """All stress: fillets (tension, compression), teeth -K to K, contacts, points, (2, 2 K + 1, 33, 40)."""
+        return row[..., self.compliances : -2].reshape(*row.shape[:-1], 2, 2 * self.reach + 1, _LOADS, _POINTS)
+
     def ends(self, row: Array) -> Array:
         """Roll length where the flank begins and length of a fillet [modules], (2,)."""
         return row[..., -2:]

@@ -12,7 +12,7 @@ import numpy as np
 
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
-from fegear.contact.many import kernel, over_mesh
+from fegear.contact.many import kernel, over_fillets, over_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,7 +84,7 @@ def transmission_errors(
     t, w = np.polynomial.legendre.leggauss(order)
     out = np.empty((count, each.shape[1], 3))
     compiled()["transmission_errors"](
-        engagements.numbers, *_tables(engagements), engagements.corner_contact, each, waves, samples,
+        engagements.numbers, *tables_of(engagements), engagements.corner_contact, each, waves, samples,
         0.5 * (t + 1.0), 0.5 * w, out,
     )  # fmt: skip
     return ManyErrors(out[..., 0], out[..., 1], out[..., 2])
@@ -111,11 +111,12 @@ def shares_at(engagements: ManyEngagements, load: ArrayLike, at: ArrayLike) -> M
     x = n[:, kernel.START, None] + n[:, kernel.PITCH, None] * np.asarray(at, dtype=float)
     error, shares = np.empty(x.shape), np.zeros((*x.shape, kernel.MOST))
     first = np.zeros(n.shape[0], dtype=np.int64)
-    compiled()["shared_at"](n, *_tables(engagements), engagements.corner_contact, each, x, error, shares, first)
+    compiled()["shared_at"](n, *tables_of(engagements), engagements.corner_contact, each, x, error, shares, first)
     return ManyShares(error, shares, first)
 
 
-def _tables(engagements: ManyEngagements) -> tuple[Array, Array, Array, Array]:
+def tables_of(engagements: ManyEngagements) -> tuple[Array, Array, Array, Array]:
+    """Compliances of both gears as machine code takes them."""
     f = engagements.flanks
     own1, own2 = (np.ascontiguousarray(one) for one in f.own)
     beside1, beside2 = (np.ascontiguousarray(one) for one in f.beside)
@@ -124,7 +125,7 @@ def _tables(engagements: ManyEngagements) -> tuple[Array, Array, Array, Array]:
 
 @cache
 def compiled() -> dict[str, Callable[..., Any]]:
-    """Functions of `over_mesh` as machine code, compiled at first use and kept on disk for the next process.
+    """Functions of `over_mesh` and `over_fillets` as machine code, compiled at first use, kept on disk for later.
 
     Raises
     ------
@@ -135,10 +136,11 @@ def compiled() -> dict[str, Callable[..., Any]]:
         from fegear.contact.machine_code import machine_code
     except ImportError:
         raise MissingLibraryError(f"{install('motion')}.") from None
-    modules = (kernel, over_mesh)
+    modules = (kernel, over_mesh, over_fillets)
     digest = hashlib.sha256(b"".join(Path(str(one.__file__)).read_bytes() for one in modules)).hexdigest()
+    long = (over_mesh.transmission_errors, over_fillets.root_stresses)
     made: dict[object, Callable[..., Any]] = {
-        function: machine_code(function, digest, _LONG if function is over_mesh.transmission_errors else "")
+        function: machine_code(function, digest, _LONG if function in long else "")
         for module in modules
         for _, function in inspect.getmembers(module, inspect.isfunction)
         if function.__module__ == module.__name__
@@ -146,4 +148,9 @@ def compiled() -> dict[str, Callable[..., Any]]:
     for module in modules:
         functions = inspect.getmembers(module, inspect.isfunction)
         vars(module).update({name: made[one] for name, one in functions if one in made})
-    return {"transmission_errors": over_mesh.transmission_errors, "shared_at": over_mesh.shared_at}
+    return {
+        "transmission_errors": over_mesh.transmission_errors,
+        "shared_at": over_mesh.shared_at,
+        "root_stresses": over_fillets.root_stresses,
+        "root_stress_at": over_fillets.root_stress_at,
+    }
