@@ -9,6 +9,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from fegear.case.model import Case
+from fegear.case.part import Later
 from fegear.case.renamed import current
 
 #: A list of more names than these is shown by what they are.
@@ -47,6 +48,8 @@ def help_of(node: Node) -> str:
 
 def part_models(annotation: object) -> list[type[BaseModel]]:
     """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``, ``dict[str, Part]``."""
+    if isinstance(annotation, Later):
+        return [annotation.part]
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     if get_origin(annotation) is Annotated:

@@ -2,32 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
 from fegear.case.accuracy import AccuracyPart
-from fegear.case.compound import CompoundPart
 from fegear.case.crack_growth import CrackGrowthPart
-from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
-from fegear.case.flank_design import FlankDesignPart
-from fegear.case.gauge import GaugePart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
 from fegear.case.loading import LoadDistributionPart, LoadingPart, TransmissionErrorPart
 from fegear.case.operation import RatingPart
 from fegear.case.pair import PairPart
-from fegear.case.part import Part, Table
-from fegear.case.planetary import PlanetaryPart
+from fegear.case.part import Later, Part, Table
 from fegear.case.renamed import SCHEMA_VERSION
-from fegear.case.shaft import BearingPart, ShaftInSpacePart
-from fegear.case.sizing import SizingPart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
-from fegear.case.train import TrainPart
-from fegear.case.transmissibility import TransmissibilityPart
+
+if TYPE_CHECKING:
+    from fegear.case.compound import CompoundPart
+    from fegear.case.design import DesignPart
+    from fegear.case.flank_design import FlankDesignPart
+    from fegear.case.gauge import GaugePart
+    from fegear.case.planetary import PlanetaryPart
+    from fegear.case.shaft import BearingPart, ShaftInSpacePart
+    from fegear.case.sizing import SizingPart
+    from fegear.case.train import TrainPart
+    from fegear.case.transmissibility import TransmissibilityPart
+else:  # tables that few cases have
+    CompoundPart = Later("fegear.case.compound", "CompoundPart")
+    DesignPart = Later("fegear.case.design", "DesignPart")
+    FlankDesignPart = Later("fegear.case.flank_design", "FlankDesignPart")
+    GaugePart = Later("fegear.case.gauge", "GaugePart")
+    PlanetaryPart = Later("fegear.case.planetary", "PlanetaryPart")
+    BearingPart = Later("fegear.case.shaft", "BearingPart")
+    ShaftInSpacePart = Later("fegear.case.shaft", "ShaftInSpacePart")
+    SizingPart = Later("fegear.case.sizing", "SizingPart")
+    TrainPart = Later("fegear.case.train", "TrainPart")
+    TransmissibilityPart = Later("fegear.case.transmissibility", "TransmissibilityPart")
 
 
 class Case(Part):

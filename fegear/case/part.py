@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 from pydantic import (
@@ -59,19 +60,48 @@ class Part(BaseModel):
         }  # fmt: skip
 
 
+class Later:
+    """Stands for a part whose module is read when the first case has it: most cases have few of all tables.
+
+    Parameters
+    ----------
+    module, name : str
+        Where the part is: ``fegear.case.sizing``, ``SizingPart``.
+    """
+
+    def __init__(self, module: str, name: str) -> None:
+        self._place = module, name
+
+    @property
+    def part(self) -> type[Part]:
+        """The part itself."""
+        module, name = self._place
+        found: type[Part] = getattr(import_module(module), name)
+        return found
+
+    def read(self, value: object, info: ValidationInfo) -> Part:
+        """As of the part."""
+        return self.part.read(value, info)
+
+    def __call__(self) -> Part:
+        """The table that says nothing; Python takes only what can be called for a type."""
+        return self.part()
+
+
 class OnDemand:
     """Marks a table whose rules are compiled when the first case has it, not with every case.
 
     Compiling the rules of all tables takes longer than reading a case.
     """
 
-    def __get_pydantic_core_schema__(self, part: type[Part], _handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, part: type[Part] | Later, _handler: GetCoreSchemaHandler) -> CoreSchema:
         """Let the table check itself; its errors come back under its key."""
         return with_info_plain_validator_function(part.read)
 
     def __get_pydantic_json_schema__(self, rules: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """As if it were not marked: named, and stated once."""
-        part: type[Part] = rules["function"]["function"].__self__
+        marked: type[Part] | Later = rules["function"]["function"].__self__
+        part = marked.part if isinstance(marked, Later) else marked
         part.model_rebuild()
         named: Any = {**part.__pydantic_core_schema__, "ref": f"{part.__module__}.{part.__qualname__}:{id(part)}"}
         return handler(definitions_schema(named, []))

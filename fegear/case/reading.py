@@ -20,9 +20,7 @@ from fegear.case.model import Case
 from fegear.case.nearest import nearest
 from fegear.case.part import BARE_SI
 from fegear.case.references import check_references
-from fegear.case.refusal import _meant, refusal
 from fegear.case.renamed import current, current_key, without_old
-from fegear.case.set_pairs import with_set_pairs
 from fegear.case.settled import settled
 from fegear.case.text_file import is_below, read_text
 from fegear.case.working_flanks import with_working_flanks
@@ -224,10 +222,15 @@ def build_scene(
     try:
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
+        from fegear.case.refusal import refusal  # late: it knows the words of the trade
+
         raise refusal(error) from None
     case, derived = settled(case)
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
-    case = with_set_pairs(case, gears)
+    if case.planetary:
+        from fegear.case.set_pairs import with_set_pairs  # few cases have sets
+
+        case = with_set_pairs(case, gears)
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
             if (gear := getattr(pair, role)) not in case.gear:
@@ -337,14 +340,18 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
             if not known:  # a misspelt name would otherwise begin a gear, a body or a shaft of its own
                 raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
             if step not in known:
-                raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known, words=_meant))
+                raise _unknown(option, path, step, known)
             table[step] = {}
         if not isinstance(table[step], dict):
             raise InputError(option, f'"{path}"', f'"{step}" is not a table')
         table = table[step]
     known = keys_at(steps[:-1])
     if known and steps[-1] not in known and steps[-1] not in table:
-        raise InputError(
-            option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known, words=_meant)
-        )
+        raise _unknown(option, path, steps[-1], known)
     table[steps[-1]] = value
+
+
+def _unknown(option: str, path: str, step: str, known: Sequence[str]) -> InputError:
+    from fegear.case.refusal import meant  # late: it knows the words of the trade
+
+    return InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known, words=meant))

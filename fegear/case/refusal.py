@@ -23,7 +23,7 @@ _FEW_PLACES = 2
 _ALL_BUT = 0.9
 
 
-def _meant(word: str, known: Collection[str] = ()) -> Meaning | None:
+def meant(word: str, known: Collection[str] = ()) -> Meaning | None:
     """What an unknown key means: a word of the trade, or a key of another table unless it is all but one of these."""
     found = of_key(word)
     places = () if found or get_close_matches(word, known, n=1, cutoff=_ALL_BUT) else tuple(places_of(word))
@@ -83,7 +83,7 @@ def _sentence(error: ErrorDetails) -> InputError:
         return InputError(key, shown, context["rule"], context["remedy"])
     if kind == "extra_forbidden":
         known = keys_at(loc[:-1])
-        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=_meant))
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=meant))
     if kind == "missing":
         return InputError(key, "(not given)", "is required")
     if kind == "literal_error":

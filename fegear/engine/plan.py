@@ -11,7 +11,6 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.base.notes import neglecting
 from fegear.case.nearest import nearest
 from fegear.case.reading import Scene
-from fegear.case.trade_words import of_result
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.joined_names import refuse_joined
 from fegear.engine.stage import Stage, Task
@@ -173,6 +172,8 @@ def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -
     if result in known.broken:
         raise known.broken[result]
     if result not in by_result:
+        from fegear.case.trade_words import of_result  # late: words of the trade, which only a refusal needs
+
         rule, remedy = "unknown result", nearest(result, by_result, '"fegear results"', lambda word, _: of_result(word))
         raise InputError("results", f'"{result}"', rule, remedy)
 

@@ -9,7 +9,7 @@ import pytest
 
 from fegear.engine.table import Column, Table
 from fegear.output.run_folder import _read_table as read_table
-from fegear.output.tables import cell, sheet_lines, table_text
+from fegear.output.tables import cells, sheet_lines, table_text
 
 TABLE = Table("lives_I", (
     Column("place", np.array([0.0, 1e-3]), "mm", "along the shaft"),
@@ -29,7 +29,7 @@ def test_a_table_has_blanks_and_its_columns_say_why():
         "blank where it does not apply", "",
     ]  # fmt: skip
     odd = (np.float64("nan"), np.float64("-inf"), np.int64(3), np.str_("a"))
-    assert [cell(one) for one in odd] == ["", "", "3", "a"]
+    assert [cells(np.array([one])) for one in odd] == [[""], [""], ["3"], ["a"]]
 
 
 def test_a_reader_takes_blanks_for_what_does_not_apply(tmp_path):

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from fegear.base.arrays import Array
 from fegear.base.plain import read_only
@@ -166,7 +165,8 @@ class Estimate:
         # A difference that changes its sign along the flank vanishes on its way from one place to the next. At the ends
         # it is that of corners.
         order = np.argsort(samples[: 2 * _SAMPLES - 1])[1:-1]
-        beside = maximum_filter1d(known[order], 3)
+        padded = np.pad(known[order], 1, mode="edge")
+        beside = np.maximum(np.maximum(padded[:-2], padded[2:]), padded[1:-1])
         floor = np.maximum(usual, np.interp(radius, samples[order], beside, left=0.0, right=0.0))
         return np.asarray(self._self_share * np.maximum(difference, floor) + self.common_errors[0])
 

@@ -11,7 +11,7 @@ from fegear.base.printed import rounded
 from fegear.base.spoken_names import spoken
 from fegear.engine.inexact import is_inexact
 from fegear.output.numbers import plain_number, pretty_unit, with_error
-from fegear.output.tables import cell, table_file
+from fegear.output.tables import cells, table_file
 
 if TYPE_CHECKING:
     from fegear.base.notes import Note
@@ -269,7 +269,7 @@ class DataTable(Block):
     @property
     def rows(self) -> list[tuple[str, ...]]:
         """The first rows."""
-        columns = [[_short(cell(value)) for value in column.values[:_ROWS]] for column in self.table.columns]
+        columns = [[_short(one) for one in cells(column.values[:_ROWS])] for column in self.table.columns]
         return list(zip(*columns, strict=True))
 
 
@@ -284,7 +284,7 @@ class SheetGroup:
     def rows(self) -> list[tuple[str, str, tuple[str, ...]]]:
         """What each row is, its unit and its values."""
         return [
-            (column.explained, column.unit, tuple(_short(cell(value)) for value in column.values))
+            (column.explained, column.unit, tuple(_short(one) for one in cells(column.values)))
             for column in self.columns
         ]
 

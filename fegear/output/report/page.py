@@ -29,12 +29,14 @@ from fegear.output.draw_plotly.layout import darker, plotly_json, template
 from fegear.output.file_names import file_name
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import Block, as_words, readable
+from fegear.output.report.kept import keep, kept, recalled
 from fegear.output.tables import table_file, table_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from jinja2 import Environment
+    from jinja2.bccache import Bucket
 
     from fegear.engine.figure.figure import Figure
     from fegear.engine.table import Table
@@ -159,16 +161,29 @@ def _symbols(text: str) -> list[tuple[str, str]]:
 
 @cache
 def templates() -> Future[Environment]:
-    """Jinja2 with the compiled templates, .1 s of work, in a thread: most of a run holds no lock of the interpreter."""
+    """Jinja2 with the compiled templates, in a thread: most of a run holds no lock of the interpreter."""
     return begun(_environment)
 
 
 def _environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined  # takes time, which only pages should cost
+    # taking time, which only pages should cost
+    from jinja2 import BytecodeCache, Environment, PackageLoader, StrictUndefined, __version__
+
+    class Compiled(BytecodeCache):
+        """Templates compiled by an earlier run; jinja2 looks whether they are of this text and this Python."""
+
+        def load_bytecode(self, bucket: Bucket) -> None:
+            known = recalled(f"{bucket.key} {__version__}")
+            if known is not None:
+                bucket.bytecode_from_string(known)
+
+        def dump_bytecode(self, bucket: Bucket) -> None:
+            keep(f"{bucket.key} {__version__}", bucket.bytecode_to_string())
 
     made = Environment(
         loader=PackageLoader("fegear.output.report"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, auto_reload=False,
+        bytecode_cache=Compiled(),
     )  # fmt: skip
     # JSON that can stand inside a script: `tojson` writes <, > and & as \u003c, \u003e and \u0026.
     made.policies["json.dumps_kwargs"] = {"ensure_ascii": False, "separators": (",", ":"), "allow_nan": False}
@@ -229,7 +244,10 @@ def compression() -> Future[str]:
 
 
 def _compressed() -> str:
-    return base64.b64encode(gzip.compress(plotly_file().read_bytes(), _LEVEL, mtime=0)).decode()
+    path = plotly_file()
+    state = path.stat()
+    of = f"{path} {state.st_size} {state.st_mtime_ns} {_LEVEL}"
+    return base64.b64encode(kept(of, lambda: gzip.compress(path.read_bytes(), _LEVEL, mtime=0))).decode()
 
 
 def plotly_file() -> Path:
