@@ -15,7 +15,7 @@ from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_material import MaterialPart
 from fegear.case.gear_teeth import MEASURES, TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
-from fegear.case.odd_tooth import OddToothPart
+from fegear.case.odd_tooth import OUTLINES, OddToothPart
 from fegear.case.part import (
     LengthOrZero,
     PositiveLength,
@@ -317,11 +317,16 @@ class GearPart(TeethPart):
         """Refuse odd teeth of gears that are not solved with them, that are no teeth of theirs, and twice given."""
         if not self.odd_tooth:
             return
-        if self.internal or self.has_helix:
-            kind = "internal" if self.internal else "helical"
-            raise refuse(
-                f"is not available for {kind} gears yet (external spur gears only)", "remove it", key="odd_tooth"
-            )
+        if self.has_helix:
+            raise refuse("is not available for helical gears yet (spur gears only)", "remove it", key="odd_tooth")
+        for n, one in enumerate(self.odd_tooth if self.internal else []):
+            outline = next((key for key in OUTLINES if getattr(one, key)), None)
+            if outline is not None:
+                raise refuse(
+                    "is not available for internal gears yet",
+                    "describe a crack or pits",
+                    key=f"odd_tooth[{n}].{outline}",
+                )
         if self.tooth_mesh is not None:
             raise refuse("requires the generated mesh", "remove tooth_mesh", key="odd_tooth")
         numbers = [one.tooth for one in self.odd_tooth]

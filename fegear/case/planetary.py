@@ -151,6 +151,11 @@ class PlanetaryPart(Part):
         default_factory=SetStiffnessPart, description="Stiffness of meshes, pins and bearings."
     )
     pin_errors: PinErrorsPart = Field(default_factory=PinErrorsPart, description="Pin position errors.")
+    odd_planet: Annotated[int, Field(ge=1)] = Field(
+        default=1,
+        description="Number of the planet to which the odd teeth of the planet gear belong "
+        "([[gear.NAME.odd_tooth]]); the teeth of all other planets are identical.",
+    )
     body: SetBodiesPart = Field(default_factory=SetBodiesPart, description="Masses and inertias, for vibration.")
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."
@@ -176,6 +181,10 @@ class PlanetaryPart(Part):
             )  # fmt: skip
         if self.fixed == self.input:
             raise refuse("is fixed as well", "choose a different fixed or driving member", key="input")
+        if self.odd_planet > self.count:
+            raise refuse(
+                f"must be at most {self.count}, the number of planets", "specify one of the planets", key="odd_planet"
+            )
         for key in ("tangential", "radial"):
             given = getattr(self.pin_errors, key)
             if given is not None and len(given) != self.count:

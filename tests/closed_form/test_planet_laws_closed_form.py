@@ -136,8 +136,10 @@ def test_springs_of_many_forces_find_the_equilibrium_of_another_solver():
 
 def test_spacing_errors_are_refused(unequal):
     engagement = replace(unequal["P_sunloaded-pair"].engagement, driver_spacing=np.array([1e-6, 0.0]))
+    law, cycle = LawSprings(engagement, (), 1e3, 3), unequal["Pset-cycle"]
+    assert law.cycles == 2
     with pytest.raises(InputError, match="use identical teeth"):
-        LawSprings(engagement, (), 1e3, 3)
+        set_cycle.set_cycle(cycle.model, (law, law), mesh_phases(cycle.model.found), 1.0, "sun")
 
 
 @pytest.mark.long

@@ -13,6 +13,7 @@ from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
+from fegear.case.planetary import MESHES, set_pair
 from fegear.contact.odd_flank import OddFlank, Pit
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
@@ -52,6 +53,19 @@ class OddTeeth:
     def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing]:
         """Cracks and outlines by the tooth's own number, as of `fegear.fem.teeth`."""
         return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
+
+    def on_other_flank(self) -> OddTeeth:
+        """The same teeth as the gear that they drive loads them, on the flank that is not said to be loaded.
+
+        Pits are of the loaded flank; cracks that one flank opens the other presses together: their faces may close.
+        """
+        cracks = tuple((tooth, crack.mirrored()) for tooth, crack in self.cracks)
+        flanks = tuple(
+            (tooth, replace(flank, pits=()))
+            for tooth, flank in self.flanks
+            if flank.missing or not math.isnan(flank.tip_radius)
+        )
+        return OddTeeth(cracks, self.outlines, flanks, "driver", self.name)
 
     @property
     def described(self) -> str:
@@ -93,8 +107,27 @@ def odd_gears_of(scene: Scene, pair: str) -> tuple[str, ...]:
     return tuple(name for name in dict.fromkeys((part.driver, part.driven)) if name in odd)
 
 
+def on_other_flank(scene: Scene, pair: str, gear: str) -> bool:
+    """Whether a pair loads the flank of a gear that is not the one by which it is driven: planets drive with it."""
+    driven = any(part.driven == gear for name, part in scene.case.pair.items() if name in scene.plane_pairs)
+    return scene.case.pair[pair].driver == gear and driven
+
+
+def odd_teeth_in(scene: Scene, pair: str, gear: str) -> OddTeeth:
+    """The odd teeth of a gear as a pair loads them."""
+    found = odd_teeth_of(scene, gear)
+    return found.on_other_flank() if on_other_flank(scene, pair, gear) else found
+
+
+def loaded_on_both_flanks(scene: Scene) -> tuple[str, ...]:
+    """Gears with odd teeth of which bodies differ and that drive one pair and are driven in another."""
+    return tuple(
+        gear for gear in reshaped_gears(scene) if any(on_other_flank(scene, pair, gear) for pair in scene.plane_pairs)
+    )
+
+
 def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
-    """The odd teeth of a gear as the case describes them.
+    """The odd teeth of a gear as the case describes them: by the flank that carries where it is driven, if it is.
 
     Raises
     ------
@@ -216,7 +249,12 @@ def check_odd_gear(scene: Scene, name: str) -> None:
             key, "(given)", f"is ambiguous: gear {name} is driver and driven gear of pair {drives}",
             "describe the mating gear as a gear of its own",
         )  # fmt: skip
-    if drives is not None and driven is not None:
+    planet = any(
+        part.planet == name and {key for key, one in pairs.items() if name in (one.driver, one.driven)}
+        <= {set_pair(key, mesh) for mesh in MESHES}
+        for key, part in scene.case.planetary.items()
+    )  # fmt: skip
+    if drives is not None and driven is not None and not planet:
         raise InputError(
             key, "(given)", f"is not available for idlers yet: pairs {driven} and {drives} load opposite flanks",
             "use one case for each pair",

@@ -45,8 +45,8 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
             notes.append(
                 neglecting(
                     f"Gear {gear}: odd_tooth counts in results over a revolution, of the train and of the gear only "
-                    "(mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness, FMU); here all teeth are "
-                    "identical."
+                    "(mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness, planet-revolution, FMU); here "
+                    "all teeth are identical."
                     if effects.odd_teeth
                     else f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth)."
                 )

@@ -52,6 +52,11 @@ class FlankSprings:
         if self.teeth.gaps.driver_spacing.size or self.teeth.gaps.driven_spacing.size:
             raise InputError("spacing_errors", "(given)", "are not supported in a planetary set", "use identical teeth")
 
+    @property
+    def cycles(self) -> int:
+        """All base pitches are the same."""
+        return 1
+
     @cached_property
     def solved(self) -> LoadedFlanks:
         """The flanks under every force of the law."""

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.errors import InputError
 from fegear.contact.plane.engagement import solve_again
 from fegear.contact.plane.transmission_error import contact_changes
+from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _LEVELS = (0.001, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0, 1.15, 1.35, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 7.0, 10.0, 20.0)
 #: A spring that adds less than this share of the stiffness of all is none.
 _NOTHING = 1e-12
+#: What springs have at every place.
+_OF_PLACES = ("stiffness", "separation", "bent")
 
 
 class MeshSprings(NamedTuple):
@@ -53,6 +55,11 @@ class SlotSprings:
     """Teeth whose springs are functions of the place: those of `MeshExcitation`, taken as exact."""
 
     teeth: MeshExcitation
+
+    @property
+    def cycles(self) -> int:
+        """All base pitches are the same."""
+        return 1
 
     @property
     def breaks(self) -> Array:
@@ -90,26 +97,56 @@ class LawSprings:
     load: float
     planets: int
 
-    def __post_init__(self) -> None:
-        """Refuse teeth that differ from one another."""
-        if self.engagement.cycles != 1:
-            raise InputError("spacing_errors", "(given)", "are not supported in a planetary set", "use identical teeth")
+    @property
+    def cycles(self) -> int:
+        """Base pitches after which teeth that differ meet again; 1 where all are alike."""
+        return self.engagement.cycles
 
     @property
     def breaks(self) -> Array:
-        """Places where tooth pairs enter, leave, come to bear or let go under the mean force [base pitches]."""
+        """Places where tooth pairs enter, leave, come to bear or let go under the mean force [base pitches].
+
+        In any base pitch: teeth that differ may do so in theirs only.
+        """
         pitch = self.engagement.pair.base_pitch
-        return np.array([*self.engagement.breaks, *contact_changes(self.engagement, self.load)]) / pitch
+        number = self.engagement.grid([self.engagement.pair.x_start]).contacts.number
+        alike = together(self.engagement.teeth_in(number, cycle) for cycle in range(self.cycles))
+        changes = [x for cycles in alike for x in contact_changes(self.engagement, self.load, int(cycles[0]))]
+        return np.array([*self.engagement.breaks, *changes]) / pitch
 
     def at(self, place: Array) -> MeshSprings:
-        """Springs at places [base pitches from the pitch point], shape (Q,)."""
+        """Springs at places [base pitches from the pitch point], shape (Q,); teeth 0 are there at place 0."""
+        engagement, pitch = self.engagement, self.engagement.pair.base_pitch
+        x = np.asarray(place) * pitch
+        if self.cycles == 1:
+            return self._in_cycle(x, 0)
+        cycle = np.rint((x - engagement.meshing.reduced(x)) / pitch).astype(int)
+        number = engagement.grid(x[:1]).contacts.number
+        # base pitches with the same teeth, or with teeth that answer alike, are solved once
+        seen, own = np.unique(cycle, return_inverse=True)
+        alike = together(engagement.teeth_in(number, int(one)) for one in seen)
+        parts: list[MeshSprings] = []
+        order = np.empty(x.size, dtype=np.intp)
+        done = 0
+        for which in alike:
+            at = np.flatnonzero(np.isin(own, which))
+            inside, back = np.unique(np.round(x[at] / pitch - cycle[at], 12), return_inverse=True)
+            parts.append(self._in_cycle(inside * pitch, int(seen[which[0]])))
+            order[at] = done + back
+            done += inside.size
+        found = {key: np.concatenate([getattr(one, key) for one in parts]) for key in _OF_PLACES}
+        off = np.concatenate([one.off for one in parts], axis=1)[:, order]
+        return MeshSprings(level=parts[0].level, off=off, **{key: one[order] for key, one in found.items()})
+
+    def _in_cycle(self, x: Array, cycle: int) -> MeshSprings:
+        """Springs at roll positions [m] by the teeth of one base pitch."""
         force, at_mean = forces(self.load, self.planets)
-        grid = self.engagement.grid(place * self.engagement.pair.base_pitch, again=False)
-        state = self.engagement.solve(grid, force)
+        grid = self.engagement.grid(x, again=False)
+        state = self.engagement.solve(grid, force, cycle)
         mean = state.transmission_error[:, at_mean]
-        alone = self.engagement.solve(grid, force[at_mean : at_mean + 1])
+        alone = self.engagement.solve(grid, force[at_mean : at_mean + 1], cycle)
         off = [solve_again(other, alone).transmission_error[:, 0] - mean for other in self.shifted]
-        changes = np.array(off).reshape(len(self.shifted), place.size)
+        changes = np.array(off).reshape(len(self.shifted), x.size)
         return springs(force, state.transmission_error, state.local_stiffness[:, 0], changes)
 
 

@@ -89,6 +89,39 @@ def mesh_phases(found: PlanetarySet, *, clockwise: bool = False, sun_drives: boo
     )
 
 
+def whole_delays(
+    found: PlanetarySet, phases: Phases, planet: int, *, clockwise: bool = False, sun_drives: bool = True
+) -> Array:
+    """Delays of the meshes with the whole base pitches that phases leave out: which teeth meet where.
+
+    Teeth have numbers in the order of meshing. Tooth 0 of one planet meets teeth 0 of the sun, and half a turn of this
+    planet later, but for the thickness of its tooth, tooth 0 of the ring with its other flank. Every other planet meets
+    teeth 0 of sun and ring when they have come round to it; teeth of these planets are all alike.
+
+    Parameters
+    ----------
+    found : PlanetarySet
+    phases : Phases
+        Of the same set.
+    planet : int
+        The planet with tooth 0, from 0.
+    clockwise, sun_drives : bool
+        As of `mesh_phases`.
+
+    Returns
+    -------
+    ndarray, shape (2, planets)
+        Place in the cycle at which teeth 0 of sun (0) and ring (1) are at the pitch point [base pitches].
+    """
+    turn = 2.0 * math.pi
+    psi = (found.angles - found.angles[planet]) * (-1.0 if clockwise else 1.0)
+    z, thick = found.planet_teeth, found.half_tooth_angle("sun") + found.half_tooth_angle("ring")
+    behind = 0.5 * z + (-z if sun_drives else z) * thick / turn
+    first = phases.sun[planet]
+    whole = first + np.stack([found.sun_teeth * psi / turn, behind - found.ring_teeth * psi / turn])
+    return np.asarray(phases.delays + np.rint(whole - phases.delays))
+
+
 def _part(pitches: Array | float) -> Array:
     """The part of a phase below one; what is whole but for round-off is zero."""
     part = np.asarray(pitches, dtype=float) % 1.0

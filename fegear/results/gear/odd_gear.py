@@ -8,7 +8,14 @@ import numpy as np
 
 from fegear.base.notes import exceeding
 from fegear.base.printed import percent, percents
-from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of, reshaped_gears
+from fegear.case.built.odd_teeth import (
+    OddTeeth,
+    check_odd_gear,
+    loaded_on_both_flanks,
+    odd_teeth_of,
+    on_other_flank,
+    reshaped_gears,
+)
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -25,6 +32,8 @@ if TYPE_CHECKING:
 
 #: The stage's name.
 ODD = "odd-gear-solution"
+#: That of the same gears on the flanks with which they drive, where they are driven by the others.
+OTHER = "odd-gear-other-flank"
 #: Seconds of a ring with one odd sector with the default settings, and of each further odd tooth.
 _RING, _CRACK = 1.0, 0.3
 #: Places over the flank at which a crack is looked at; beyond which share of them it counts as closed.
@@ -42,9 +51,15 @@ def needs_odd_solution(*gears: str) -> tuple[Task, ...]:
     return tuple(Task(ODD, name) for name in dict.fromkeys(gears))
 
 
+def needs_odd_solution_in(scene: Scene, pair: str, *gears: str) -> tuple[Task, ...]:
+    """The same on the flanks that a pair loads."""
+    return tuple(Task(OTHER if on_other_flank(scene, pair, name) else ODD, name) for name in dict.fromkeys(gears))
+
+
 def odd_solution_of(upstream: Upstream, gear: str) -> OddGearInfluence:
-    """A gear with odd teeth that was solved."""
-    return cast("OddGearInfluence", upstream[Task(ODD, gear)])
+    """A gear with odd teeth that was solved, on the flank that was asked for."""
+    found = upstream.get(Task(ODD, gear)) or upstream[Task(OTHER, gear)]
+    return cast("OddGearInfluence", found)
 
 
 def _compute(asked: OddTeeth, upstream: Upstream, work: Work) -> OddGearInfluence:
@@ -91,6 +106,19 @@ ODD_GEAR = Stage(
     inputs=odd_teeth_of,
     compute=_compute,
     present=Sheet(remarks=(_closed,)).present,
+    check=check_odd_gear,
+    cites=citing(*CRACKS),
+    forecast=_forecast,
+)
+
+
+#: Gears that drive with one flank and are driven by the other: planets.
+ODD_GEAR_OTHER_FLANK = Stage(
+    subjects=loaded_on_both_flanks,
+    needs=lambda _scene, name: needs_solution(name),
+    inputs=lambda scene, name: odd_teeth_of(scene, name).on_other_flank(),
+    compute=_compute,
+    present=Sheet().present,
     check=check_odd_gear,
     cites=citing(*CRACKS),
     forecast=_forecast,

@@ -13,7 +13,7 @@ from fegear.base.effects import ODD_TEETH
 from fegear.base.notes import neglecting
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.case.built.odd_teeth import odd_teeth_of
+from fegear.case.built.odd_teeth import odd_teeth_in
 from fegear.case.crack_growth import CrackGrowthPart
 from fegear.contact.plane.crack_in_mesh import crack_in_mesh
 from fegear.contact.plane.growing_crack import GrowingCrack, growing_crack
@@ -236,7 +236,7 @@ def _inputs(scene: Scene, name: str) -> GrowthInputs:
     cracks = []
     for member, _ in revolution.cracked:
         gear = revolution.gears[MEMBERS.index(member)]
-        cracks += [(gear, tooth, crack) for tooth, crack in odd_teeth_of(scene, gear).cracks]
+        cracks += [(gear, tooth, crack) for tooth, crack in odd_teeth_in(scene, name, gear).cracks]
     return GrowthInputs(revolution, tuple(cracks), scene.case.crack_growth)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import AT_REST
 from fegear.case.built.neglected_effects import whole_ratio_remarks
-from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_gears_of, odd_teeth_of, reshaped_gears
+from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_gears_of, odd_teeth_in, reshaped_gears
 from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
 from fegear.case.built.pair_notes import pair_notes
 from fegear.case.built.pair_spec import pair_spec
@@ -19,7 +19,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
-from fegear.results.gear.odd_gear import needs_odd_solution
+from fegear.results.gear.odd_gear import needs_odd_solution_in
 from fegear.results.gear.solved_gear import needs_solution, needs_teeth_of, teeth_of
 from fegear.results.pair.loaded_teeth import AskedOfTeeth, plane_pairs
 
@@ -126,7 +126,7 @@ def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
     part, reshaped = scene.case.pair[name], reshaped_gears(scene)
     odd = tuple(gear for gear in odd_gears_of(scene, name) if gear in reshaped)
     return (
-        *(needs_odd_solution(*odd)),
+        *needs_odd_solution_in(scene, name, *odd),
         *needs_solution(*(gear for gear in (part.driver, part.driven) if gear not in odd)),
     )
 
@@ -134,7 +134,7 @@ def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
 def _odd_inputs(scene: Scene, name: str) -> AskedOfTeeth:
     spec, odd = pair_spec(scene, name), odd_gears_of(scene, name)
     driver, driven = (
-        replace(flank, odd=odd_teeth_of(scene, flank.gear).flanks) if flank.gear in odd else flank
+        replace(flank, odd=odd_teeth_in(scene, name, flank.gear).flanks) if flank.gear in odd else flank
         for flank in spec.both
     )
     return replace(AskedOfTeeth.of(scene, replace(spec, driver=driver, driven=driven), ()), neglected=False)

@@ -17,7 +17,7 @@ from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
 from fegear.base.notes import neglecting
 from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
-from fegear.case.built.odd_teeth import odd_gears_of, odd_teeth_of
+from fegear.case.built.odd_teeth import odd_gears_of, odd_teeth_in
 from fegear.case.built.pair_checks import check_odd_teeth
 from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
 from fegear.contact.plane.odd_compliance import OddCompliance
@@ -179,7 +179,7 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     """Odd teeth and names of a pair's gears."""
     part, odd = scene.case.pair[name], odd_gears_of(scene, name)
     gears = part.driver, part.driven
-    known = [(m, odd_teeth_of(scene, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
+    known = [(m, odd_teeth_in(scene, name, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
     cracked = tuple((member, tuple(sorted(tooth for tooth, _ in one.cracks))) for member, one in known)
     teeth = tuple((member, tuple(sorted({tooth for tooth, _ in (*one.cracks, *one.flanks)}))) for member, one in known)
     return RevolutionInputs(teeth, cracked, tuple((member, one.described) for member, one in known), gears, name)

@@ -22,7 +22,7 @@ from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
 from fegear.fem.teeth import meshing_order
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ
-from fegear.results.gear.odd_gear import CRACKS, needs_odd_solution, odd_solution_of
+from fegear.results.gear.odd_gear import CRACKS, needs_odd_solution_in, odd_solution_of
 from fegear.results.pair.loaded_teeth import ODD, check_teeth, plane_pairs
 from fegear.results.pair.mesh_stiffness_revolution import POSITIONS, RevolutionInputs, inputs_of
 
@@ -180,7 +180,7 @@ def _cracked(scene: Scene, name: str) -> tuple[str, ...]:
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (Task(ODD, name), *needs_odd_solution(*_cracked(scene, name)))
+    return (Task(ODD, name), *needs_odd_solution_in(scene, name, *_cracked(scene, name)))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

@@ -66,7 +66,7 @@ def meshed_set(upstream: Upstream, name: str) -> MeshedSet:
     return cast("MeshedSet", upstream[Task("meshed-set", name)])
 
 
-def _solved(scene: Scene, name: str) -> tuple[Mesh, ...]:
+def solved_meshes(scene: Scene, name: str) -> tuple[Mesh, ...]:
     """Meshes of a set whose teeth are solved: those of gears of the case without a given stiffness."""
     part = planetary_part(scene, name)
     meshes: tuple[Mesh, ...] = MESHES if part.ring is not None else ("sun",)
@@ -75,17 +75,18 @@ def _solved(scene: Scene, name: str) -> tuple[Mesh, ...]:
 
 def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
     """The loaded pairs of its solved meshes."""
-    pairs = (set_pair(name, mesh) for mesh in _solved(scene, name))
+    pairs = (set_pair(name, mesh) for mesh in solved_meshes(scene, name))
     return tuple(Task(kind_of(scene, pair).stage, pair) for pair in pairs)
 
 
-def _effects(scene: Scene, name: str) -> tuple[str, ...]:
+def effects_of_set(scene: Scene, name: str) -> tuple[str, ...]:
     """Effects that change the teeth of a set."""
-    known = (effects_of_teeth(scene, set_pair(name, mesh)) for mesh in _solved(scene, name))
+    known = (effects_of_teeth(scene, set_pair(name, mesh)) for mesh in solved_meshes(scene, name))
     return tuple(dict.fromkeys(effect for one in known for effect in one))
 
 
-def _check(scene: Scene, name: str) -> None:
+def check_set(scene: Scene, name: str) -> None:
+    """Refuse a set that cannot be assembled, or whose ring mesh is not known."""
     set_inputs(scene, name)
     part = planetary_part(scene, name)
     if part.ring is None and part.stiffness.ring_mesh is None:
@@ -125,8 +126,8 @@ _CYCLE_SHEET = Sheet(
 
 #: Stage of what the loaded teeth of a set's meshes are to its planets.
 _teeth_stage = partial(
-    Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=_check,
-    effects_of=_effects,
+    Stage, subjects=planetary_sets, inputs=set_inputs, needs=needs_teeth, check=check_set,
+    effects_of=effects_of_set,
 )  # fmt: skip
 
 SET_CYCLE = _teeth_stage(

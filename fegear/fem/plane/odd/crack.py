@@ -7,7 +7,7 @@ crack is named by where it starts and where it runs; how far it may go is what t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,10 @@ class Crack:
     def path(self, tooth: InvoluteTooth) -> Array:
         """Mouth, bends and tip, shape (2, n) [modules]."""
         return np.column_stack([fillet_point(tooth, self.mouth, back=self.back), *map(np.array, self.corners)])
+
+    def mirrored(self) -> Crack:
+        """The same crack as a load on the other flank sees it; what one opens the other presses together."""
+        return replace(self, corners=tuple((-x, y) for x, y in self.corners), back=not self.back, closing=True)
 
     def length(self, tooth: InvoluteTooth) -> float:
         """Along the crack [modules]."""
