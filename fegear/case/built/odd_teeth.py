@@ -13,7 +13,6 @@ from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
-from fegear.case.planetary import MESHES, set_pair
 from fegear.contact.odd_flank import OddFlank, Pit
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
@@ -249,12 +248,7 @@ def check_odd_gear(scene: Scene, name: str) -> None:
             key, "(given)", f"is ambiguous: gear {name} is driver and driven gear of pair {drives}",
             "describe the mating gear as a gear of its own",
         )  # fmt: skip
-    planet = any(
-        part.planet == name and {key for key, one in pairs.items() if name in (one.driver, one.driven)}
-        <= {set_pair(key, mesh) for mesh in MESHES}
-        for key, part in scene.case.planetary.items()
-    )  # fmt: skip
-    if drives is not None and driven is not None and not planet:
+    if drives is not None and driven is not None and not _is_planet(scene, name):
         raise InputError(
             key, "(given)", f"is not available for idlers yet: pairs {driven} and {drives} load opposite flanks",
             "use one case for each pair",
@@ -262,6 +256,19 @@ def check_odd_gear(scene: Scene, name: str) -> None:
     odd_teeth_of(scene, name)
     for n in range(len(scene.case.gear[name].odd_tooth)):
         check_crack(scene, name, n)
+
+
+def _is_planet(scene: Scene, name: str) -> bool:
+    """Whether a gear is in mesh as the planet of one set only: its flanks' order is known."""
+    if not scene.case.planetary:
+        return False
+    from fegear.case.planetary import MESHES, set_pair
+
+    pairs = {key for key, one in scene.case.pair.items() if name in (one.driver, one.driven)}
+    return any(
+        part.planet == name and pairs <= {set_pair(key, mesh) for mesh in MESHES}
+        for key, part in scene.case.planetary.items()
+    )
 
 
 def check_left_contact(scene: Scene, pair: str) -> None:

@@ -212,7 +212,13 @@ class OddGearInfluence:
         if self.fine.lower is None:
             return np.full((p.size, q.size), np.nan)
         usual = self._usual_between(near, other)
-        return np.maximum(self._off_between(near, other, p, q), _USUAL * usual) / self._modulus
+        error = np.maximum(self._off_between(near, other, p, q), _USUAL * usual) / self._modulus
+        k = near - other
+        if 0 < abs(k) <= self.ordinary.reach:
+            # What both orders share, edges that leave the fillets' curves, ordinary teeth know of.
+            there, here = self._ordinary(radius_p), self._ordinary(radius_q)
+            error = np.maximum(error, self.ordinary.neighbour_error(k, there, here))
+        return error
 
     def _off_between(self, i: int, j: int, p: Array, q: Array) -> Array:
         """What half the width of the pressures, and elements one order lower, change of c_ij."""
@@ -266,8 +272,19 @@ class OddGearInfluence:
         if key not in self._kept:
             off = self._off_stress(near, other, side, self._samples(other), np.asarray(REFERENCE_HALF_WIDTH))
             self._kept[key] = float(np.sqrt(np.mean(off**2)))
-        error = np.maximum(self._off_stress(near, other, side, r, b), _USUAL * self._kept[key])
-        return np.asarray(_STRESS_SHARE * error / self.gear.module)
+        error = _STRESS_SHARE * np.maximum(self._off_stress(near, other, side, r, b), _USUAL * self._kept[key])
+        error, k = np.asarray(error / self.gear.module), near - other
+        if abs(k) <= self.ordinary.reach:
+            # Both orders have one fillet of the same edges: no less than on an ordinary tooth.
+            width = None if half_width is None else np.asarray(half_width, dtype=float)
+            error = np.maximum(error, self.ordinary.root_stress_error(k, side, self._ordinary(radius), width))
+        return error
+
+    def _ordinary(self, radius: ArrayLike) -> Array:
+        """Radii on an ordinary flank, the nearest ones [m]."""
+        return np.clip(
+            np.atleast_1d(np.asarray(radius, dtype=float)), self.ordinary.lowest_radius, self.ordinary.highest_radius
+        )
 
     def _off_stress(self, i: int, j: int, side: Side, r: Array, b: Array) -> Array:
         assert self.fine.lower is not None  # noqa: S101
@@ -284,12 +301,33 @@ class OddGearInfluence:
         """
         near, other = self._near(i, j)
         r, root = self._modules(radius), np.sqrt(self.gear.module)
-        value, error = self.fine.stress_intensity(near, other, r, self._patch)
+        value, error = self._intensity(near, other, r)
+        if self.fine.lower is not None:
+            at_samples = self._intensity_at_samples(near, other)
+            own, of_own = self._intensity_at_samples(near, near)
+            usual = np.sqrt(np.mean(at_samples[1] ** 2, axis=1, keepdims=True))
+            # Loads on other teeth bend the crack less; relatively they err no less than those on its own.
+            share = float(np.sqrt(np.sum(of_own**2) / np.sum(own**2)))
+            error = np.maximum(error, np.maximum(_USUAL * usual, share * np.hypot(*value)))
+        return value / root, error / root
+
+    def _intensity(self, i: int, j: int, r: Array) -> tuple[Array, Array]:
+        """K_I and K_II under loads at radii [modules], and what orders, rings and pressures leave of them."""
+        value, error = self.fine.stress_intensity(i, j, r, self._patch)
         if self.fine.lower is not None:
             # Loads next to a mouth act by how wide they are pressed; one mode may be right by chance.
-            error = error + np.abs(value - self.fine.by_ring(near, other, r, 0.5 * self._patch)[0])
+            error = error + np.abs(value - self.fine.by_ring(i, j, r, 0.5 * self._patch)[0])
             error = np.maximum(error, _OTHER_MODE * error[::-1])
-        return value / root, error / root
+        return value, error
+
+    def _intensity_at_samples(self, i: int, j: int) -> tuple[Array, Array]:
+        if (i, j) not in self._intensities:
+            self._intensities[i, j] = self._intensity(i, j, self._samples(j))
+        return self._intensities[i, j]
+
+    @cached_property
+    def _intensities(self) -> dict[tuple[int, int], tuple[Array, Array]]:
+        return {}
 
     def _half_width(self, half_width: ArrayLike | None) -> Array:
         if half_width is None:
