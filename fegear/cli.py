@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import copy
 import os
 import signal
 import sys
+from importlib import import_module
+from keyword import iskeyword
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,54 +16,12 @@ import fegear
 from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
 from fegear.base.interrupts import between_imports, heed_ctrl_c
 from fegear.base.streams import give_up
-from fegear.commands.apply import apply
 from fegear.commands.common import INTERRUPTED, leave
-from fegear.commands.export import export
 from fegear.commands.help_texts import Command, Group, context_settings
-from fegear.commands.import_model import import_
-from fegear.commands.migrate import migrate
-from fegear.commands.new import new
-from fegear.commands.open import open  # noqa: A004  (the name of the command)
-from fegear.commands.run import plan, run
-from fegear.commands.schema import results, schema
-from fegear.commands.size import size
-from fegear.commands.studies import check, compare, cost, effects, sweep
-from fegear.commands.verify import verify
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from types import FrameType
-
-
-class _Program(typer.Typer):
-    """The program, which reads the options of the one command that is called.
-
-    Those of all would take a quarter of the time that the program needs to start.
-    """
-
-    def __call__(self, args: Any = None, **more: Any) -> Any:
-        """Run the command line, by default that of the process."""
-        words = sys.argv[1:] if args is None else args
-        called = [one for one in self.registered_commands if words and _name(one) == words[0]]
-        if not called:  # help, a slip, completion: what there is must be known
-            return super().__call__(args, **more)
-        alone = copy.copy(self)
-        alone.registered_commands = called
-        return super(_Program, alone).__call__(args, **more)
-
-
-def _name(command: typer.models.CommandInfo) -> str:
-    """What a command is called by; Python keeps some words for itself."""
-    return command.callback.__name__.rstrip("_") if command.callback else ""
-
-
-app = _Program(
-    help="Finite-element workbench for gear teeth.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,  # plain text: it can be searched, and no option is cut short where the terminal is narrow
-    cls=Group,
-    context_settings=context_settings(),
-)
 
 
 def _version(wanted: bool) -> None:
@@ -71,7 +30,6 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _options(
     _show_version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
@@ -80,29 +38,52 @@ def _options(
     """Options of the program itself."""
 
 
-#: The commands in the order of ``fegear --help``, and what it says of each.
+#: The commands in the order of ``fegear --help``: name, module of `fegear.commands`, what the help says of it.
 COMMANDS = (
-    (new, "Write a commented case to start from."),
-    (import_, "Create a case from a REXS gearbox model."),
-    (migrate, "Update a case file to the current key names."),
-    (open, "Open the interactive workbench in the browser."),
-    (results, "List the available results."),
-    (run, "Compute a case: tables, figures, report."),
-    (plan, "Show the calculation plan and the estimated time."),
-    (compare, "Compare two runs or two cases."),
-    (sweep, "Parameter study over a grid of values."),
-    (size, "Choose the teeth of a pair for a requirement."),
-    (effects, "Influence of each effect on the results."),
-    (cost, "Accuracy versus computing time."),
-    (check, "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),
-    (verify, "Run the verification against published values, other programs and independent code."),
-    (apply, "Write a designed relief or lead correction into a case."),
-    (export, "Export drawings, solids and meshes."),
-    (schema, "Write the JSON schema for editors."),
+    ("new", "new", "Write a commented case to start from."),
+    ("import", "import_model", "Create a case from a REXS gearbox model."),
+    ("migrate", "migrate", "Update a case file to the current key names."),
+    ("open", "open", "Open the interactive workbench in the browser."),
+    ("results", "schema", "List the available results."),
+    ("run", "run", "Compute a case: tables, figures, report."),
+    ("plan", "run", "Show the calculation plan and the estimated time."),
+    ("compare", "studies", "Compare two runs or two cases."),
+    ("sweep", "studies", "Parameter study over a grid of values."),
+    ("size", "size", "Choose the teeth of a pair for a requirement."),
+    ("effects", "studies", "Influence of each effect on the results."),
+    ("cost", "studies", "Accuracy versus computing time."),
+    ("check", "studies", "Independent FE solution (scikit-fem) of the spur gears, compared with the estimated errors."),
+    ("verify", "verify", "Run the verification against published values, other programs and independent code."),
+    ("apply", "apply", "Write a designed relief or lead correction into a case."),
+    ("export", "export", "Export drawings, solids and meshes."),
+    ("schema", "schema", "Write the JSON schema for editors."),
 )
 
-for _command, _short in COMMANDS:
-    app.command(cls=Command, short_help=_short)(_command)
+
+def program(words: Sequence[str] = ()) -> typer.Typer:
+    """The program with the command that is called, or all of them where help, a slip or completion wants to know them.
+
+    Modules and options of all commands would take a third of the time that the program needs to start.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The command line after the program's name.
+    """
+    made = typer.Typer(
+        help="Finite-element workbench for gear teeth.",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,  # plain text: it can be searched, no option is cut short where the terminal is narrow
+        cls=Group,
+        context_settings=context_settings(),
+        callback=_options,
+    )
+    called = [row for row in COMMANDS if list(words[:1]) == [row[0]]]
+    for name, home, short in called or (() if list(words) == ["--version"] else COMMANDS):
+        function = getattr(import_module(f"fegear.commands.{home}"), f"{name}_" if iskeyword(name) else name)
+        made.command(name, cls=Command, short_help=short)(function)
+    return made
 
 
 _NO_MEMORY = (
@@ -118,7 +99,7 @@ def main() -> None:
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     _heed_requests_to_stop()
     try:
-        app()
+        program(sys.argv[1:])()
         sys.stdout.flush()
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)

@@ -15,7 +15,7 @@ from solved_once import CACHE
 from fegear.base.errors import InputError
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.reading import read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.contact.compared.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.compared.root_stress_study import root_stress_study, variants, verdict
 from fegear.contact.compared.virtual_gear import virtual_root_stress
@@ -395,7 +395,7 @@ def test_studies_that_mean_nothing_are_refused(overrides, words):
 @pytest.mark.dear
 def test_the_command_writes_tables_pictures_and_report(tmp_path):
     with pytest.raises(SystemExit) as left:
-        app(["run", str(CASES / "cornell_test_gear.toml"), "--out", str(tmp_path / "o")])
+        program()(["run", str(CASES / "cornell_test_gear.toml"), "--out", str(tmp_path / "o")])
     assert left.value.code in (0, None)
     for name in ("root_stress_test", "compliance_test", "compliance_I"):
         assert (tmp_path / "o" / "plots" / f"crosscheck_{name}.png").stat().st_size > 20_000
@@ -410,7 +410,7 @@ def test_the_command_writes_tables_pictures_and_report(tmp_path):
 @pytest.mark.dear
 def test_the_study_ends_with_its_pictures(tmp_path):
     with pytest.raises(SystemExit):
-        app([
+        program()([
             "run", str(CASES / "root_stress_validation.toml"), "--out", str(tmp_path / "o"),
             "--set", "study={gear='base', teeth=[20, 28], load_position=[0.5, 1.0]}",
             "--set", "gear.base.module='2 mm'",

@@ -18,7 +18,7 @@ from fegear.base.effects import EFFECTS
 from fegear.base.errors import InputError
 from fegear.base.tally import KERNELS, note, tallied, tallying
 from fegear.case.reading import read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.results.catalogue import STAGES
 from fegear.studies.effects import Switched, effect_study, kernel_table, stage_table
 
@@ -87,7 +87,7 @@ def test_without_coupling_no_neighbours_of_neighbours_are_solved():
 def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
     case, options = str(CASES / "lin_tip_relief.toml"), ("--set", TE[0], "--set", TE[1])
     out = tmp_path / "found"
-    done = CliRunner().invoke(app, ["effects", case, *options, "--effect", "relief", "--out", str(out)])
+    done = CliRunner().invoke(program(), ["effects", case, *options, "--effect", "relief", "--out", str(out)])
     assert done.exit_code == 0, done.output
     assert "relief: largest change in I.te_" in done.output
     assert (out / "plots" / "effect_relief.png").read_bytes().startswith(b"\x89PNG")

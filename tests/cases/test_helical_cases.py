@@ -10,7 +10,7 @@ from solved_once import CACHE
 
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
@@ -320,7 +320,7 @@ def test_a_run_leaves_tables_and_pictures(tmp_path):
 
     out = tmp_path / "out"
     case = str(CASES / "litvin_localised.toml")
-    done = CliRunner().invoke(app, ["run", case, "--out", str(out), "--set", "tooth_contact.positions=16"])
+    done = CliRunner().invoke(program(), ["run", case, "--out", str(out), "--set", "tooth_contact.positions=16"])
     assert done.exit_code == 0, done.output
     head = (out / "tables" / "tooth_contact_I.csv").read_text().splitlines()[0]
     assert head.startswith("phi1 [deg],te [arcsec],contact,r1 [mm],z1 [mm],r2 [mm],z2 [mm]")

@@ -14,7 +14,7 @@ from solved_once import CACHE
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
@@ -220,7 +220,7 @@ def test_contact_ratio_above_two():
 
 def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
     with pytest.raises(SystemExit) as left:
-        app(["run", str(CASES / "calculix_pair.toml"), "--out", str(tmp_path / "o"), "--no-plots"])
+        program()(["run", str(CASES / "calculix_pair.toml"), "--out", str(tmp_path / "o"), "--no-plots"])
     assert left.value.code in (0, None)
     heads = {
         "load_sharing_I": "x [mm],roll_angle [deg],load [N],share,deflection [um],hertz_pressure [MPa]",

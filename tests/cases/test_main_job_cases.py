@@ -12,7 +12,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
@@ -107,7 +107,7 @@ def test_compliance_does_not_depend_on_size_and_stress_scales_with_it():
 
 def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
     with pytest.raises(SystemExit) as left:
-        app(["run", str(CASES / "lin_table1.toml"), "--out", str(tmp_path / "o"), "--no-plots"])
+        program()(["run", str(CASES / "lin_table1.toml"), "--out", str(tmp_path / "o"), "--no-plots"])
     assert left.value.code in (0, None)
     with (tmp_path / "o" / "tables" / "stiffness_a.csv").open(newline="", encoding="utf-8") as stream:
         rows = list(csv.reader(stream))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.cli import app
+from fegear.cli import program
 from fegear.fem.plane import ring_closure
 from fegear.studies import check
 
@@ -33,7 +33,7 @@ def case(tmp_path_factory):
 def said(capsys, *arguments):
     """Exit code, output and errors of a command."""
     with pytest.raises(SystemExit) as end:
-        app(["check", *map(str, arguments)])
+        program()(["check", *map(str, arguments)])
     out, err = capsys.readouterr()
     return end.value.code or 0, out, err
 
@@ -75,13 +75,13 @@ def test_what_an_error_does_not_cover_is_said_and_ends_in_one(case, capsys, monk
 
 def test_cases_without_spur_gears_are_refused_in_a_sentence():
     with pytest.raises(InputError, match=r"gear = .*has no spur gear to check"):
-        app(["check", str(CASES / "khbeta_helical.toml")], standalone_mode=False)
+        program()(["check", str(CASES / "khbeta_helical.toml")], standalone_mode=False)
 
 
 def test_a_gear_with_a_mesh_of_its_own_is_refused_in_a_sentence(case):
     (case.parent / "own.msh").touch()
     with pytest.raises(InputError, match=r"gear.a.tooth_mesh = .*own.msh.*: replaces the outline"):
-        app(["check", str(case), "--set", 'gear.a.tooth_mesh="own.msh"'], standalone_mode=False)
+        program()(["check", str(case), "--set", 'gear.a.tooth_mesh="own.msh"'], standalone_mode=False)
 
 
 def test_a_small_gear_by_scikit_fem_alone_gives_what_it_gave():

@@ -16,7 +16,7 @@ import pytest
 import typer
 
 from fegear.base.errors import lacks_memory
-from fegear.cli import _NO_MEMORY, COMMANDS, app
+from fegear.cli import _NO_MEMORY, COMMANDS, program
 
 CASE = """
 title = "One gear"
@@ -233,7 +233,7 @@ def test_a_terminal_gets_a_bar(case, tmp_path):
 
 
 def test_a_command_is_read_alone_and_is_that_of_the_whole_program(capsys, monkeypatch):
-    whole = typer.main.get_command(app)
+    whole = typer.main.get_command(program())
     read, plain = [], typer.main.get_command_from_info
     monkeypatch.setattr(
         typer.main, "get_command_from_info", lambda command_info, **how: read.append(0) or plain(command_info, **how)
@@ -243,7 +243,7 @@ def test_a_command_is_read_alone_and_is_that_of_the_whole_program(capsys, monkey
         whole([name, "--help"], prog_name="fegear", standalone_mode=False)
         expected = capsys.readouterr().out
         assert "--help" in expected
-        app([name, "--help"], prog_name="fegear", standalone_mode=False)
+        program([name, "--help"])([name, "--help"], prog_name="fegear", standalone_mode=False)
         assert capsys.readouterr().out == expected
     assert len(read) == len(COMMANDS)  # one each
 
@@ -252,6 +252,24 @@ def test_version(tmp_path):
     import fegear as package
 
     assert fegear("--version", cwd=tmp_path).stdout == f"fegear {package.__version__}\n"
+
+
+def test_the_program_loads_the_command_that_is_called_and_for_its_version_none():
+    """Modules of all commands took a tenth of the time to start."""
+    code = (
+        "import sys; from fegear.cli import program; program(sys.argv[1:]);"
+        "print(*sorted(name for name in sys.modules if name.startswith('fegear.commands.')))"
+    )
+    common = {"fegear.commands.common", "fegear.commands.help_texts"}
+
+    def loaded(*words):
+        return set(subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+                   .stdout.split()) - common  # fmt: skip
+
+    assert loaded("--version") == set()
+    assert loaded("import", "model.rexs") == {"fegear.commands.import_model"}
+    assert loaded("plan", "drive.toml") == {"fegear.commands.run"}
+    assert loaded() == loaded("runn") == loaded("--help") == {f"fegear.commands.{home}" for _, home, _ in COMMANDS}
 
 
 @pytest.mark.parametrize("command", ["run", "export", "effects", "cost", "compare", "sweep"])

@@ -16,7 +16,7 @@ import pytest
 import fegear.studies.cost.ladder as ladders
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, read_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.study import forecast, ladder_of
 
@@ -69,7 +69,7 @@ def short(case):
         shortened(patch)
         out = case.parent / "o"
         with pytest.raises(SystemExit) as left:
-            app(["cost", str(case), "--quick", "--out", str(out)])
+            program()(["cost", str(case), "--quick", "--out", str(out)])
     assert left.value.code in (0, None)
     return out
 
@@ -81,7 +81,7 @@ def test_finer_meshes_have_smaller_errors_and_the_cheapest_within_a_tolerance_is
     shortened(monkeypatch)
     asked_for = ["--quick", "--no-plots", "--set", 'results=["stiffness"]', "--out", str(tmp_path / "o")]
     with pytest.raises(SystemExit) as left:
-        app(["cost", str(case), *asked_for])
+        program()(["cost", str(case), *asked_for])
     assert left.value.code in (0, None)
     found = {row["configuration"]: row for row in rows(tmp_path / "o", "cost") if row["quantity"] == "c_0"}
     finer = [row for name, row in found.items() if name.startswith("full gear, order 2")]
@@ -328,7 +328,7 @@ def test_every_shipped_case_can_be_studied(name):
 
 
 def test_a_case_without_gears_has_nothing_to_choose(capsys):
-    app(["cost", str(CASES / "blankenship_singh.toml"), "--quick"], standalone_mode=False)
+    program()(["cost", str(CASES / "blankenship_singh.toml"), "--quick"], standalone_mode=False)
     assert (
         "Cost study: the case has no gears, so there is no mesh, formula or tolerance to choose."
     ) in capsys.readouterr().out

@@ -72,9 +72,10 @@ def test_every_command_starts_without_them(tmp_path):
 import sys
 for name in {[library for library, _ in EXTRAS.values()] + ["vtk", "llvmlite", "nicegui", "dask", "pandas", "xarray"]}:
     sys.modules[name] = None
-from fegear.cli import COMMANDS, app
-for command, _ in COMMANDS:
-    app([command.__name__, "-h"], standalone_mode=False)
+from fegear.cli import COMMANDS, program
+app = program()
+for command, _, _ in COMMANDS:
+    app([command, "-h"], standalone_mode=False)
 app(["new", "drive", "--teeth", "21", "53", "--module", "3mm", "--torque", "260 N m"], standalone_mode=False)
 app(["run", "drive.toml"], standalone_mode=False)
 from fegear.base.errors import FegearError

@@ -16,7 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fegear.base.errors import InputError
-from fegear.cli import app
+from fegear.cli import program
 from fegear.engine.executor import Executor
 from fegear.studies.sweep import SweepResults, point_content, read_axis, sweep_case
 from fegear.studies.swept import Swept, best_lines
@@ -132,7 +132,7 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         radius = data["geometry.tip_radius"].sel({"gear.a.teeth": 21}).values
         assert data["geometry.tip_radius"].attrs["units"] == "mm"
     changes = ("--set", "gear.a.teeth=21", "--set", "gear.a.profile_shift=0.3", "--out", str(tmp_path / "one"))
-    assert CliRunner().invoke(app, ["run", str(case), "--no-plots", *changes]).exit_code == 0
+    assert CliRunner().invoke(program(), ["run", str(case), "--no-plots", *changes]).exit_code == 0
     one = json.loads((tmp_path / "one" / "summary.json").read_text())["results"]
     assert ratio == one["I.contact_ratio"]["value"]
     assert radius[0] == pytest.approx(np.array([[23.0, 33.0], [23.6, 33.0]]))
@@ -295,7 +295,7 @@ def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path, 
     told = []
     for more in ((), ("--cache",), ("--cache",), ()):
         arguments = ["run", case, "--no-plots", "--set", 'results=["stiffness"]', "--out", tmp_path / "o", *more]
-        assert CliRunner().invoke(app, [str(one) for one in arguments]).exit_code == 0
+        assert CliRunner().invoke(program(), [str(one) for one in arguments]).exit_code == 0
         found = json.loads((tmp_path / "o" / "summary.json").read_text())
         told.append((found["recalled"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
     assert [bool(cached) for cached, _, _ in told] == [False, False, True, False]

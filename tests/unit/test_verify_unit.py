@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fegear.base.errors import InputError, MissingLibraryError
-from fegear.cli import app
+from fegear.cli import program
 from fegear.verify.row import AGAINST, Compared, Outcome, Row, near, printed, run
 from fegear.verify.rows import ALL, chosen
 
@@ -89,17 +89,17 @@ def missing():
 
 
 def test_the_command_says_what_it_found_and_ends_with_1_where_a_row_does_not_hold(capsys, monkeypatch):
-    app(["verify", "beams", "--json"], standalone_mode=False)
+    program()(["verify", "beams", "--json"], standalone_mode=False)
     told = json.loads(capsys.readouterr().out)
     assert told["holding"] == 1
     assert told["rows"][0]["largest_difference"] < 1e-10
     bare = Row("bare", "capability", "own", "source", "What.", lambda: missing())
     monkeypatch.setattr("fegear.verify.rows.ALL", (bare,))
-    assert app(["verify"], standalone_mode=False) in (None, 0)
+    assert program()(["verify"], standalone_mode=False) in (None, 0)
     assert "not run: numba is not there" in capsys.readouterr().out
     wrong = Row("wrong", "capability", "own", "source", "What.", lambda: near(1.0, 2.0, 1e-3))
     monkeypatch.setattr("fegear.verify.rows.ALL", (wrong,))
-    assert app(["verify"], standalone_mode=False) == 1
+    assert program()(["verify"], standalone_mode=False) == 1
     assert "FAILED" in capsys.readouterr().out
 
 
