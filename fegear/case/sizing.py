@@ -32,8 +32,11 @@ from fegear.design.sizing.limits import SizingLimits
 
 #: What variants can be compared by; each is better where it is smaller, but `safety` and `contact-ratio`.
 Criterion = Literal[
-    "transmission-error", "mass", "centre-distance", "loss", "safety", "contact-ratio", "sliding", "module"
+    "transmission-error", "relieved-transmission-error", "mass", "centre-distance", "loss", "safety", "contact-ratio",
+    "sliding", "module",
 ]
+#: Best variants that are verified: spur ones, and where some are helical.
+_VERIFIED, _VERIFIED_HELICAL = 20, 3
 #: Modules of ISO 54 [mm], series I and II.
 _SERIES_I = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
 _SERIES_II = (1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4.5, 5.5, 7.0, 9.0, 11.0, 14.0, 18.0)
@@ -196,11 +199,24 @@ class SizingPart(Part):
         default_factory=_usual_criteria,
         description="What variants are compared by, the most important first.",
     )
-    screened: Annotated[int, Field(ge=0, le=5000)] = Field(
-        default=24, description="Number of variants whose transmission error is estimated by FE (coarse)."
+    estimated: Annotated[int, Field(ge=0, le=30_000_000)] = Field(
+        default=1_000_000,
+        description="Maximum number of variants whose transmission error is estimated by the atlas of solved gears "
+        "(spur, racks of ISO 53 that come with fegear).",
     )
-    verified: Annotated[int, Field(ge=0, le=200)] = Field(
-        default=3, description="Number of best variants verified by FE with estimated errors."
+    relieved: Annotated[int, Field(ge=1, le=1_000_000)] = Field(
+        default=300,
+        description="Maximum number of variants for which the best tip relief is searched "
+        "(`relieved-transmission-error`).",
+    )
+    screened: Annotated[int, Field(ge=0, le=5000)] = Field(
+        default=24,
+        description="Number of variants outside the atlas (helical, other racks) whose transmission error is "
+        "estimated by FE (coarse).",
+    )
+    verified: Annotated[int, Field(ge=0, le=200)] | None = Field(
+        default=None,
+        description="Number of best variants verified by FE with estimated errors. Default: 20, with helix angles 3.",
     )
     verified_width: Literal["slices", "solid"] = Field(
         default="solid", description="Tooth model by which helical variants are verified: `slices` or `solid` (3D)."
@@ -241,6 +257,13 @@ class SizingPart(Part):
     def chosen_sums(self) -> tuple[float, ...]:
         """Sums of both shifts to choose from, ascending."""
         return (0.0,) if self.shift_sums is None else self.shift_sums.shifts
+
+    @property
+    def verified_count(self) -> int:
+        """How many of the best are verified."""
+        if self.verified is not None:
+            return self.verified
+        return _VERIFIED if not any(self.chosen_helix_angles) else _VERIFIED_HELICAL
 
     @property
     def distances(self) -> tuple[float, float] | None:

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 
 #: Criteria of which more is better.
 LARGER_IS_BETTER = frozenset({"safety", "contact-ratio", "sliding"})
-#: Criteria that only finite elements give.
-BY_FE = frozenset({"transmission-error"})
+#: Transmission error of unmodified flanks, and with the best tip relief.
+BARE, RELIEVED = "transmission-error", "relieved-transmission-error"
+#: Criteria that only finite elements give, at first hand or by an atlas of solved gears.
+BY_FE = frozenset({BARE, RELIEVED})
 
 
 @dataclass(frozen=True)

@@ -186,6 +186,13 @@ def _ends(key: str, value: float, low: float, high: float) -> list[str]:
     return [f"{key} ({'minimum' if value == low else 'maximum'})"]
 
 
+class VariantRelief(NamedTuple):
+    """Linear tip relief of both gears: the same amount [m], lengths along the line of action of each [m]."""
+
+    amount: float
+    lengths: tuple[float, float]
+
+
 class Variant(NamedTuple):
     """One pair: numbers of pinion and wheel; lengths [m], angles [rad], shifts and heights of the rack [modules]."""
 
@@ -200,6 +207,7 @@ class Variant(NamedTuple):
     rack_tip_radius: float
     centre_distance: float
     face_width: float
+    relief: VariantRelief | None = None
 
 
 def variant_of(pairs: ManyGearPairs, row: int) -> Variant:

@@ -40,6 +40,7 @@ class FromFE:
     root_stress, root_stress_error : float
         Maximum root stress of both gears at the nominal torque [Pa].
     reason : str
+    source : {"FE", "atlas"}
     """
 
     te: float = math.nan
@@ -47,6 +48,7 @@ class FromFE:
     root_stress: float = math.nan
     root_stress_error: float = math.nan
     reason: str = ""
+    source: str = "FE"
 
 
 def compute_variant(point: Mapping[str, Any], cache: SolutionCache) -> dict[str, float]:
@@ -64,11 +66,12 @@ def compute_variant(point: Mapping[str, Any], cache: SolutionCache) -> dict[str,
     roots = [values[f"{PAIR}.{member}.largest_root_tension"] for member in ("driver", "driven")]
     root = max(roots, key=lambda one: one.si)
     found = {"te": float(te.si), "te_error": _error(te.si_error)}
+    torques = scene.case.pair[PAIR].torques
     for table in results.tables:
-        if table.name == f"transmission_error_loads_{PAIR}":
+        if torques is not None and table.name == f"transmission_error_summary_{PAIR}":
             columns = {column.name: np.asarray(column.si, dtype=float) for column in table.columns}
-            ranges = [float(np.ptp(columns["te"][columns["total_load"] == w])) for w in set(columns["total_load"])]
-            found["te"] = max(found["te"], *ranges)
+            counts = np.isclose(columns["driver_torque"][:, None], torques.array, rtol=1e-9, atol=0.0).any(axis=1)
+            found["te"] = float(columns["te_peak_to_peak"][counts].max())
     return {**found, "root_stress": float(root.si), "root_stress_error": _error(root.si_error)}
 
 

@@ -7,10 +7,32 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.base.shown import shown, shows
+from fegear.design.sizing.space import VariantRelief
 
 if TYPE_CHECKING:
     from fegear.design.sizing.space import Variant
     from fegear.results.sizing.by_fe import FromFE
+
+
+@dataclass(frozen=True)
+class BestRelief:
+    """The best short or long tip relief of a variant.
+
+    Parameters
+    ----------
+    te : float
+        Estimated transmission error with it [m].
+    amount : float
+        Of both gears [m]; 0 where no relief is better than none.
+    kind : str
+    lengths : (float, float)
+        [m].
+    """
+
+    te: float
+    amount: float
+    kind: str
+    lengths: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -25,6 +47,11 @@ class SizedVariant:
     on_bounds : tuple of str
         What lies at the end of what may vary.
     estimate, verified : FromFE or None
+        Of unmodified flanks.
+    relief : BestRelief or None
+        Where one was searched.
+    verified_relieved : FromFE or None
+        With it.
     """
 
     number: int = shown("", "number of the variant", name="variant", table="sizing")
@@ -55,12 +82,26 @@ class SizedVariant:
     on_bounds: tuple[str, ...] = field(kw_only=True, default=())
     estimate: FromFE | None = field(kw_only=True, default=None)
     verified: FromFE | None = field(kw_only=True, default=None)
+    relief: BestRelief | None = field(kw_only=True, default=None)
+    verified_relieved: FromFE | None = field(kw_only=True, default=None)
 
     @property
-    @shows("um", "peak-to-peak transmission error, maximum over the torques, estimated by FE", table="sizing")
+    @shows("", "source of the estimates: atlas of solved gears, or coarse FE", table="sizing")
+    def estimated_by(self) -> str:
+        """Empty without an estimate."""
+        return "" if self.estimate is None else self.estimate.source
+
+    @property
+    @shows("um", "peak-to-peak transmission error, maximum over the torques, estimated", table="sizing")
     def te_estimated(self) -> float:
         """NaN without an estimate."""
         return math.nan if self.estimate is None else self.estimate.te
+
+    @property
+    @shows("um", "estimated error of te_estimated", table="sizing")
+    def te_estimated_error(self) -> float:
+        """NaN without an estimate, or without its error."""
+        return math.nan if self.estimate is None else self.estimate.te_error
 
     @property
     @shows("um", "peak-to-peak transmission error, maximum over the torques, verified by FE", table="sizing")
@@ -75,6 +116,48 @@ class SizedVariant:
         return math.nan if self.verified is None else self.verified.te_error
 
     @property
+    @shows("um", "amount of linear tip relief of both gears", table="relief")
+    def relief_amount(self) -> float:
+        """Zero where no relief is better than none, NaN where none was searched."""
+        return math.nan if self.relief is None else self.relief.amount
+
+    @property
+    @shows("", "length of the tip relief: short or long", table="relief")
+    def relief_kind(self) -> str:
+        """Empty without a relief."""
+        return "" if self.relief is None else self.relief.kind
+
+    @property
+    @shows("mm", "length of the tip relief of the pinion along the line of action", table="relief")
+    def relief_length_1(self) -> float:
+        """NaN where none was searched."""
+        return math.nan if self.relief is None else self.relief.lengths[0]
+
+    @property
+    @shows("mm", "length of the tip relief of the wheel along the line of action", table="relief")
+    def relief_length_2(self) -> float:
+        """NaN where none was searched."""
+        return math.nan if self.relief is None else self.relief.lengths[1]
+
+    @property
+    @shows("um", "te_estimated with this tip relief", table="relief")
+    def te_relieved_estimated(self) -> float:
+        """NaN where none was searched."""
+        return math.nan if self.relief is None else self.relief.te
+
+    @property
+    @shows("um", "te_verified with this tip relief", table="relief")
+    def te_relieved_verified(self) -> float:
+        """NaN where it was not verified."""
+        return math.nan if self.verified_relieved is None else self.verified_relieved.te
+
+    @property
+    @shows("um", "estimated error of te_relieved_verified", table="relief")
+    def te_relieved_verified_error(self) -> float:
+        """NaN where it was not verified."""
+        return math.nan if self.verified_relieved is None else self.verified_relieved.te_error
+
+    @property
     @shows("MPa", "maximum root stress of both gears by FE, estimated", table="sizing")
     def root_stress_estimated(self) -> float:
         """NaN without an estimate."""
@@ -84,7 +167,8 @@ class SizedVariant:
     @shows("MPa", "maximum root stress of both gears by FE, verified", table="sizing")
     def root_stress_verified(self) -> float:
         """NaN where it was not verified."""
-        return math.nan if self.verified is None else self.verified.root_stress
+        by = self.verified or self.verified_relieved
+        return math.nan if by is None else by.root_stress
 
     @property
     @shows("", "values at the end of what may vary", table="sizing")
@@ -97,6 +181,20 @@ class SizedVariant:
         """Peak-to-peak transmission error, verified where it was."""
         known = self.te_verified
         return self.te_estimated if math.isnan(known) else known
+
+    @property
+    def te_relieved(self) -> float:
+        """The same with its tip relief."""
+        known = self.te_relieved_verified
+        return self.te_relieved_estimated if math.isnan(known) else known
+
+    @property
+    def relieved_variant(self) -> Variant:
+        """Itself with its tip relief."""
+        one = self.relief
+        if one is None or not one.amount > 0.0:
+            return self.variant
+        return self.variant._replace(relief=VariantRelief(one.amount, one.lengths))
 
     @property
     def words(self) -> str:
@@ -123,7 +221,8 @@ class Placed:
     criterion: str = shown("", "criterion", table="present")
     present: float = shown("", "present design, in the unit of the criterion", table="present")
     best: float = shown("", "best of the variants compared, in the same unit", table="present")
-    better: int = shown("", "variants that are better by this criterion", table="present")
+    better: int = shown("", "variants that are better by this criterion; all where the design has no number",
+                        table="present")  # fmt: skip
     compared: int = shown("", "variants compared", table="present")
     unit: str = shown("", "unit of the criterion", table="present")
 
@@ -139,7 +238,10 @@ class PresentPlaced:
         All limits that it breaks.
     placed : tuple of Placed
     dominating : int
-        Variants that are no worse by any of the criteria by formulas and better by one.
+        Variants that are no worse by any of the criteria and better by one; where the transmission error of all is not
+        known, by those that formulas give.
+    by_all : bool
+        Whether these are all criteria.
     better : SizedVariant or None
         The best of the front that dominates it by all criteria.
     """
@@ -148,6 +250,7 @@ class PresentPlaced:
     reasons: tuple[str, ...]
     placed: tuple[Placed, ...]
     dominating: int
+    by_all: bool
     better: SizedVariant | None
 
 
@@ -160,7 +263,13 @@ class SizingData:
     count, feasible : int
         Variants enumerated, and those that keep all limits.
     on_front : int
-        Of the feasible, on the front by formulas.
+        Of those whose criteria are all known, as estimated, on the front; without a transmission error of all feasible.
+    known : int
+        Feasible variants whose transmission error is known, by the atlas or by finite elements.
+    by_atlas : bool
+        Whether an atlas contains any.
+    relieved : int
+        Variants for which a relief was searched.
     reasons : tuple of Excluded
     chosen : tuple of SizedVariant
         Compared by all criteria, the front first, by its order.
@@ -171,7 +280,10 @@ class SizingData:
 
     count: int = shown("", "variants enumerated")
     feasible: int = shown("", "variants that keep all limits", name="variants_feasible")
-    on_front: int = shown("", "variants on the Pareto front by formulas", name="variants_on_front")
+    on_front: int = shown("", "variants on the Pareto front", name="variants_on_front")
+    known: int = shown("", "variants with known transmission error", name="variants_te_known", default=0)
+    by_atlas: bool = False
+    relieved: int = 0
     reasons: tuple[Excluded, ...] = ()
     chosen: tuple[SizedVariant, ...] = ()
     present: PresentPlaced | None = None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.notes import assuming, exceeding, failing
+from fegear.base.notes import Note, assuming, failing, neglecting
 from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.engine.sheet.answer import Answer
@@ -17,11 +17,11 @@ from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Sheet
+from fegear.results.sizing.parallel_coordinates import parallel_coordinates
 from fegear.results.sizing.sizing_data import SizedVariant
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.base.notes import Note
     from fegear.engine.sheet.seen import Seen
     from fegear.results.sizing.sizing_data import SizingData
 
@@ -38,14 +38,14 @@ class Drawn:
     notes: tuple[str, ...]
     total_mass: Array = shown("kg", "mass of both gears")
     te: Array = shown("um", "peak-to-peak transmission error")
+    te_relieved: Array = shown("um", "peak-to-peak transmission error with tip relief")
     margin: Array = shown("", "load margin")
 
 
 def _points(variants: tuple[SizedVariant, ...]) -> Drawn:
     return Drawn(
         tuple(f"variant {one.number}: {one.words}" if one.number else f"present: {one.words}" for one in variants),
-        np.array([one.mass for one in variants]), np.array([one.te for one in variants]),
-        np.array([one.margin for one in variants]),
+        *(np.array([getattr(one, name) for one in variants]) for name in ("mass", "te", "te_relieved", "margin")),
     )  # fmt: skip
 
 
@@ -63,18 +63,24 @@ def _has_te(seen: Seen) -> bool:
     return any(math.isfinite(one.te) for one in seen.data.chosen)
 
 
+def _main(seen: Seen) -> str:
+    """What is drawn over the mass."""
+    if seen.data.relieved:
+        return "te_relieved"
+    return "te" if _has_te(seen) else "margin"
+
+
 def _look(seen: Seen) -> dict[str, object]:
     return {"size": _POINT, "notes": seen.one.notes}
 
 
 def _chart(key: str, y: str, words: str) -> Chart:
-    te = y == "te"
     line = Line(y, kind="points", each=Family(_groups, most=None), look=_look)
     return Chart(
         key, f"Variants: {words} over mass",
         "Variants that keep all limits and were compared. In the report, hover over a point for the variant.",
         (Over("total_mass", (line,), of=lambda _: Drawn),),
-        when=lambda seen: bool(seen.data.chosen) and _has_te(seen) == te,
+        when=lambda seen: bool(seen.data.chosen) and _main(seen) == y,
     )  # fmt: skip
 
 
@@ -84,11 +90,14 @@ def _um(te: float) -> str:
 
 def _said_of(one: SizedVariant) -> str:
     """Numbers of a variant in a sentence."""
-    found = [f"mass {figures(one.mass)} kg", f"load margin {figures(one.margin)}"]
+    found = []
     if math.isfinite(one.te):
         kind = "verified" if math.isfinite(one.te_verified) else "estimated"
-        found.insert(0, f"transmission error {_um(one.te)} peak to peak ({kind})")
-    return ", ".join(found)
+        found.append(f"transmission error {_um(one.te)} peak to peak ({kind})")
+    if one.relief is not None and one.relief.amount > 0.0 and math.isfinite(one.te_relieved):
+        kind = "verified" if math.isfinite(one.te_relieved_verified) else "estimated"
+        found.append(f"{_um(one.te_relieved)} with {one.relief.kind} tip relief of {_um(one.relief.amount)} ({kind})")
+    return ", ".join([*found, f"mass {figures(one.mass)} kg", f"load margin {figures(one.margin)}"])
 
 
 def _answers(seen: Seen) -> Iterator[str]:
@@ -100,16 +109,17 @@ def _answers(seen: Seen) -> Iterator[str]:
         return
     best = data.best
     yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}."
-    yield (
-        f"{data.feasible:,} variants keep all limits; {data.on_front:,} are on the Pareto front by formulas, "
-        f"{len(data.front):,} of {len(data.chosen):,} compared on that by all criteria."
-    )
+    if best.on_bounds:
+        yield f"Variant {best.number} lies at the end of what may vary: {', '.join(best.on_bounds)}."
+    known = f"; of {data.known:,} with known transmission error" if data.known < data.feasible and data.known else ","
+    few = f", {len(data.front):,} of them shown" if len(data.chosen) < data.on_front else ""
+    yield f"{data.feasible:,} variants keep all limits{known} {data.on_front:,} are on the Pareto front{few}."
     if data.present is not None:
         yield from _present(seen)
 
 
 def _present(seen: Seen) -> Iterator[str]:
-    """Where the present design stands."""
+    """Where the present design is placed."""
     placed = seen.data.present
     own = placed.design
     breaks = f"breaks {', '.join(placed.reasons)}" if placed.reasons else "keeps all limits"
@@ -118,9 +128,8 @@ def _present(seen: Seen) -> Iterator[str]:
     if better is not None:
         yield f"Variant {better.number} is better by all criteria: {better.words}; {_said_of(better)}."
         return
-    yield (
-        f"No variant compared is better than the present design by all criteria (by formulas: {placed.dominating:,})."
-    )
+    by = "of all" if placed.by_all else "by formulas"
+    yield f"No variant shown is better than the present design by all criteria ({by}: {placed.dominating:,})."
 
 
 def _bounds(seen: Seen) -> tuple[Note, ...]:
@@ -128,7 +137,7 @@ def _bounds(seen: Seen) -> tuple[Note, ...]:
     if best is None or not best.on_bounds:
         return ()
     return (
-        exceeding(
+        Note(
             f"Variant {best.number}: {', '.join(best.on_bounds)} at the end of what may vary; a better one may lie "
             "beyond. Widen the range."
         ),
@@ -144,14 +153,37 @@ def _failed(seen: Seen) -> tuple[Note, ...]:
 
 
 def _unseen(seen: Seen) -> tuple[Note, ...]:
-    """Variants of the front by formulas that finite elements did not look at."""
+    """Variants whose transmission error is not known."""
     data: SizingData = seen.data
-    if not _has_te(seen) or len(data.chosen) >= data.feasible:
+    if not data.known or data.known >= data.feasible:
+        return ()
+    more = "sizing.estimated or sizing.screened" if data.by_atlas else "sizing.screened"
+    return (
+        neglecting(
+            f"Transmission error known for {data.known:,} of {data.feasible:,} variants, the best by formulas; "
+            f"increase {more} for more."
+        ),
+    )
+
+
+def _source(seen: Seen) -> tuple[Note, ...]:
+    """Estimates by the atlas beside what finite elements say."""
+    pairs = [(one.te_estimated, one.te_verified) for one in seen.data.chosen if one.estimated_by == "atlas"]
+    off = [abs(estimate - verified) for estimate, verified in pairs if math.isfinite(verified)]
+    if not seen.data.by_atlas:
+        return ()
+    beside = f"; verified values differ by at most {_um(max(off))} ({len(off)} variants)" if off else ""
+    return (Note(f"Transmission error estimated by the atlas of solved gears{beside}."),)
+
+
+def _unsearched(seen: Seen) -> tuple[Note, ...]:
+    data: SizingData = seen.data
+    if not data.relieved or data.relieved >= data.known:
         return ()
     return (
-        exceeding(
-            f"Transmission error known for {len(data.chosen):,} of {data.feasible:,} variants, evenly along the Pareto "
-            "front by formulas; increase sizing.screened for more."
+        neglecting(
+            f"Tip relief searched for {data.relieved:,} of {data.known:,} variants, the best without relief; increase "
+            "sizing.relieved for more."
         ),
     )
 
@@ -175,7 +207,9 @@ SIZING_SHEET = Sheet(
     name=lambda _asked: "",
     tables=(
         Rows("sizing", "Variants compared, the Pareto front first", (Every("sizing"),), of="chosen",
-             when=lambda seen: bool(seen.data.chosen)),
+             when=lambda seen: bool(seen.data.chosen) and not seen.data.relieved),
+        Rows("sizing", "Variants compared, the Pareto front first", (Every("sizing"), Every("relief")), of="chosen",
+             when=lambda seen: bool(seen.data.chosen) and bool(seen.data.relieved)),
         Rows("excluded_variants", "What excluded variants", (Every("reasons"),), of="reasons",
              when=lambda seen: bool(seen.data.reasons)),
         Rows("placed_design", "Present design among the variants", (Every("present"),),
@@ -187,15 +221,20 @@ SIZING_SHEET = Sheet(
         Number("count", exact, owner="sizing", name="variants"),
         Number("feasible", exact, owner="sizing"),
         Number("on_front", exact, owner="sizing"),
-        Number("te_verified", lambda seen: seen.data.best.te_verified_error, "best", owner="sizing"),
+        Number("te_verified", lambda seen: seen.data.best.te_verified_error, "best", owner="sizing",
+               when=lambda seen: seen.data.best.verified is not None),
+        Number("te_relieved_verified", lambda seen: seen.data.best.te_relieved_verified_error, "best", owner="sizing",
+               when=lambda seen: seen.data.best.verified_relieved is not None),
         Number("mass", exact, "best", owner="sizing"),
         Number("margin", exact, "best", owner="sizing"),
     ),
     figures=(
         _chart("sizing_te", "te", "transmission error"),
+        _chart("sizing_te_relieved", "te_relieved", "transmission error with tip relief"),
         _chart("sizing_margin", "margin", "load margin"),
+        parallel_coordinates,
     ),
-    answer=Answer(_answers, figure=lambda seen: "sizing_te" if _has_te(seen) else "sizing_margin"),
-    remarks=(_failed, _bounds, _unseen, _slices, _said),
+    answer=Answer(_answers, figure=lambda seen: f"sizing_{_main(seen)}"),
+    remarks=(_failed, _unseen, _slices, _source, _unsearched, _bounds, _said),
     settings=lambda seen: {"variants": seen.data.count},
 )  # fmt: skip

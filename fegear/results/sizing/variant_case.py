@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from fegear.base.effects import CORNER_CONTACT, HERTZ, NEIGHBOUR_COUPLING
+from fegear.base.effects import CORNER_CONTACT, HERTZ, NEIGHBOUR_COUPLING, RELIEF
 from fegear.case.text_file import toml_string
 
 if TYPE_CHECKING:
@@ -43,7 +43,15 @@ def _gear(asked: Mapping[str, Any], variant: Variant, i: int) -> dict[str, Any]:
         "tolerance_class": asked.get("tolerance_class", 6),
         "strength": strength or asked["strength"],
         **{key: asked[key] for key in ("roughness", "material") if key in asked},
+        **_relief(variant, i),
     }  # fmt: skip
+
+
+def _relief(variant: Variant, i: int) -> dict[str, Any]:
+    if variant.relief is None:
+        return {}
+    amount, lengths = variant.relief
+    return {"relief": {"tip": {"amount": f"{amount * 1e6:.6g} um", "length": _mm(lengths[i])}}}
 
 
 def case_of_variant(
@@ -70,7 +78,9 @@ def case_of_variant(
     }
     if helical and width:
         pair["width"] = width
-    effects = {NEIGHBOUR_COUPLING.name: True, HERTZ.name: "load-dependent"}
+    effects: dict[str, Any] = {NEIGHBOUR_COUPLING.name: True, HERTZ.name: "load-dependent"}
+    if variant.relief is not None:
+        effects[RELIEF.name] = True
     z, beta = variant.teeth, math.degrees(variant.helix_angle)
     return {
         "title": f"{z[0]}/{z[1]} teeth, m_n {variant.module * 1e3:.4g} mm, {beta:.4g} deg",
