@@ -44,7 +44,7 @@ def pareto_front(costs: Array) -> Index:
     ranks, group = _ranks(costs[known])
     on = np.zeros(len(ranks), dtype=bool)
     on[_front(ranks, _thinned(ranks))] = True
-    alive = np.isnan(costs).any(axis=1)
+    alive = np.ones(len(costs), dtype=bool)
     alive[known] = on[group]
     return np.flatnonzero(alive)
 

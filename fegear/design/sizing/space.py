@@ -213,11 +213,13 @@ class Variant(NamedTuple):
 def variant_of(pairs: ManyGearPairs, row: int) -> Variant:
     """One of many pairs."""
     z, x, tip = pairs.teeth[:, row], pairs.profile_shift[:, row], pairs.tip_diameters[:, row]
-    names = (
-        "module", "pressure_angle", "helix_angle", "addendum", "dedendum", "rack_tip_radius", "centre_distance",
-        "face_width",
+    module, alpha, beta, addendum, dedendum, rounding, distance, width = (
+        float(values[row]) for values in (
+            pairs.module, pairs.pressure_angle, pairs.helix_angle, pairs.addendum, pairs.dedendum,
+            pairs.rack_tip_radius, pairs.centre_distance, pairs.face_width,
+        )
     )  # fmt: skip
     return Variant(
         (int(z[0]), int(z[1])), (float(x[0]), float(x[1])), (float(tip[0]), float(tip[1])),
-        *(float(getattr(pairs, name)[row]) for name in names),
+        module, alpha, beta, addendum, dedendum, rounding, distance, width,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import InputError
-from fegear.design.sizing.space import Variant
+from fegear.design.sizing.space import Variant, VariantRelief
 from fegear.results.sizing.variant_case import case_of_variant, text_of_case
 
 if TYPE_CHECKING:
@@ -15,6 +15,14 @@ if TYPE_CHECKING:
 
 #: What the case of a variant computes.
 _RESULTS = ("geometry", "transmission-error", "root-stress-history", "rating")
+
+
+def _relief(rows: Mapping[str, Any], n: int) -> VariantRelief | None:
+    """Tip relief of a variant, where one was searched and is better than none."""
+    amount = float(rows["relief_amount"][n]) if "relief_amount" in rows else 0.0
+    if not amount > 0.0:
+        return None
+    return VariantRelief(amount, (float(rows["relief_length_1"][n]), float(rows["relief_length_2"][n])))
 
 
 def text_of_variant(
@@ -56,7 +64,7 @@ def text_of_variant(
         (round(of("z_1")), round(of("z_2"))), (of("x_1"), of("x_2")), (of("tip_diameter_1"), of("tip_diameter_2")),
         of("normal_module"), of("pressure_angle"), of("helix_angle"), addendum,
         addendum + float(asked.get("root_clearance", 0.25)), float(asked.get("rack_tip_radius", 0.38)),
-        of("centre_distance"), of("face_width"),
+        of("centre_distance"), of("face_width"), _relief(rows, n),
     )  # fmt: skip
     made = case_of_variant(asked, one, _RESULTS)
     made["title"] = f"{document.get('title') or 'Sizing'}: variant {numbers[n]}"

@@ -63,10 +63,10 @@ def bare_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, pro
 def relieved_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, progress: Progress) -> Relieved:
     """The same with the best relief."""
     found = _mapped(relieved_part, space.pairs(numbers), duty, work, _RELIEVED, progress)
-    empty = Relieved(*np.zeros((2, 0)), np.zeros(0, dtype=np.int64), np.zeros((2, 0)), np.zeros(0, dtype=bool))
     if not found:
-        return empty
-    return Relieved(*(np.concatenate([one[name] for one in found], axis=-1) for name in Relieved._fields))
+        none = np.zeros(0)
+        return Relieved(none, none, none.astype(np.int64), np.zeros((2, 0)), none.astype(bool))
+    return Relieved._make(np.concatenate([one[name] for one in found], axis=-1) for name in Relieved._fields)
 
 
 def _mapped(

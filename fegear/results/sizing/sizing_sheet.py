@@ -157,11 +157,13 @@ def _unseen(seen: Seen) -> tuple[Note, ...]:
     data: SizingData = seen.data
     if not data.known or data.known >= data.feasible:
         return ()
-    more = "sizing.estimated or sizing.screened" if data.by_atlas else "sizing.screened"
+    key, outside = "screened", " outside the atlas" if data.by_atlas else ""
+    if data.by_atlas and data.feasible > seen.asked.part.estimated:
+        key, outside = "estimated", ""
     return (
         neglecting(
-            f"Transmission error known for {data.known:,} of {data.feasible:,} variants, the best by formulas; "
-            f"increase {more} for more."
+            f"Transmission error unknown for {data.feasible - data.known:,} of {data.feasible:,} variants{outside}; "
+            f"increase sizing.{key} to include more."
         ),
     )
 
@@ -222,9 +224,9 @@ SIZING_SHEET = Sheet(
         Number("feasible", exact, owner="sizing"),
         Number("on_front", exact, owner="sizing"),
         Number("te_verified", lambda seen: seen.data.best.te_verified_error, "best", owner="sizing",
-               when=lambda seen: seen.data.best.verified is not None),
+               when=lambda seen: seen.data.best is not None and seen.data.best.verified is not None),
         Number("te_relieved_verified", lambda seen: seen.data.best.te_relieved_verified_error, "best", owner="sizing",
-               when=lambda seen: seen.data.best.verified_relieved is not None),
+               when=lambda seen: seen.data.best is not None and seen.data.best.verified_relieved is not None),
         Number("mass", exact, "best", owner="sizing"),
         Number("margin", exact, "best", owner="sizing"),
     ),
