@@ -20,22 +20,23 @@ if TYPE_CHECKING:
 
 #: Lines of a group that are drawn at most, evenly chosen.
 _MOST = 60
-#: Quantities: attribute, words, unit, size of the unit in SI.
-_AXES = (
-    ("te", "transmission error", "µm", 1e-6),
-    ("te_relieved", "transmission error, relieved", "µm", 1e-6),
-    ("root_stress_verified", "root stress", "MPa", 1e6),
-    ("mass", "mass", "kg", 1.0),
-    ("margin", "load margin", "", 1.0),
-    ("loss_factor", "loss factor", "", 1.0),
-    ("sliding", "specific sliding", "", 1.0),
-    ("contact_ratio", "contact ratio", "", 1.0),
-    ("centre_distance", "centre distance", "mm", 1e-3),
+#: Quantities: attribute, words (in lines), unit, size of the unit in SI; criteria of the case, and what makes a variant.
+_CRITERIA = {
+    "transmission-error": ("te", "transm.\nerror", "µm", 1e-6),
+    "relieved-transmission-error": ("te_relieved", "transm. error,\nrelieved", "µm", 1e-6),
+    "mass": ("mass", "mass", "kg", 1.0),
+    "safety": ("margin", "load\nmargin", "", 1.0),
+    "loss": ("loss_factor", "loss\nfactor", "", 1.0),
+    "sliding": ("sliding", "specific\nsliding", "", 1.0),
+    "contact-ratio": ("contact_ratio", "contact\nratio", "", 1.0),
+    "centre-distance": ("centre_distance", "centre\ndistance", "mm", 1e-3),
+}
+_SIZES = (
     ("module", "module", "mm", 1e-3),
     ("teeth_1", "z_1", "", 1.0),
-    ("helix_angle", "helix angle", "°", np.pi / 180.0),
+    ("helix_angle", "helix\nangle", "°", np.pi / 180.0),
     ("shift_1", "x_1", "", 1.0),
-    ("face_width", "face width", "mm", 1e-3),
+    ("face_width", "face\nwidth", "mm", 1e-3),
 )
 
 
@@ -52,7 +53,8 @@ def parallel_coordinates(seen: Seen) -> Iterator[Figure]:
         groups.append(("present design", "orange", (data.present.design,)))
     everyone = tuple(one for _, _, group in groups for one in group)
     axes = []
-    for name, words, unit, size in _AXES:
+    wanted = [_CRITERIA[name] for name in seen.asked.criteria if name in _CRITERIA]
+    for name, words, unit, size in (*wanted, *_SIZES):
         values = _values(everyone, name, size)
         known = values[np.isfinite(values)]
         if known.size > 1 and np.ptp(known) > 1e-9 * np.abs(known).max():
@@ -84,7 +86,7 @@ def parallel_coordinates(seen: Seen) -> Iterator[Figure]:
             )
     items.sort(key=lambda item: ("compared", "Pareto front", "present design", "best").index(item.name))
     ticks = tuple(
-        (float(k), f"{words}\n{figures(low)} to {figures(high)} {unit}".rstrip())
+        (float(k), f"{words}\n{figures(low)} to\n{figures(high)} {unit}".rstrip())
         for k, (_, words, unit, _, low, high) in enumerate(axes)
     )
     yield Figure(
