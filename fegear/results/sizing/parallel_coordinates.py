@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Lines of a group that are drawn at most, evenly chosen.
 _MOST = 60
-#: Quantities: attribute, words (in lines), unit, size of the unit in SI; criteria of the case, and what makes a variant.
+#: Criteria and what makes a variant: attribute, words (in lines), unit, size of the unit in SI.
 _CRITERIA = {
     "transmission-error": ("te", "transm.\nerror", "µm", 1e-6),
     "relieved-transmission-error": ("te_relieved", "transm. error,\nrelieved", "µm", 1e-6),
