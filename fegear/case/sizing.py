@@ -32,8 +32,15 @@ from fegear.design.sizing.limits import SizingLimits
 
 #: What variants can be compared by; each is better where it is smaller, but `safety` and `contact-ratio`.
 Criterion = Literal[
-    "transmission-error", "relieved-transmission-error", "mass", "centre-distance", "loss", "safety", "contact-ratio",
-    "sliding", "module",
+    "transmission-error",
+    "relieved-transmission-error",
+    "mass",
+    "centre-distance",
+    "loss",
+    "safety",
+    "contact-ratio",
+    "sliding",
+    "module",
 ]
 #: Best variants that are verified: spur ones, and where some are helical.
 _VERIFIED, _VERIFIED_HELICAL = 20, 3
