@@ -280,7 +280,7 @@ NOT_THERE = {
 NOT_WRITTEN = {
     *(f"SizingPart.{key}" for key in (
         "centre_distance", "helix_angles", "material", "normal_modules", "pinion_shifts", "pressure_angles",
-        "roughness", "shift_sums", "torques", "wheel_strength",
+        "roughness", "shift_sums", "torques", "verified", "wheel_strength",
     )), "PresentPart.tip_diameter",
     *(f"AccuracyPart.{key}" for key in (
         "order", "root_edge_length", "root_fraction", "flank_edge_length", "tip_edge_length", "junction_edge_length",

@@ -231,7 +231,7 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     looked_up = 0
     if wanted and part.estimated and may_hold(space, _POISSON) and importlib.util.find_spec("numba") is not None:
         looked_up = min(space.count, part.estimated)
-    screened = part.screened if wanted and not (spur and looked_up) else 0
+    screened = part.screened if wanted and RELIEVED not in wanted else 0
     relieved = min(looked_up, part.relieved) if RELIEVED in part.criteria else 0
     slow = 4.0 if part.verified_width == "slices" else 40.0
     loads = 1 if part.torques is None else part.torques.in_order.size
