@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from fegear.base.errors import InputError
 from fegear.case.changed_text import with_values
 from fegear.case.reading import build_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.table import Column, Table
@@ -98,6 +98,14 @@ def test_a_design_is_written_with_where_it_came_from_and_all_else_stays(design):
     assert scene.case.effects.relief
     assert scene.case.gear["w"].relief.tip[0].amount == pytest.approx(18e-6)
     assert scene.case.gear["w"].relief.tip[0].start_radius == pytest.approx(84.35e-3)
+
+
+def test_a_tip_relief_leaves_the_lead_that_is_there():
+    """Its design says nothing of the lead: only one with a lead or a twist of its own takes their place."""
+    made = applied(case(p='lead = { slope = "2 um" }\nbias = "3 um"\n'), "linear").text
+    gear = tomllib.loads(made)["gear"]["p"]
+    assert gear["relief"]["tip"]["amount"] == "6.3 um"
+    assert (gear["lead"], gear["bias"]) == ({"slope": "2 um"}, "3 um")
 
 
 def test_the_same_design_again_changes_nothing_and_another_takes_its_place():
@@ -237,7 +245,7 @@ def test_a_remark_stands_where_a_line_ends_only():
 
 def test_the_command_names_what_is_missing(tmp_path):
     (tmp_path / "drive.toml").write_text(case(), "utf-8")
-    run = CliRunner().invoke(app, ["apply", str(tmp_path), "--case", str(tmp_path / "drive.toml")])
+    run = CliRunner().invoke(program(), ["apply", str(tmp_path), "--case", str(tmp_path / "drive.toml")])
     assert isinstance(run.exception, InputError)
     assert "is not a results folder" in str(run.exception)
     assert (tmp_path / "drive.toml").read_text("utf-8") == case()

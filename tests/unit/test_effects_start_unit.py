@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import fegear
-from fegear.base.effects import EFFECTS, Described
+from fegear.base.effects import AT_REST, EFFECTS, GAPS, MOTION_EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS, Described
 from fegear.base.errors import InputError
 from fegear.case.effects import EffectsPart, started
 from fegear.case.reading import build_scene
@@ -87,3 +87,12 @@ def test_a_slip_in_the_start_is_refused_and_every_effect_has_its_facts():
     with pytest.raises(InputError, match=r"effects\.start"):
         case(effects={"start": "all"})
     assert set(EFFECTS) == set(EffectsPart.model_fields) - {"start"}
+
+
+def test_which_effects_teeth_gaps_motions_and_widths_have():
+    """A spacing error is felt at any width, a misalignment only by a face; an odd tooth only over a revolution."""
+    assert set(AT_REST) == TEETH
+    assert set(GAPS) == {"relief", "spacing_errors", "misalignment"}
+    assert set(MOTION_EFFECTS) == {"contact_loss", "friction", "parametric", "torque_ripple"}
+    assert set(WIDE_EFFECTS) == TEETH | {"relief", "spacing_errors", "misalignment"}
+    assert set(PLANE_EFFECTS) == set(WIDE_EFFECTS) - {"misalignment"}

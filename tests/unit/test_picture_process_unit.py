@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fegear.base.errors import MissingLibraryError
-from fegear.cli import app
+from fegear.cli import program
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Surface
@@ -136,10 +136,10 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
 
     monkeypatch.setattr("fegear.output.picture_process._started", refuse)
     arguments = ["run", str(CASE), *QUICK, "--out", str(tmp_path / "out")]
-    result = CliRunner().invoke(app, [*arguments, "--no-plots"], catch_exceptions=False)
+    result = CliRunner().invoke(program(), [*arguments, "--no-plots"], catch_exceptions=False)
     assert result.exit_code == 0
     with pytest.raises(AssertionError, match="started"):
-        CliRunner().invoke(app, arguments, catch_exceptions=False)
+        CliRunner().invoke(program(), arguments, catch_exceptions=False)
 
 
 def test_none_outlives_a_killed_parent_nor_complains(tmp_path):

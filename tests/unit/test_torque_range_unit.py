@@ -18,7 +18,7 @@ from fegear.base.keys import content_key
 from fegear.case.built.design_range import design_range
 from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.reading import build_scene
-from fegear.cli import app
+from fegear.cli import program
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
@@ -277,7 +277,7 @@ def test_a_design_applied_to_a_fresh_case_gives_what_it_states(tmp_path, shape):
     # The folder of the run says the same.
     other = tmp_path / "other.toml"
     other.write_text(case().replace('["relief"]', '["transmission-error"]'), "utf-8")
-    run = CliRunner().invoke(app, ["apply", str(tmp_path / "results"), "--relief", shape, "--case", str(other)])
+    run = CliRunner().invoke(program(), ["apply", str(tmp_path / "results"), "--relief", shape, "--case", str(other)])
     assert run.exit_code == 0, run.output
     relief = [tomllib.loads(path.read_text("utf-8"))["gear"] for path in (fresh, other)]
     assert relief[0] == relief[1]
