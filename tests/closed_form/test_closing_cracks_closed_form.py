@@ -100,7 +100,7 @@ def test_openings_and_forces_of_faces_from_a_crack_that_is_pulled_apart():
     corners = tuple(tuple((start + off).tolist()) for off in np.array([[-0.3, -0.1], [-0.5, -0.35]]))
     sector = cracked_sector(TOOTH, BORE, SETTINGS, Crack(mouth, corners, closing=True))
     elasticity = assemble_section(sector.mesh, NU, "strain", SETTINGS.order, SETTINGS.solver, None)
-    unknowns, rows = opening_rows(sector.mesh, elasticity)
+    unknowns, rows, _ = opening_rows(sector.mesh, elasticity)
     faces = [elasticity.edge_dofs[name] for name in FACES]
     tip = np.intersect1d(*faces)
     assert not np.isin(tip, unknowns).any()
@@ -244,3 +244,20 @@ def test_the_stated_error_is_that_of_closing_faces():
     assert (stated < 15.0 * true).all()
     assert (stated < 0.5 * free.own_error(0, radii, width)).all()
     assert (one.closed_share(0, radii) == 1.0).all()
+
+
+@pytest.mark.dear
+def test_stress_intensity_of_closed_faces_gives_back_their_energy():
+    """A crack in the back fillet, which its own tooth shuts: no K_I is left, and K_II is that of sliding."""
+    radii, step = np.array(RADII), 0.04
+    low, found, high = (solved(depth) for depth in (0.5 - step, 0.5, 0.5 + step))
+    release = 0.5 * (high.own(0, radii, PATCH) - low.own(0, radii, PATCH)) / (2.0 * step) / (1.0 - NU**2)
+    opened = found.by_ring(0, 0, radii, PATCH)
+    forces = found.face_forces(0, 0, loads(found, 0, radii))
+    both = opened + found.closed_intensity(0, forces)
+    assert both[1] == pytest.approx(both[0], abs=2e-3 * np.abs(opened).max())
+    k = both[0]
+    assert (opened[0, 0] < -1.0).all()
+    assert np.abs(k[0]).max() < 0.04
+    assert np.abs(k[1]).min() > 0.2
+    assert (np.abs((k**2).sum(axis=0) - release) < 2e-3 * (opened[0] ** 2).sum(axis=0)).all()

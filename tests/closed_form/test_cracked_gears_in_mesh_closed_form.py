@@ -12,6 +12,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.contact.load import load
 from fegear.contact.pair_spec import PairSpec
+from fegear.contact.plane.crack_in_mesh import crack_in_mesh
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance, odd_neighbours_shifted_by_error, odd_shifted_by_error
@@ -293,3 +294,26 @@ def test_what_is_no_cracked_gear_is_refused():
         solve_cracked_gear(plain, {0: crack_of("driver", 0.2), 25: crack_of("driver", 0.3)})
     with pytest.raises(InputError, match="near the odd teeth"):
         cracked("driver", 0.5).own(12, [25e-3], 1e-4)
+
+
+@pytest.mark.dear
+def test_stress_intensity_in_the_mesh_of_faces_that_may_close():
+    """Of a crack that its load opens that of open faces; of one that it shuts no K_I, over the whole passage."""
+    found = {}
+    for back, closing in ((False, False), (False, True), (True, True)):
+        one = solve_cracked_gear(ordinary("driver"), {0: replace(crack_of("driver", 0.4, back), closing=closing)})
+        e = engagement(one, corner=False)
+        found[back, closing] = crack_in_mesh(e, over_revolution(e, LOAD, 8), "driver", one, 0)
+    opened, same, shut = found.values()
+    assert same.tooth == opened.tooth == shut.tooth
+    bears = opened.load > 0.2 * LOAD
+    for mode in ("k_1", "k_2"):
+        one, other = getattr(opened, mode), getattr(same, mode)
+        assert other[bears] == pytest.approx(one[bears], rel=1e-9, abs=1e-9 * opened.k_1.max())
+    assert opened.k_1.min() < -0.01 * opened.k_1.max()
+    assert same.k_1.min() >= 0.0
+    assert shut.k_1.min() >= 0.0
+    loaded = shut.load > 0.2 * LOAD
+    assert shut.k_1[loaded].max() < 0.02 * opened.k_1.max()
+    assert np.abs(shut.k_2[loaded]).max() > 0.1 * opened.k_1.max()
+    assert (shut.k_1_error >= 0.0).all()

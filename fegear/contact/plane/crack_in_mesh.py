@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import shown
-from fegear.fem.teeth import meshing_order
+from fegear.contact.plane.tooth_in_mesh import ToothInMesh
 from fegear.geometry.pair import Member
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CrackInMesh:
-    """K_I and K_II of a crack, position by position, with open faces.
+    """K_I and K_II of a crack, position by position; faces that may close do so under all loads together.
 
     Base pitches count from that in which pair 0 is on the cracked tooth.
     """
@@ -74,29 +74,30 @@ def crack_in_mesh(
     tooth : int
         The cracked tooth by its own number.
     """
-    compliance, gear = engagement.compliance, engagement.pair.gear(member)
-    contacts = engagement.grid(found.x).contacts
-    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    low, high = influence.ordinary.lowest_radius, influence.ordinary.highest_radius
-    order, width, cycles = meshing_order(tooth, gear.teeth, member), compliance.face_width, found.loads.shape[0]
+    gear, way = influence.gear, ToothInMesh(engagement, found, member, influence, tooth)
+    near = influence.from_middle(tooth)
+    closing = near in influence.fine.closing
     pitches, parts = [], []
     for pitch in range(int(found.number[0]) - gear.teeth // 2, int(found.number[-1]) + gear.teeth // 2 + 1):
-        loads = found.loads[(order + pitch) % cycles]
-        teeth = [compliance.tooth(member, int(number), order + pitch) for number in found.number]
+        loads, teeth = way.in_pitch(pitch)
         bears = [bool((load > 0.0).any()) for load in loads]
         known = [influence.from_middle(one) in influence.known for one in teeth]
         if not all(one for one, loaded in zip(known, bears, strict=True) if loaded):
             continue
         k, error, own = np.zeros((2, found.x.size)), np.zeros((2, found.x.size)), np.zeros(found.x.size)
+        here = {}
         for row, (other, loaded) in enumerate(zip(teeth, bears, strict=True)):
             if not loaded:
                 continue
             at = np.flatnonzero(loads[row] > 0.0)
-            value, off = influence.stress_intensity(tooth, other, np.clip(radius[row, at], low, high))
-            k[:, at] += value * loads[row, at] / width
-            error[:, at] += off * loads[row, at] / width
+            value, off = influence.stress_intensity(tooth, other, way.radius[row, at])
+            k[:, at] += value * loads[row, at] / way.width
+            error[:, at] += off * loads[row, at] / way.width
+            here[other] = way.radius[row], loads[row] / way.width
             if (other - tooth) % gear.teeth == 0:
                 own = loads[row]
+        if closing and here:
+            k, error = _closed(influence, tooth, here, k, error)
         pitches.append(pitch)
         parts.append((k, error, own))
     k, error, own = (np.concatenate([part[n] for part in parts], axis=-1) for n in range(3))
@@ -104,6 +105,22 @@ def crack_in_mesh(
     # Roll positions rise toward the driver's tip: so does the way that either gear has turned.
     stated = bool(np.isfinite(error).all())
     return CrackInMesh(
-        order, member, np.repeat(pitches, found.x.size), along / gear.base_radius, own, k[0], k[1],
+        way.order, member, np.repeat(pitches, found.x.size), along / gear.base_radius, own, k[0], k[1],
         error[0] if stated else None, error[1] if stated else None,
     )  # fmt: skip
+
+
+def _closed(
+    influence: OddGearInfluence, tooth: int, loads: dict[int, tuple[Array, Array]], k: Array, error: Array
+) -> tuple[Array, Array]:
+    """K of faces that press on each other under these loads together, and its error, shape (2, P) each.
+
+    A tip that is pressed together has no K_I: what nodes leave of it, below zero, is an error.
+    """
+    on_tooth = next((one for one in loads if (one - tooth) % influence.gear.teeth == 0), tooth)
+    nothing = next(iter(loads.values()))[0]
+    every = {on_tooth: (nothing, np.zeros(nothing.size))} | loads
+    change, off = influence.closed_intensity(on_tooth, every)
+    k, error = k + change, error + off
+    left = np.minimum(k[0], 0.0)
+    return np.stack([k[0] - left, k[1]]), error + np.abs(left)

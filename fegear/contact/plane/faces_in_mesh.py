@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.teeth import meshing_order
+from fegear.contact.plane.tooth_in_mesh import ToothInMesh
 from fegear.geometry.pair import Member
 
 if TYPE_CHECKING:
@@ -60,25 +60,19 @@ def faces_in_mesh(
     tooth : int
         The cracked tooth by its own number.
     """
-    compliance, gear = engagement.compliance, engagement.pair.gear(member)
-    contacts = engagement.grid(found.x).contacts
-    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    low, high = influence.ordinary.lowest_radius, influence.ordinary.highest_radius
-    order, cycles = meshing_order(tooth, gear.teeth, member), found.loads.shape[0]
+    way = ToothInMesh(engagement, found, member, influence, tooth)
     closed, off = [np.zeros(0)], [np.zeros(0)]
-    for number in found.number:  # base pitches in which its tooth is on this pair
-        cycle = order + int(number)
-        loads = found.loads[cycle % cycles]
-        at = np.flatnonzero(loads[found.number == number][0] > 0.0)
+    for row_of_tooth, number in enumerate(found.number):  # base pitches in which its tooth is on this pair
+        loads, teeth = way.in_pitch(int(number))
+        at = np.flatnonzero(loads[row_of_tooth] > 0.0)
         if not at.size:
             continue
-        teeth = [compliance.tooth(member, int(other), cycle) for other in found.number]
         here = {
-            one: (np.clip(radius[row, at], low, high), loads[row, at] / compliance.face_width)
+            one: (way.radius[row, at], loads[row, at] / way.width)
             for row, one in enumerate(teeth)
             if (loads[row, at] > 0.0).any()
         }
-        share, changes = influence.faces_under(compliance.tooth(member, int(number), cycle), here)
+        share, changes = influence.faces_under(teeth[row_of_tooth], here)
         closed.append(share)
         off.append(np.max([np.where(here[one][1] > 0.0, np.abs(changes[one]), 0.0) for one in here], axis=0))
-    return FacesInMesh(order, member, np.concatenate(closed), np.concatenate(off))
+    return FacesInMesh(way.order, member, np.concatenate(closed), np.concatenate(off))

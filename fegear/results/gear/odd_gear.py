@@ -86,7 +86,7 @@ def _closed(seen: Seen) -> Iterator[str]:
             if share.any():
                 yield (
                     f"{who} close {percents(float(share.min()), float(share.max()))} of its crack faces "
-                    "(frictionless contact). Stress intensity is that of open faces."
+                    "(frictionless contact)."
                 )
             else:
                 yield f'{who} open its crack over the full length; crack_faces = "open" gives the same results.'

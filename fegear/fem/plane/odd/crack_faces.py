@@ -45,15 +45,18 @@ class CrackFaces:
         Under pairs of forces on the faces, the sides held.
     stress : mapping of side to ndarray, shape (points, N)
         Stress of its fillets under such pairs, the sides held.
+    intensity : ndarray, shape (rings, 2, N)
+        K_I and K_II of the crack under such pairs, the sides held, by each ring of integration.
     """
 
     follows: Array
     by_flank: Array
     own: Array
     stress: Mapping[Side, Array]
+    intensity: Array
 
 
-def opening_rows(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Array]:
+def opening_rows(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Array, Array]:
     """Opening of opposite nodes of a crack as rows of its sector's displacement.
 
     Returns
@@ -62,6 +65,8 @@ def opening_rows(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index,
         Of the faces.
     rows : ndarray, shape (N, F)
         Opening per displacement of these; as a right factor, what a pair of unit forces does to them.
+    places : ndarray, shape (2, N)
+        Of the nodes [modules].
     """
     (_, left), (edges, right) = ((mesh.edges[name], elasticity.edge_dofs[name]) for name in FACES)
     way = mesh.points[:, edges[1]] - mesh.points[:, edges[0]]
@@ -81,7 +86,16 @@ def opening_rows(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index,
     for sign, face in zip((1.0, -1.0), pairs, strict=True):
         for component in range(2):
             rows[each, np.searchsorted(unknowns, face[component])] = sign * normal[component]
-    return unknowns, rows
+    places = _places(mesh, elasticity.order)[:, first][:, apart][:, order]
+    return unknowns, rows, places
+
+
+def _places(mesh: SectorMesh, order: int) -> Array:
+    """Places of the nodes of the right face's edges one after the other, shape (2, nodes) [modules]."""
+    s = np.linspace(0.0, 1.0, order + 1)
+    start, end, middle = mesh.points[:, mesh.edges[FACES[1]]].transpose(1, 0, 2)[:, :, :, None]
+    along = start * (1.0 - s) * (1.0 - 2.0 * s) + end * s * (2.0 * s - 1.0) + 4.0 * middle * s * (1.0 - s)
+    return np.asarray(along.reshape(2, -1))
 
 
 def _along(unknowns: Index) -> Index:

@@ -199,6 +199,22 @@ class OddGearInfluence:
         forces, off = self.fine.faces_under(near[i], here, self._patch)
         return (forces > 0.0).mean(axis=0), {j: off[k] / self._modulus for j, k in near.items()}
 
+    def closed_intensity(self, i: int, loads: Mapping[int, tuple[Array, Array]]) -> tuple[Array, Array]:
+        """What the faces of the crack of tooth i add to its K_I and K_II by pressing on each other, and the error.
+
+        Of a crack that may close, under loads on several teeth at once, as of `faces_under`; shape (2, P) each, beside
+        the sums of `stress_intensity`, which has open faces [Pa sqrt(m)].
+        """
+        near = dict(zip(loads, self._near(*loads), strict=True))
+        here, root = {near[j]: (self._modules(r), load) for j, (r, load) in loads.items()}, np.sqrt(self.gear.module)
+        forces, _ = self.fine.faces_under(near[i], here, self._patch)
+        value, other = self.fine.closed_intensity(near[i], forces)
+        error, lower = np.abs(value - other), self.fine.lower
+        if lower is None:
+            return value / root, np.full(value.shape, np.nan)
+        below = lower.closed_intensity(near[i], lower.faces_under(near[i], here, self._patch)[0])[0]
+        return value / root, (error + np.abs(value - below)) / root
+
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [m^2/N]."""
         p, q = self._modules(radius_p), self._modules(radius_q)
@@ -278,6 +294,10 @@ class OddGearInfluence:
             # Both orders have one fillet of the same edges: no less than on an ordinary tooth.
             width = None if half_width is None else np.asarray(half_width, dtype=float)
             error = np.maximum(error, self.ordinary.root_stress_error(k, side, self._ordinary(radius), width))
+        if k or near in self.fine.odd:
+            # The largest tension of a fillet that a load compresses nearly vanishes; its error is that of the fillet.
+            size = np.abs(self.fine.fillet_stress(near, other, side, r, b)).max(axis=0) / self.gear.module
+            error = np.maximum(error, self.ordinary.largest_errors[f"root_{side}"] * size)
         return error
 
     def _ordinary(self, radius: ArrayLike) -> Array:

@@ -296,6 +296,12 @@ class OddInfluence:
         found = kind.intensity_follows @ self._sides(i, j, loads)
         return np.asarray(found + kind.intensity_own @ loads if i == j else found)
 
+    def closed_intensity(self, i: int, forces: Array) -> Array:
+        """K_I and K_II of the crack of tooth i by forces between its faces, shape (rings, 2, P)."""
+        faces = self._faces(i)
+        sides = self.ring.between(i, i) @ (faces.follows.T @ forces)
+        return np.asarray(self.kind(i).intensity_follows @ sides + faces.intensity @ forces)
+
     def stress_intensity(self, i: int, j: int, radius_q: ArrayLike, patch: float) -> tuple[Array, Array]:
         """K_I and K_II of the crack of tooth i per unit line load at q of tooth j, and their error, (2, Q) each.
 

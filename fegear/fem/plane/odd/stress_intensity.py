@@ -74,6 +74,26 @@ def interaction(
     return np.asarray(0.5 * modulus * np.stack(found, axis=1), dtype=float)
 
 
+def by_faces(sector: CrackedSector, places: Array, ring: tuple[float, float] = RINGS[0]) -> Array:
+    """What pairs of unit forces between the faces add to K_I beside the functionals of `interaction`, shape (2, N).
+
+    The ring of integration takes its faces as free. Of forces t on them - int t_j u^a_j,1 q ds is left out, which is
+    q sqrt(2 / (pi r)) for a pair at r from the tip, and nothing for K_II.
+
+    Parameters
+    ----------
+    sector : CrackedSector
+    places : ndarray, shape (2, N)
+        Of the pairs, on its faces [modules].
+    ring : tuple of float
+    """
+    r1, r2 = (share * sector.room for share in ring)
+    r = np.hypot(*(places - sector.tip[:, None]))
+    w = np.clip((r - r1) / (r2 - r1), 0.0, 1.0)
+    q = 1.0 - w**3 * (10.0 - 15.0 * w + 6.0 * w**2)
+    return np.stack([q * np.sqrt(2.0 / (math.pi * r)), np.zeros(r.shape)])
+
+
 def _weights(mode: int, at: Array, ring: tuple[float, float], lam: float, mu: float, kappa: float) -> Array:
     """By what a displacement's gradient du_a/dx_b, along the crack and to its left, enters: shape (2, 2, ...)."""
     fall = _fall(at, *ring)

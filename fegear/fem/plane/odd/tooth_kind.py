@@ -13,7 +13,7 @@ from fegear.fem.plane.influence import SIDES, Side
 from fegear.fem.plane.odd.crack_faces import CrackFaces, opening_rows
 from fegear.fem.plane.odd.cracked_sector import CrackedSector
 from fegear.fem.plane.odd.odd_ring import held_sectors
-from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
+from fegear.fem.plane.odd.stress_intensity import RINGS, by_faces, interaction
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, fillet_strain
 from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
@@ -139,7 +139,9 @@ def tooth_kind(
         margin = margin if back else min(margin, _ABOVE_MOUTH * (fillets["tension"].length - mouth))
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     closing = isinstance(odd.sector, CrackedSector) and odd.sector.closing
-    face, opening = opening_rows(mesh, elasticity) if closing else (flank.dofs[:0], np.zeros((0, 0)))
+    face, opening, at_face = flank.dofs[:0], np.zeros((0, 0)), np.zeros((2, 0))
+    if closing:
+        face, opening, at_face = opening_rows(mesh, elasticity)
     ports = np.unique(np.concatenate([flank.dofs, face, *(fillets[side].dofs for side in SIDES)]))
     motions = rigid_motions(elasticity) if free else None
     condensed, side_size, turn, _ = condensed_sector(mesh, elasticity, ports, expandable=cracked, motions=motions)
@@ -157,7 +159,7 @@ def tooth_kind(
         intensity_follows = (forces @ follow).reshape(len(RINGS), 2, -1)
         intensity_own = (forces @ part.own[:, run]).reshape(len(RINGS), 2, -1)
     faces = None
-    if closing:
+    if isinstance(odd.sector, CrackedSector) and closing:
         on = ports_of(condensed, face)
         pushed = part.own[:, on] @ opening.T
         faces = CrackFaces(
@@ -165,6 +167,8 @@ def tooth_kind(
             by_flank=pushed[run].T,
             own=opening @ pushed[on],
             stress={side: modulus * (fillets[side].strain @ pushed[rows[side]]) for side in SIDES},
+            intensity=(forces @ pushed).reshape(len(RINGS), 2, -1)
+            + np.stack([by_faces(odd.sector, at_face, ring) for ring in RINGS]),
         )
     kind = ToothKind(
         tooth=tooth,
