@@ -317,3 +317,17 @@ def test_stress_intensity_in_the_mesh_of_faces_that_may_close():
     assert shut.k_1[loaded].max() < 0.02 * opened.k_1.max()
     assert np.abs(shut.k_2[loaded]).max() > 0.1 * opened.k_1.max()
     assert (shut.k_1_error >= 0.0).all()
+
+
+def test_a_fillet_that_a_load_compresses_has_the_error_of_its_stress():
+    """Its largest tension nearly vanishes where the next tooth is loaded; its error is no less than of ordinary teeth."""
+    known, radii = cracked("driver", 0.5), np.array([24.2e-3, 25.0e-3, 26.2e-3])
+    for side in SIDES:
+        for i, j in ((0, 1), (1, 0), (-1, 0), (0, 0)):
+            error = known.root_stress_error(i, j, side, radii)
+            assert (error >= ordinary("driver").root_stress_error(i - j, side, radii)).all()
+            along = np.abs(known.fillet_stress(i, j, side, radii)).max(axis=0)
+            assert (error >= 1e-4 * along).all()
+    assert (known.between_error(1, -1, radii, radii) >= ordinary("driver").neighbour_error(2, radii, radii)).all()
+    value, error = known.stress_intensity(0, 1, radii)
+    assert error.min() > 1e-4 * np.hypot(*value).max()

@@ -297,7 +297,7 @@ class OddGearInfluence:
         if k or near in self.fine.odd:
             # The largest tension of a fillet that a load compresses nearly vanishes; its error is that of the fillet.
             size = np.abs(self.fine.fillet_stress(near, other, side, r, b)).max(axis=0) / self.gear.module
-            error = np.maximum(error, self.ordinary.largest_errors[f"root_{side}"] * size)
+            error = np.maximum(error, self.ordinary.largest_errors()[f"root_{side}"] * size)
         return error
 
     def _ordinary(self, radius: ArrayLike) -> Array:
