@@ -320,7 +320,7 @@ def test_stress_intensity_in_the_mesh_of_faces_that_may_close():
 
 
 def test_a_fillet_that_a_load_compresses_has_the_error_of_its_stress():
-    """Its largest tension nearly vanishes where the next tooth is loaded; its error is no less than of ordinary teeth."""
+    """Its largest tension nearly vanishes where the next tooth is loaded; its error does not."""
     known, radii = cracked("driver", 0.5), np.array([24.2e-3, 25.0e-3, 26.2e-3])
     for side in SIDES:
         for i, j in ((0, 1), (1, 0), (-1, 0), (0, 0)):
