@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -120,15 +121,19 @@ class Scene(Brief):
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there or must not be read."""
-        path = self.folder / text
-        if self.within is not None and not is_below(path, self.within):
-            raise InputError(
-                key, shown(text, PATH), f"is outside the open folders ({', '.join(self.within)})",
-                "start fegear open with --folder FOLDER",
-            )  # fmt: skip
-        if not path.is_file():
-            raise InputError(key, f'"{text}"', "file not found", f"searched at {path}")
-        return path
+        return _file(self.folder, self.within, text, key)
+
+
+def _file(folder: Path, within: tuple[str, ...] | None, text: str, key: str) -> Path:
+    path = folder / text
+    if within is not None and not is_below(path, within):
+        raise InputError(
+            key, shown(text, PATH), f"is outside the open folders ({', '.join(within)})",
+            "start fegear open with --folder FOLDER",
+        )  # fmt: skip
+    if not path.is_file():
+        raise InputError(key, f'"{text}"', "file not found", f"searched at {path}")
+    return path
 
 
 def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
@@ -226,7 +231,7 @@ def build_scene(
 
         raise refusal(error) from None
     case, derived = settled(case)
-    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
+    gears = {key: part.build(f"gear.{key}", partial(_file, folder, within)) for key, part in case.gear.items()}
     if case.planetary:
         from fegear.case.set_pairs import with_set_pairs  # few cases have sets
 

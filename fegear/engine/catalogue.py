@@ -41,6 +41,8 @@ class Entry(NamedTuple):
         Whether it takes internal gears and pairs; a plan refuses those of other stages.
     asymmetric : bool
         Whether it takes teeth with two different flanks; a plan refuses those of other stages.
+    generated : bool
+        Whether it needs fillets as a tool generates them; a plan refuses others there.
     """
 
     name: str
@@ -54,11 +56,12 @@ class Entry(NamedTuple):
     quantities: tuple[str, ...] = ()
     internal: bool = False
     asymmetric: bool = False
+    generated: bool = False
 
 
 def _entry(stage: Stage) -> Entry:
     return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects,
-                 internal=stage.internal, asymmetric=stage.asymmetric)  # fmt: skip
+                 internal=stage.internal, asymmetric=stage.asymmetric, generated=stage.generated)  # fmt: skip
 
 
 class Catalogue(Sequence[Stage]):
@@ -124,6 +127,7 @@ class Catalogue(Sequence[Stage]):
             named = replace(
                 found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
                 effects=entry.effects, internal=entry.internal, asymmetric=entry.asymmetric,
+                generated=entry.generated,
             )  # fmt: skip
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)

@@ -177,6 +177,8 @@ class Stage:
         stage itself where another distribution adds it.
     asymmetric : bool
         The same of teeth with two different flanks.
+    generated : bool
+        Whether it needs fillets as a tool generates them; a plan refuses others there.
     why_external : str
         Why it does not.
     holds : tuple of str
@@ -211,6 +213,7 @@ class Stage:
     cites: Cites = _uncited
     internal: bool = False
     asymmetric: bool = False
+    generated: bool = False
     why_external: str = ""
     holds: tuple[str, ...] = ()
     instead_of: tuple[str, ...] = ()

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
-from fegear.geometry.curves import Involute, Trochoid
+from fegear.geometry.curves import Curve, Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
 from fegear.geometry.rack import BasicRack, transverse_angle
 
@@ -86,6 +86,11 @@ class ProtuberanceFillet:
 
     trochoid: Trochoid
     involute: Involute
+
+    @property
+    def smooth_parts(self) -> tuple[Curve, ...]:
+        """The trochoid and the involute: curvature jumps between them."""
+        return self.trochoid, self.involute
 
     @property
     def start(self) -> float:

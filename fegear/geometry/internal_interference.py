@@ -76,14 +76,15 @@ class TipCorner(NamedTuple):
     rounding: float
 
 
-def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> tuple[InternalCheck, ...]:
+def internal_checks(planet: InvoluteTooth, ring: InvoluteTooth, distance: float) -> tuple[InternalCheck, ...]:
     """Every check of an external gear inside a ring gear.
 
     Parameters
     ----------
     planet : InvoluteTooth
         The external gear, called planet here.
-    ring : InternalTooth
+    ring : InvoluteTooth
+        Internal; the feed of its cutter is checked where it has one.
     distance : float
         Between the axes [modules].
 
@@ -115,10 +116,8 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
     tip1, tip3 = planet.tip_radius, ring.tip_radius
     rho1, rho3 = math.sqrt(tip1**2 - base1**2), math.sqrt(tip3**2 - base3**2)
     passed = leaving_margin((planet.teeth, tip1, base1), (ring.teeth, tip3, base3), distance)
-    cutter = ring.cutter_tip_corner
     past_ring, past_planet = _past_fillets(planet, ring, distance)
-    feed = radial_room(TipCorner(*cutter), ring.cutter.teeth, ring, ring.generating_distance)
-    return (
+    checks = (
         InternalCheck("tip clearance of the planet", ring.root_radius - distance - tip1,
                       "interference with the root circle of the ring", refused=True),
         InternalCheck("tip clearance of the ring", tip3 - distance - planet.root_radius,
@@ -136,9 +135,18 @@ def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float)
         InternalCheck("radial assembly", radial_room(_tip_corner(planet), planet.teeth, ring, distance),
                       "radial assembly of the planet is not possible at every angle; assemble axially",
                       refused=False),
-        InternalCheck("infeed of the cutter", feed,
-                      f"radial infeed of a cutter with {ring.cutter.teeth} teeth trims the ring tips (infeed "
-                      "interference); use fewer cutter teeth or a different infeed", refused=False),
+    )  # fmt: skip
+    return (*checks, _infeed(ring)) if isinstance(ring, InternalTooth) else checks
+
+
+def _infeed(ring: InternalTooth) -> InternalCheck:
+    """Whether the cutter of a ring gear can be fed straight across the axis."""
+    count = ring.cutter.teeth
+    return InternalCheck(
+        "infeed of the cutter",
+        radial_room(TipCorner(*ring.cutter_tip_corner), count, ring, ring.generating_distance),
+        f"radial infeed of a cutter with {count} teeth trims the ring tips (infeed interference); use fewer cutter "
+        "teeth or a different infeed", refused=False,
     )  # fmt: skip
 
 
@@ -243,7 +251,7 @@ def _tip_corner(tooth: InvoluteTooth) -> TipCorner:
     return TipCorner(tooth.tip_radius, float(tooth.half_thickness_angle(tooth.tip_radius)), 0.0)
 
 
-def _edge(tooth: InvoluteTooth | InternalTooth) -> tuple[Array, Array]:
+def _edge(tooth: InvoluteTooth) -> tuple[Array, Array]:
     """Radii [modules] and angles from the centre line [rad] of a tip's corner, (1, 1), or along its edge, (n, 1)."""
     edge = tooth.tip_edge
     if edge is None:
@@ -252,7 +260,7 @@ def _edge(tooth: InvoluteTooth | InternalTooth) -> tuple[Array, Array]:
     return np.hypot(x, y), np.arctan2(x, y)
 
 
-def radial_room(corner: TipCorner, teeth: int, ring: InternalTooth, distance: float) -> float:
+def radial_room(corner: TipCorner, teeth: int, ring: InvoluteTooth, distance: float) -> float:
     """Least room between a gear's tips and those of a ring when it leaves the mesh straight across the axis [modules].
 
     Parameters
@@ -261,7 +269,7 @@ def radial_room(corner: TipCorner, teeth: int, ring: InternalTooth, distance: fl
         Of the gear.
     teeth : int
         Of the gear.
-    ring : InternalTooth
+    ring : InvoluteTooth
     distance : float
         Between the axes in mesh [modules].
 
@@ -298,7 +306,7 @@ def _least(room: Callable[[Array], Array], low: float, high: float) -> float:
     return float(np.min(room(turns)))
 
 
-def _past_fillets(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> tuple[float, float]:
+def _past_fillets(planet: InvoluteTooth, ring: InvoluteTooth, distance: float) -> tuple[float, float]:
     """Least room between a tip's path and the mating fillet: planet's past the ring's, ring's past the planet's.
 
     The planet's tooth stands `turn` ahead of the line between the axes, its leading flank on the ring's.

@@ -21,6 +21,7 @@ from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.geometry.curves import Curve
 from fegear.geometry.fillet import ProtuberanceFillet
+from fegear.geometry.fillet_curves import ArcsFillet
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_side import InvoluteSide
 
@@ -98,7 +99,7 @@ def section_moments(tooth: InvoluteSide) -> SectionMoments:
     halves = [tooth] if tooth.back is tooth else [tooth, tooth.back]
     pieces: list[Curve] = []
     for piece in (piece for half in halves for piece in half.outline.values()):
-        pieces += [piece.trochoid, piece.involute] if isinstance(piece, ProtuberanceFillet) else [piece]
+        pieces += piece.smooth_parts if isinstance(piece, (ProtuberanceFillet, ArcsFillet)) else [piece]
     panels, found = 1, _enclosed(pieces, 1)
     while True:
         panels *= 2

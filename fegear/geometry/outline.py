@@ -28,6 +28,7 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import Relief
+from fegear.geometry.shaped_tooth import ShapedTooth
 
 _LARGEST_COUNT = 1 << 14
 
@@ -145,6 +146,8 @@ def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, (Tooth, AsymmetricSide)):
         return rack_in_gear(tooth, rolled)
+    if isinstance(tooth, ShapedTooth):
+        return tool_in_gear(tooth.generated, rolled)
     raise TypeError(f"no tool available for a {type(tooth).__name__}")
 
 

@@ -221,11 +221,11 @@ class GearPair:
     def internal_checks(self) -> tuple[InternalCheck, ...]:
         """Where a gear inside a ring gear may foul it; none for an external pair."""
         planet, ring = sorted((self.driver, self.driven), key=lambda gear: gear.tooth.internal)
-        if not isinstance(ring.tooth, InternalTooth):
+        if not ring.tooth.internal:
             return ()
         from fegear.geometry.internal_interference import internal_checks
 
-        return internal_checks(planet.symmetric_tooth, ring.tooth, self.centre_distance / ring.module)
+        return internal_checks(planet.symmetric_tooth, ring.symmetric_tooth, self.centre_distance / ring.module)
 
     @property
     def _base_radii(self) -> float:

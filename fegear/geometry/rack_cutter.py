@@ -219,6 +219,9 @@ class RackFlank:
     def s_form(self) -> float:
         """Parameter of the start of the flank [m]: where the cutter's ends, or where undercut ends it."""
         g = self.gear
+        if g.shaped:
+            start, near = self._straight(g.form_radius), 0.05 * g.module
+            return self._s_of_radius(g.form_radius, start - near, start + near)
         rack, m = g.external_tooth.rack, g.module
         depth = rack.tip_centre_depth + rack.tip_radius * math.sin(rack.pressure_angle)
         deepest, pitch_line = -depth * m / math.cos(rack.pressure_angle), self._straight(g.pitch_radius)

@@ -10,6 +10,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.geometry.curves import Drawn
 from fegear.geometry.fillet import ProtuberanceFillet
+from fegear.geometry.fillet_curves import ArcsFillet
 
 DEGREE = 5
 _FEWEST, _MOST = 9, 4096
@@ -55,7 +56,7 @@ def smooth_pieces(pieces: Iterable[Drawn]) -> list[Drawn]:
     """The same pieces, with those parted whose curvature jumps: one spline would round the jump off."""
     found: list[Drawn] = []
     for piece in pieces:
-        found += [piece.trochoid, piece.involute] if isinstance(piece, ProtuberanceFillet) else [piece]
+        found += piece.smooth_parts if isinstance(piece, (ProtuberanceFillet, ArcsFillet)) else [piece]
     return found
 
 

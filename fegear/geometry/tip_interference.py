@@ -1,4 +1,4 @@
-"""Whether a tip runs into the mating fillet, from the exact path of its corner past the trochoid (ISO 21771, 5.4.5)."""
+"""Whether a tip runs into the mating fillet, from the exact path of its corner past it (ISO 21771, 5.4.5)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fegear.geometry.pair import GearPair, Member
+from fegear.base.errors import GeometryError
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+#: Less than this is no interference [m], as round-off and printed diameters leave it.
+_MEETS = 1e-6
+#: Positions of the corner where a pair may be refused: the gap is then right within 1e-5 modules.
+_CLOSELY = 6001
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,3 +101,37 @@ def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interfer
         return Interference(tip_of, below, math.inf, pair.tip_clearance(tip_of))
     gap = (polar[inside] - np.interp(radius[inside], fillet_radius, fillet_polar)) * radius[inside]
     return Interference(tip_of, below, float(gap.min()) * mate.module, pair.tip_clearance(tip_of))
+
+
+def refuse_shaped(pair: GearPair) -> None:
+    """Refuse fillets of a user that begin above the active flank, or that the mating tip cuts into.
+
+    Parameters
+    ----------
+    pair : GearPair
+
+    Raises
+    ------
+    GeometryError
+        With the limit.
+    """
+    for member in MEMBERS:
+        gear, tip_of = pair.gear(member), MEMBERS[member == "driver"]
+        if not gear.shaped:
+            continue
+        mate = pair.gear(tip_of)
+        reach = float(pair.radius(pair.x_of_radius(mate.involute_tip_radius, tip_of), member))
+        if gear.tooth.side * (gear.form_radius - reach) > _MEETS:
+            side = "above" if gear.tooth.side > 0 else "inside"
+            raise GeometryError(
+                f"{member}.fillet", f"root form diameter {2e3 * gear.form_radius:.6g} mm",
+                f"is {side} the active root diameter of {2e3 * reach:.6g} mm, which the mating tip reaches",
+                f"start the flank at {2e3 * reach:.6g} mm or closer to the root",
+            )  # fmt: skip
+        found = interference(pair, tip_of, _CLOSELY)
+        if found.root_clearance <= 0.0 or found.fillet_gap < -_MEETS:
+            deep = -min(found.root_clearance, found.fillet_gap)
+            raise GeometryError(
+                f"{member}.fillet", "the fillet", f"is cut by the path of the mating tip by {deep * 1e3:.4g} mm",
+                "move it closer to the root circle, or reduce the mating tip diameter",
+            )  # fmt: skip

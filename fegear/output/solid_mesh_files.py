@@ -110,7 +110,7 @@ def pressed_gear(
     width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
     bands = {
         f"radius {place * _MM:.6g} mm, half-width {width * one * _MM:.6g} mm, "
-        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.external_tooth, place / one, width, hat)
+        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.symmetric_tooth, place / one, width, hat)
         for hat in hats
     }
     return PressedGear(solid, bands)

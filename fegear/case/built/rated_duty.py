@@ -173,7 +173,7 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
         _assumed_of_gear(scene, gear, said)
     for member, gear in zip(MEMBERS, (part.driver, part.driven), strict=True):
         made = pair.gear(member)
-        if made.tooth.undercut and not made.external_tooth.rack.residual_undercut:
+        if made.tooth.undercut and (made.shaped or not made.external_tooth.rack.residual_undercut):
             said.append(
                 f"Gear {gear}: undercut up to diameter {2e3 * made.form_radius:.5g} mm; ISO 6336 applies to gears "
                 "without undercut and includes it in the contact ratio only (profile_shift)."

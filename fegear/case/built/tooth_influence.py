@@ -22,6 +22,7 @@ from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
 from fegear.geometry.gear import Gear
+from fegear.geometry.shaped_tooth import ShapedTooth
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -178,7 +179,22 @@ def solution_settings(influence: GearInfluence) -> dict[str, object]:
 
 def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:
     """Say where a tolerance took more than one solution, and where the last of them still misses it."""
-    return (*support_remarks(name, influence), *_tolerance_remarks(name, influence, tolerance))
+    return (
+        *fillet_remarks(name, influence.gear), *support_remarks(name, influence),
+        *_tolerance_remarks(name, influence, tolerance),
+    )  # fmt: skip
+
+
+def fillet_remarks(name: str, gear: Gear) -> tuple[str, ...]:
+    """That points of a fillet scatter, where its curvature swings."""
+    tooth = gear.tooth
+    if not isinstance(tooth, ShapedTooth) or tooth.swings <= _SWINGS:
+        return ()
+    said = (
+        f"Gear {name}: curvature of the specified fillet has {tooth.swings} maxima between root circle and flank. "
+        "Root stress follows them; set fillet.scatter to the accuracy of the points."
+    )
+    return (said,)
 
 
 def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
@@ -270,6 +286,8 @@ def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
     )
 
 
+#: Largest values of a smooth fillet's curvature between its ends.
+_SWINGS = 3
 #: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge
 #: length and with the order: one core of a server, 20 to 200 teeth, edges of 4 to 1 times the default.
 _SECONDS, _GROWTH, _ORDER_GROWTH = 0.55, 1.3, 2.2

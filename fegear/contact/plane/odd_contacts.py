@@ -22,6 +22,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.formulas.weber_banaschek import contact_approach
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.shaped_tooth import with_tip
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -136,7 +137,7 @@ def _with_tips(pair: GearPair, tips: list[float]) -> GearPair:
 def _with_tip(gear: Gear, radius: float) -> Gear:
     if math.isnan(radius):
         return gear
-    return replace(gear, tooth=replace(gear.external_tooth, tip_radius=radius / gear.module))
+    return replace(gear, tooth=with_tip(gear.symmetric_tooth, radius / gear.module))
 
 
 def refuse_no_contact(separation: Array) -> None:

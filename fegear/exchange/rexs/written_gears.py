@@ -81,6 +81,8 @@ def write_gear(written: Written, scene: Scene, name: str) -> Part:
     flanks = [_flank(written, gear, part, f"{name}, {side}") for side in ("left", "right")]
     written.relate("flank", gear=made, left=flanks[0], right=flanks[1])
     _tool(written, gear, part, flanks)
+    if gear.shaped:
+        written.remarks.append(f"Gear {name}: fillet not written to REXS (tool only).")
     _modifications(written, name, part, flanks)
     _material(written, name, part, made)
     return made

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fegear.formulas.iso6336.rated import Both
     from fegear.geometry.gear import Gear
     from fegear.geometry.internal_tooth import InternalTooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
     from fegear.geometry.pair import GearPair, Member
 
 
@@ -49,6 +50,8 @@ class GearShape:
         [Pa], 1, [kg/m^3].
     outline : InternalTooth, optional
         Teeth of an internal gear, for the root: no rack describes them. An external gear has None.
+    formed : InvoluteTooth, optional
+        Teeth of a spur gear whose fillets no tool has made: their root is that of the outline.
     fixed : bool
         Whether the gear stands still with the casing, as the ring of most planetary sets: its mass counts as infinite.
     """
@@ -70,6 +73,7 @@ class GearShape:
     poisson_ratio: float = 0.3
     density: float = 7830.0
     outline: InternalTooth | None = None
+    formed: InvoluteTooth | None = None
     fixed: bool = False
 
     def __post_init__(self) -> None:
@@ -305,25 +309,45 @@ def _ring_shape(gear: Gear, tooth: InternalTooth, body: Body) -> GearShape:
         poisson_ratio=gear.material.poisson_ratio,
         density=gear.material.density,
         outline=tooth,
+        formed=_formed(gear),
         fixed=body.fixed,
     )
 
 
-def _shape(gear: Gear, body: Body) -> GearShape:
-    from fegear.geometry.internal_tooth import InternalTooth
+def _formed(gear: Gear) -> InvoluteTooth | None:
+    """The teeth of a gear with fillets of its own; refuses helical ones, whose virtual gear no outline gives."""
+    if not gear.shaped:
+        return None
+    if gear.helix_angle:
+        raise RangeError(
+            "fillet", "(given)", "is not available in the rating of helical gears (virtual spur gear of a tool)",
+            "remove it for the rating",
+        )  # fmt: skip
+    return gear.symmetric_tooth
 
-    if isinstance(gear.tooth, InternalTooth):
-        return _ring_shape(gear, gear.tooth, body)
-    tooth = gear.external_tooth
+
+def _shape(gear: Gear, body: Body) -> GearShape:
+    from fegear.geometry.external_tooth import Tooth
+    from fegear.geometry.internal_tooth import InternalTooth
+    from fegear.geometry.shaped_tooth import ShapedTooth
+
+    formed = _formed(gear)
+    generated = gear.tooth.generated if isinstance(gear.tooth, ShapedTooth) else gear.tooth
+    if isinstance(generated, InternalTooth):
+        return _ring_shape(gear, generated, body)
+    if not isinstance(generated, Tooth):
+        generated = gear.external_tooth
+    tooth = generated
     return GearShape(
         teeth=gear.teeth,
         profile_shift=tooth.profile_shift,
         tip_diameter=2.0 * gear.tip_radius,
         root_diameter=2.0 * gear.root_radius,
         face_width=gear.face_width,
-        dedendum=tooth.dedendum,
+        dedendum=tooth.dedendum if formed is None else gear.symmetric_tooth.dedendum,
         tip_radius=tooth.rack.tip_radius,
         residual_undercut=tooth.rack.residual_undercut,
+        formed=formed,
         bore_diameter=body.bore_diameter(gear),
         generating_shift=tooth.generating_shift,
         active_tip_diameter=2.0 * gear.involute_tip_radius,

@@ -27,6 +27,7 @@ from fegear.formulas.iso6336.part3_pair import RatingChoice, RootRating, ToothLo
 from fegear.formulas.iso6336.part3_root_stress import (
     RackTooth,
     outer_single_contact_diameter,
+    rim_factor,
     ring_rim_factor,
     virtual_teeth,
 )
@@ -281,7 +282,8 @@ def _root_rating(conditions: Conditions, i: int) -> RootRating:
         ring = ring_tooth(gear.outline)
         depth = (gear.active_tip_diameter + pair.signed_diameters[i]) / pair.module
         at = ring.load_diameter(ring.teeth + depth, load.contact_ratio)
-        return rate_form(-ring.teeth, ring_root_form(ring, at), at, pair.module, load, choice, rim)
+        form = ring_root_form(ring, at) if gear.formed is None else outline_root_form(gear.formed, at)
+        return rate_form(-ring.teeth, form, at, pair.module, load, choice, rim)
     z_n = virtual_teeth(gear.teeth, pair.helix_angle, pair.pressure_angle)
     tooth = RackTooth(
         z_n, gear.generating_shift, gear.dedendum, gear.tip_radius, pair.pressure_angle, gear.residual_undercut
@@ -289,6 +291,9 @@ def _root_rating(conditions: Conditions, i: int) -> RootRating:
     tip = z_n + (gear.active_tip_diameter - pair.signed_diameters[i]) / pair.module
     at = outer_single_contact_diameter(tooth, tip, load.contact_ratio)
     backup = math.inf if gear.rim_thickness is None else gear.rim_thickness / gear.depth
+    if gear.formed is not None:
+        rim = 1.0 if math.isinf(backup) else rim_factor(backup, 1.0)
+        return rate_form(z_n, outline_root_form(gear.formed, at), at, pair.module, load, choice, rim)
     return rate(tooth, at, pair.module, load, choice, backup)
 
 
@@ -342,6 +347,8 @@ def root_stress(
 
 def _by_outline(conditions: Conditions, found: RootRating) -> str:
     """What the exact outline of a spur ring makes of Y_F Y_S, where it has such a section."""
+    if formed := [gear.formed for gear in conditions.geometry.gears if gear.formed is not None]:
+        return f"Y_F, Y_S: critical section and radius of the given fillet ({len(formed)} of 2 gears), not of a tool"
     tooth = conditions.geometry.gears[1].outline
     if tooth is None or conditions.geometry.helix_angle:
         return ""

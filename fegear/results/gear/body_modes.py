@@ -103,7 +103,7 @@ def _compute(asked: BodyToSolve, _upstream: Upstream, work: Work) -> SolvedBody:
     for edges, fineness in ((1.0, 1.0), (_AGAIN, _FEWER)):
         settings = replace(asked.settings, section=asked.settings.section.scaled(edges))
         found.append(body_modes(
-            gear.external_tooth, gear.twist * m, gear.face_width / m, gear.material.poisson_ratio,
+            gear.symmetric_tooth, gear.twist * m, gear.face_width / m, gear.material.poisson_ratio,
             gear.bore_radius / m, settings, gear.body_in_modules,
             diameters=min(_DIAMETERS, gear.teeth // 2), each=_EACH, fineness=fineness,
         ))  # fmt: skip

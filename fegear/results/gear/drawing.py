@@ -86,6 +86,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     height, radius = float(np.ptp(shape[1])), gear.pitch_radius * 1e3
     around = np.linspace(-1.6 * pitch, 1.6 * pitch, 121)
     tool = "pinion cutter" if tooth.internal else "rack"
+    made = " of the flanks (fillets as specified)" if gear.shaped else ""
 
     def circle(r: float) -> Array:
         return np.stack([r * np.sin(around), r * np.cos(around)])
@@ -119,7 +120,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     return Figure(
         f"tooth_{name}",
         f"Tooth, tool and mesh of gear {name}",
-        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. Generation by the {tool} tool, and FE mesh of one "
+        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. Generation{made} by the {tool} tool, and FE mesh of one "
         "sector (cyclic symmetry, complete gear).",
         (
             Panel(Axis("x", "mm", limits=space), Axis("y", "mm", limits=depth), lines,

@@ -26,6 +26,7 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
 from fegear.geometry.mass import MassProperties
 from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.shaped_tooth import ShapedTooth
 from fegear.geometry.tip_interference import interference
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.body_section import body_figures
@@ -331,6 +332,20 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
             yield failing(f"Pair {name}: tip interference; {pair.clearing} to avoid it.")
 
 
+def _fillets(seen: Seen) -> Iterator[str]:
+    """Numbers of fillets that no tool generates, beside those of the tool."""
+    for name, gear in seen.data.gears.items():
+        if isinstance(tooth := gear.tooth, ShapedTooth):
+            m, made = 1e3 * gear.module, tooth.generated
+            corner = ", the involute starts in a corner" if tooth.undercut else ""
+            yield (
+                f"Gear {name}: fillet as specified, root form diameter {2.0 * m * tooth.form_radius:.6g} mm (tool: "
+                f"{2.0 * m * made.form_radius:.6g}), root diameter {2.0 * m * tooth.root_radius:.6g} mm (tool: "
+                f"{2.0 * m * made.root_radius:.6g}), minimum radius of curvature "
+                f"{figures(m * tooth.smallest_radius, 3)} mm{corner}."
+            )
+
+
 def _figures(seen: Seen) -> Iterator[Figure | DeferredFigure]:
     yield from (pair_figure(name, seen.data) for name in seen.data.pairs)
     yield from body_figures(seen.data.gears)
@@ -387,7 +402,7 @@ _SHEET = Sheet(
     values=(_values,),
     figures=(_figures,),
     answer=Answer(_in_mesh, _lone_gears),
-    remarks=(_on_pairs, lambda seen: seen.data.assumed, lambda seen: unmeasured_remarks(seen.data)),
+    remarks=(_on_pairs, _fillets, lambda seen: seen.data.assumed, lambda seen: unmeasured_remarks(seen.data)),
 )  # fmt: skip
 
 

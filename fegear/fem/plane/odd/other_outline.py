@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import GeometryError, InputError
-from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.shaped_tooth import with_tip
 
 if TYPE_CHECKING:
     from fegear.geometry.involute_tooth import InvoluteTooth
@@ -30,10 +30,8 @@ class OtherTip:
             If its tip is above the ordinary one's, or too near to the start of the flank.
         """
         refuse_tip(ordinary, self.radius)
-        if not isinstance(ordinary, Tooth):
-            raise InputError("tip_radius", f"{self.radius:.6g} modules", "is possible for external teeth only")
         try:
-            return replace(ordinary, tip_radius=self.radius)
+            return with_tip(ordinary, self.radius)
         except GeometryError as error:
             raise InputError("tip_radius", f"{self.radius:.6g} modules", error.rule, error.remedy) from None
 
