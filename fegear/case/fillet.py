@@ -66,7 +66,7 @@ class FilletPart(Part):
     )
     radii: Annotated[list[PositiveLength], Field(min_length=1, max_length=2)] | None = Field(
         default=None,
-        description="Radii of the arcs from flank to root circle, one or two (two require `form_diameter`). Default: "
+        description="Radii of the arcs from flank to root circle, one or two (two require `form_diameter`). None: "
         "one arc that starts at the form circle.",
     )
 

@@ -9,6 +9,7 @@ import tomllib
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 from written_defaults import Schema, places, without, written
@@ -20,6 +21,8 @@ from fegear.case.reading import build_scene
 from fegear.case.shaft import BearingPart
 from fegear.engine.plan import make_plan
 from fegear.engine.plan_in_words import plan_content
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.rack import BasicRack
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -30,6 +33,14 @@ CONFIRMED = {"MaterialPart.young_modulus", "StrengthPart.quality", "OperationPar
 ELSEWHERE = {"MeasuredStrainPart.strain_column"}
 #: The first and the last with `samples`, as the page says.
 DRAWN = {"StudyPart.load_position": [0.0, 1.0]}
+
+
+#: Points of the fillet of NASA's test gear.
+_MADE = Tooth(28, BasicRack(1.0, 1.25, 0.25)).fillet
+FILLET = {
+    axis: [f"{3.175 * value!r} mm" for value in row]
+    for axis, row in zip("xy", _MADE.points(np.linspace(_MADE.start, _MADE.end, 9)).tolist(), strict=True)
+}
 
 
 def plan_of(document, folder):
@@ -108,6 +119,7 @@ MORE = {
     "pins": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "pins", "pins": 6, "width": "5 mm"}}}}),
     "held": ("ring_gear", {"gear": {"ring": {"rim_support": {"kind": "held"}}}}),
     "friction": ("surface_and_loss", {"pair": {"I": {"friction": {"coefficient": 0.05}}}}),
+    "fillet": ("nasa_four_square", {"gear": {"test": {"fillet": {"kind": "points", **FILLET}}}}),
     "root relief": ("nasa_four_square", {"gear": {"test": {"relief": {"root": {
         "amount": "5 um", "length": "1 mm"}}}}}),
     "lead": ("spur_over_the_face", {"effects": {"relief": True}, "gear": {"a": {"lead": {"slope": "3 um"}}}}),

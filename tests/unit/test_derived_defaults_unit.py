@@ -96,6 +96,7 @@ SURFACE = joined(
 )
 LOSS = joined(SURFACE, {"results": ["gear-mesh-power-loss"]})
 
+ELLIPSE = joined(PAIR, {"results": ["geometry"], "gear.a.fillet": {"kind": "ellipse"}, "pair.I.compliance": None})
 ASYMMETRIC = joined(PAIR, {"results": ["geometry"], "gear.a.coast_pressure_angle": "22 deg",
                            "gear.b.coast_pressure_angle": "22 deg", "pair.I.compliance": None})  # fmt: skip
 
@@ -112,6 +113,10 @@ ROWS = {
         joined(PAIR, {"results": ["geometry"]}), "gear.a.bore_radius", _root),
     "GearPart.coast_pressure_angle": (
         joined(PAIR, {"results": ["geometry"]}), "gear.a.coast_pressure_angle", "20 deg"),
+    "FilletPart.form_diameter": (
+        ELLIPSE, "gear.a.fillet.form_diameter", lambda s: metres(2.0 * s.gears["a"].form_radius)),
+    "FilletPart.root_diameter": (
+        ELLIPSE, "gear.a.fillet.root_diameter", lambda s: metres(2.0 * s.gears["a"].root_radius)),
     "RackPart.coast_tip_radius": (
         joined(PAIR, {"results": ["geometry"], "gear.a.rack": {"tip_radius": 0.3}}),
         "gear.a.rack.coast_tip_radius", 0.3),
@@ -267,7 +272,7 @@ NOT_THERE = {
     "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",
     "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
-    "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "GearPart.web_thickness",
+    "FilletPart.scatter", "GearPart.fillet", "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh", "GearPart.web_thickness",
     "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "PitPart.depth",
     "SetBodiesPart.carrier",
     "SetStiffnessPart.carrier", "SetStiffnessPart.pin", "SetStiffnessPart.ring", "SetStiffnessPart.sun",
