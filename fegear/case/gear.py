@@ -388,8 +388,7 @@ class GearPart(TeethPart):
         """
         m = self.module_length
         try:
-            generated = self._tooth(m)
-            tooth = generated if self.fillet is None else self.fillet.on(generated, m, find)
+            tooth = self._tooth(m) if self.fillet is None else self.fillet.on(self._tooth(m), m, find)
             width = 1e-3 if self.face_width is None else self.face_width
             held = self._held_radius(tooth.root_radius * m)
             body = None if self.body is None else self.body.build(tooth.root_radius * m, held, width)
