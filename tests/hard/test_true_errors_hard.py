@@ -60,6 +60,7 @@ def test_stated_errors_cover_the_true_ones(kind):
 #: Teeth, shift, rack (addendum, dedendum, tip radius), pressure angle, bore [modules], Poisson's ratio, plane; level.
 SHORT_OF_NEIGHBOURS = {
     "long fillets of coarse edges": (21, -0.107, (1.154, 1.464, 0.2516), 14.5, 2.795, 0.256, "strain", -5.5),
+    "largest in the first edge": (17, -0.191, (1.146, 1.497, 0.211), 20.0, 4.1387, 0.306, "stress", -2.0),
     "thirteen teeth": (13, 0.174, (0.951, 1.243, 0.1609), 20.0, 2.0173, 0.263, "stress", -5.0),
 }
 
@@ -67,7 +68,7 @@ SHORT_OF_NEIGHBOURS = {
 @pytest.mark.dear
 @pytest.mark.parametrize("name", SHORT_OF_NEIGHBOURS)
 def test_stated_errors_of_root_stress_of_neighbours_cover_the_true_ones(name):
-    """The tension of the next tooth was 2.0, the compression of the previous one 1.7 times the stated error off."""
+    """The tension of the next tooth was 2.1, the compression of the previous one 1.7 times the stated error off."""
     teeth, shift, rack, angle, bore, poisson, plane, level = SHORT_OF_NEIGHBOURS[name]
     tooth = Tooth(teeth, BasicRack(*rack, pressure_angle=math.radians(angle)), shift)
     gear = Gear(tooth, 1e-3, bore * 1e-3, 1e-2, Material(2e11, poisson), plane)

@@ -401,6 +401,31 @@ def test_root_stress_is_the_sum_of_single_stations_over_own_and_neighbouring_tee
         assert set(alone.sources) == {0}
 
 
+def test_a_line_without_load_hides_nothing_of_the_fillet_below_it(known):
+    """Flanks so far apart at one tooth pair that it carries nothing: its teeth are stressed by their neighbours."""
+    flanks, matrix = known
+    found, z = flanks.solve([LOAD], None, matrix), np.linspace(-0.5, 0.5, 5) * WIDTH
+    for member in MEMBERS:
+        rooted = rooted_lines(flanks.pair, member, found.lines, flanks.gears[member], coupling=True)
+        force, fillet = found.contact.force[:, :, 0], rooted.solution.fillets["tension"]
+        hidden = (rooted.ends("tension").at(z / MODULE, force) < fillet.length).any(axis=0)
+        others = [(force[p] * (found.lines.pair[p] != j)).sum() for p, j in rooted.teeth.tolist()]
+        tooth = int(np.argmax(np.where(hidden, others, -1.0)))  # another pair bears most
+        assert hidden[tooth]
+        assert others[tooth] > 0.0
+        p, j = rooted.teeth[tooth].tolist()
+        apart = force.copy()
+        apart[p, found.lines.pair[p] == j] = 0.0
+        total = rooted.surface("tension", apart, z)[0][:, :, tooth]
+        stress = rooted.stress("tension", apart, z).value[tooth]
+        assert stress == pytest.approx(extreme(total, fillet.arc, 1.0, fillet.length)[0] / MODULE**2, rel=1e-12)
+        assert np.isfinite(rooted.along_fillets("tension", apart, z)[:, :, tooth]).all()
+        assert not np.isfinite(rooted.along_fillets("tension", force, z)[:, :, tooth]).all()
+        few = rooted.influence("tension", z[[0, 2]])
+        for forces in (force, apart):
+            assert few.largest(forces) == pytest.approx(rooted.largest("tension", forces, z[[0, 2]]), rel=1e-9)
+
+
 def test_mirrored_hands_mirror_the_root_stress(solved, known):
     flanks, matrix = known
     other = flank_pair(solved, "left")

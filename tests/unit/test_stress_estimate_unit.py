@@ -11,6 +11,7 @@ from fegear.fem.plane.estimate import (
     _COMPRESSED,
     _LEAST_NEIGHBOUR_STRESS,
     _LEAST_STRESS_SHARE,
+    _MOST_OWN_STRESS,
     _OF_OWN_STRESS,
     _SCATTERED,
     _SCATTERED_HERE,
@@ -102,8 +103,29 @@ def test_both_fillets_of_the_loaded_tooth_err_by_the_larger_share():
     samples = np.ones(17)
     stresses = {0: {"tension": (10.0 * samples, 0.1 * samples), "compression": (-20.0 * samples, 0.0 * samples)}}
     found = estimate([0.1] * 3, stresses)
-    wanted = _COMPRESSED * _USUAL * 0.01 * 20.0
+    wanted = _MOST_OWN_STRESS * _COMPRESSED * _USUAL * 0.01 * 20.0
     assert found._stress_estimate(0, "compression", np.array([-20.0]), np.zeros(1)) == pytest.approx([wanted])
+
+
+@pytest.mark.parametrize(("count", "part"), [(3, 0.8), (9, 0.45 + 0.55 * (3.7 / 9) ** 1.2), (40, 0.45 + 0.55 * 0.23)])
+def test_the_shorter_the_edges_the_less_of_both_parts_is_the_error_of_the_tooth_itself(count, part):
+    """Of 60 random gears and rings 5 to 8 times the true errors were stated, and at 1e-4 no more than 0.6 was true.
+
+    Whether a tolerance is met is judged by all of it.
+    """
+    samples = np.ones(17)
+    own = {"tension": (100.0 * samples, 0.1 * samples), "compression": (-100.0 * samples, 0.1 * samples)}
+    found = estimate([0.3 / count] * count, {0: own}, 4.0)
+    assert found._own_stress_part == pytest.approx(part)
+    error = found._stress_estimate(0, "tension", np.array([100.0]), np.zeros(1))
+    assert error == pytest.approx([part * _SCATTERED * 4.0])
+    found.fine.reach = 0
+    found.__dict__["_self_at_samples"] = samples, 0.0 * samples
+    found.__dict__["_samples"] = samples
+    object.__setattr__(found, "_self_estimate", lambda difference, _radius: 0.0 * difference)
+    assert found.largest["root_tension"] == pytest.approx(_SCATTERED_HERE * 4.0 / 100.0)
+    found.fine.flank.order = 3
+    assert found._own_stress_part == 1.0
 
 
 def test_of_a_neighbours_deflection_more_of_the_order_counts_where_edges_are_long():
@@ -131,7 +153,7 @@ def test_no_error_is_less_than_a_part_of_what_stress_scatters_within_the_edges(k
     own = {"tension": (100.0 * samples, 0.0 * samples), "compression": (-100.0 * samples, 0.0 * samples)}
     found = estimate([0.3 / 40] * 40, {0: own, 1: dict.fromkeys(own, (0.0 * samples, 0.0 * samples))}, 2.0)
     error = found._stress_estimate(k, side, np.array([100.0 if k == 0 else 0.0]), np.zeros(1), here)
-    assert error == pytest.approx([_SCATTERED * least])
+    assert error == pytest.approx([(1.0 if k else found._own_stress_part) * _SCATTERED * least])
 
 
 def test_stress_scatters_by_what_no_smooth_curve_through_its_points_has():

@@ -9,11 +9,12 @@ import pytest
 
 from fegear.base.errors import RangeError
 from fegear.dynamics.planetary import cycle_extremes
+from fegear.dynamics.planetary.set_modes import set_modes
 from fegear.dynamics.planetary.set_response import forced_response, linear_set
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.results.planetary.planet_vibration import PLANET_VIBRATION, VibrationInputs
-from fegear.verify.planetary_sets import jumping, lin_parker, meshed
+from fegear.verify.planetary_sets import constant, jumping, lin_parker, meshed
 
 JUMPING = jumping(4e8, 5.5e8, 0.6), jumping(4.5e8, 5.8e8, 0.7)
 
@@ -125,6 +126,23 @@ def test_errors_of_the_teeth_are_errors_of_the_force():
         assert (stated <= 5.0 * change).all()
     stiff = replace(linear, stiffness_error=(1e-3, 0.0))
     assert (forced_response(stiff, 61.0).shift(lambda one: one.largest_force) > 0.0).all()
+
+
+def test_where_two_modes_cross_frequencies_err_by_what_either_of_them_does():
+    """One that hardly hangs on the meshes is the next one after the crossing: 39 times its own error off."""
+    sun, ring, off = 1.24325747e8, 5e8, 4e-3
+    linear = replace(linear_set(meshed(lin_parker(4), constant(sun), constant(ring)), 0.03), stiffness_error=(off, 0.0))
+    modes, error = linear.modes, linear.frequency_error
+    alone = 0.5 * off * modes.frequency * modes.sun_mesh
+    far = 0.0
+    for share in np.array([-1.0, -0.5, 0.5, 1.0]) * off:
+        change = np.abs(set_modes(linear.meshed.model, sun * (1.0 + share), ring).frequency - modes.frequency)
+        assert (change <= 1.1 * error + 1e-6).all()
+        far = max(far, (change / np.maximum(alone, 1e-3)).max())
+    assert far > 30.0
+    near = np.isclose(error, alone, rtol=1e-2, atol=1e-3)  # elsewhere no more than that of the mode itself
+    assert near.sum() >= modes.frequency.size - 3
+    assert not replace(linear, stiffness_error=(0.0, 0.0)).frequency_error.any()
 
 
 def test_a_set_without_damping_is_refused_where_it_cannot_settle():

@@ -7,7 +7,7 @@ other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
+from fegear.contact.wide.fillet_ends import FilletEnds, LineOnTooth
 from fegear.contact.wide.lines import ContactLines, base_twist
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import extreme
@@ -89,7 +90,6 @@ class RootedLines:
     loads: Array
     teeth: Index
     sources: dict[int, Index]
-    _known: dict[tuple[Side, bytes], Array] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
     def x(self) -> Array:
@@ -112,7 +112,7 @@ class RootedLines:
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         fillet, sign = self.solution.fillets[side], _SIGN[side]
         total = (self.surface(side, force, places) if surface is None else surface)[0]
-        end = self._ends(side, places / m)
+        end = self.ends(side).at(places / m, force)
         value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
         radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m
         shape = places.size, len(self.teeth)
@@ -121,11 +121,11 @@ class RootedLines:
     def along_fillets(self, side: Side, force: Array, z: ArrayLike) -> Array:
         """Stress at every point up the fillets of every tooth, for pictures, shape (points, Z, T) [Pa].
 
-        Arguments are those of `stress`. Beside a contact line near the fillet, where stress is that of the contact, it
-        is NaN.
+        Arguments are those of `stress`. Beside a contact line that presses near the fillet, where stress is that of the
+        contact, it is NaN.
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
-        root = self.solution.fillets[side].arc[:, None, None] <= self._ends(side, places / m)
+        root = self.solution.fillets[side].arc[:, None, None] <= self.ends(side).at(places / m, force)
         return np.where(root, self.surface(side, force, places)[0] / m**2, np.nan)
 
     def largest(
@@ -142,7 +142,7 @@ class RootedLines:
         total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
             arc.size, -1
         )
-        return _highest(total, arc, sign, self._ends(side, places / m).ravel()) / m**2
+        return _highest(total, arc, sign, self.ends(side).at(places / m, force).ravel()) / m**2
 
     def influence(self, side: Side, z: ArrayLike) -> RootInfluence:
         """The stress of every place as a sum over the stations' forces, for many states of forces.
@@ -162,9 +162,8 @@ class RootedLines:
         felt = np.stack(columns, axis=-1) / m**2
         at = self.teeth[:, 0]
         parts = tuple(np.ascontiguousarray(felt[:, :, at == p]) for p in range(self.lines.roll.size))
-        ends = self._ends(side, places / m)
-        order = tuple(np.ascontiguousarray(ends[:, at == p]) for p in range(self.lines.roll.size))
-        return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], order, parts)
+        rows = tuple(np.flatnonzero(at == p) for p in range(self.lines.roll.size))
+        return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], places / m, self.ends(side), rows, parts)
 
     def surface(self, side: Side, force: Array, z: Array) -> Array:
         """The three stresses of `fegear.fem.solid.fillet.surface_stress` under forces on the stations.
@@ -192,19 +191,16 @@ class RootedLines:
             moved = moved + self.solution.moved(k, side, under)
         return self.solution.surface_stress(side, np.asarray(moved), z / self.pair.driver.module)
 
-    def _ends(self, side: Side, zeta: Array) -> Array:
-        """How far up the fillet stress is root stress, shape (Z, T): less beside a contact line near its foot."""
-        key = side, zeta.tobytes()
-        if (known := self._known.get(key)) is not None:
-            return known
-        found = np.full((zeta.size, len(self.teeth)), self.solution.fillets[side].length)
-        _, spans = places_of(self.lines)
+    def ends(self, side: Side) -> FilletEnds:
+        """How far up the fillets stress is root stress: less beside a line that presses near their foot."""
+        places, spans = places_of(self.lines)
+        own = []
         for tooth, line in self.sources[0].tolist():
-            own = self.bands.part(spans[line])
-            near = (zeta > own.zeta[0] - own.half_width[0]) & (zeta < own.zeta[-1] + own.half_width[-1])
-            found[near, tooth] = np.interp(zeta[near], own.zeta, self.solution.root_end(0, side, own))
-        self._known[key] = found
-        return found
+            (position, stations), bands = places[line], self.bands.part(spans[line])
+            beyond = float(bands.half_width[0]), float(bands.half_width[-1])
+            end = self.solution.root_end(0, side, bands)
+            own.append(LineOnTooth(tooth, position, stations, bands.zeta, beyond, end))
+        return FilletEnds(self.solution.fillets[side].length, len(self.teeth), tuple(own))
 
 
 @dataclass(frozen=True)
@@ -217,21 +213,28 @@ class RootInfluence:
         Up the fillet [module].
     sign : float
         1 for tension, -1 for compression.
-    end : tuple of ndarray, shape (Z, teeth)
-        How far up the fillet stress is root stress, for each roll position [module].
+    zeta : ndarray, shape (Z,)
+        Places along the face, from the middle of the common one [module].
+    ends : FilletEnds
+        How far up the fillet stress is root stress.
+    rows : tuple of ndarray of int
+        Which of the teeth of `ends` are followed at each roll position.
     felt : tuple of ndarray, shape (points, Z, teeth, M)
         Of the teeth that are followed at each roll position [Pa/N].
     """
 
     arc: Array
     sign: float
-    end: tuple[Array, ...]
+    zeta: Array
+    ends: FilletEnds
+    rows: tuple[Index, ...]
     felt: tuple[Array, ...]
 
     def largest(self, force: Array) -> float:
         """As `RootedLines.largest`, under forces of shape (P, M) [N]."""
         total = [(felt * force[p]).sum(axis=-1).reshape(self.arc.size, -1) for p, felt in enumerate(self.felt)]
-        end = np.concatenate([one.ravel() for one in self.end])
+        ends = self.ends.at(self.zeta, force)
+        end = np.concatenate([ends[:, own].ravel() for own in self.rows])
         return _highest(np.concatenate(total, axis=1), self.arc, self.sign, end)
 
 

@@ -175,13 +175,7 @@ class FilletCurve:
         if self.side == "tension":
             ends = np.broadcast_to(search_end(self.length, above, width, CLEARANCE), values.shape[1:])
             values = _without_contact(values, self.arc, ends, CLEARANCE)
-        smoothing, slopes = smooth_curve(self.arc)
-        height, rise, at = smoothing @ values, slopes @ values, share * self.length
-        piece = np.clip(np.searchsorted(self.arc, at) - 1, 0, self.arc.size - 2)
-        step = (self.arc[piece + 1] - self.arc[piece])[:, None]
-        t = (at - self.arc[piece])[:, None] / step
-        a, b, p, q = height[piece], height[piece + 1], rise[piece] * step, rise[piece + 1] * step
-        return np.asarray(a + t * (p + t * (3.0 * (b - a) - 2.0 * p - q + t * (p + q - 2.0 * (b - a)))))
+        return smooth_at(values, self.arc, (share * self.length)[:, None])
 
     def _beside(self, radius: ArrayLike, half_width: float) -> tuple[Array, Array]:
         """How far above the fillet contacts stand, infinitely where none touches, and their half-widths [modules]."""
@@ -374,6 +368,24 @@ def smooth_curve(arc: Array) -> tuple[csr_array, csr_array]:
     The curve is a cubic between two points, shape (points, points) each.
     """
     return _smoothing(np.ascontiguousarray(arc).tobytes())
+
+
+def smooth_at(values: Array, arc: Array, at: Array) -> Array:
+    """The smooth curve through values at a fillet's points, shape (points, Q), at arc lengths, shape (S, 1) or (S, Q).
+
+    Returns
+    -------
+    ndarray, shape (S, Q)
+    """
+    smoothing, slopes = smooth_curve(arc)
+    height, rise = smoothing @ values, slopes @ values
+    piece = np.clip(np.searchsorted(arc, at) - 1, 0, arc.size - 2)
+    step = arc[piece + 1] - arc[piece]
+    t = (at - arc[piece]) / step
+    column = np.arange(values.shape[1])
+    a, b, p, q = (of[end, column] for of in (height, rise) for end in (piece, piece + 1))
+    p, q = p * step, q * step
+    return np.asarray(a + t * (p + t * (3.0 * (b - a) - 2.0 * p - q + t * (p + q - 2.0 * (b - a)))))
 
 
 @functools.lru_cache(maxsize=16)
