@@ -21,7 +21,6 @@ UNCOUNTED = {
     "contact/plane/loaded_pair.py": {"neglected"},  # asked of it once more
     "contact/plane/roll_grids.py": {"others"},  # the same grid with other teeth, evaluated before
     "contact/wide/loaded.py": {"cache", "progress"},
-    "contact/wide/root_stress.py": {"_known"},
 }
 
 
