@@ -75,8 +75,8 @@ class OperationPart(Part):
     )
     mesh_load_factor: Factor | None = Field(
         default=None,
-        description="Mesh load factor K_gamma (uneven load sharing between load paths). Default: 1, in a pair of a "
-        "planetary set that of its planet-load-sharing.",
+        description="Mesh load factor K_gamma (uneven load sharing between load paths). Default: 1, in a planetary set "
+        "that of planet-load-sharing, of a double helical pair that of double-helical.",
     )
     dynamic_factor: Factor | None = Field(
         default=None,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.base.errors import InputError
+from fegear.case.double_helical import DoubleHelicalPart
 from fegear.case.evenly_spaced import EvenlySpaced
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
 from fegear.case.loading import LineErrorPart
@@ -237,6 +238,11 @@ class PairPart(Part):
         description="Axial offset of the driven gear's mid-face towards end I; only the common face width carries "
         "load.",
     )
+    double_helical: Table[DoubleHelicalPart] | None = Field(
+        default=None,
+        description="Double helical pair: the gears are the half at end I; load, torque and power are those of both "
+        "halves. Default: single helical.",
+    )
     iso_6336: Table[IsoPart] = Field(
         default_factory=IsoPart, description="Options of ISO 6336: edition, methods, user-defined factors."
     )
@@ -352,17 +358,31 @@ class PairPart(Part):
         """The same, errors in the words of the flanks."""
         return build_pair(design, self.misalignment if misaligned else None, self.modification, self.axial_offset)
 
+    @property
+    def gears(self) -> tuple[str, ...]:
+        """Names of its gears, those at end II of a double helical pair among them."""
+        others = () if self.double_helical is None else self.double_helical.others.values()
+        return (self.driver, self.driven, *(one for one in others if one is not None))
+
+    @property
+    def halves(self) -> int:
+        """How many halves share the load evenly: 2 of a double helical pair, whose gears are one half."""
+        return 1 if self.double_helical is None else 2
+
     def several_loads(self, pair: GearPair) -> tuple[float, ...]:
-        """What `loads` or `torques` say, as loads along the line of action [N] in the order of the case."""
+        """What `loads` or `torques` say, as loads along the line of action [N] in the order of the case, of a half."""
         if self.torques is not None:
-            return tuple(torque / pair.driver.base_radius for torque in self.torques.in_order.tolist())
-        return tuple(self.loads or ())
+            return tuple(torque / pair.driver.base_radius / self.halves for torque in self.torques.in_order.tolist())
+        return tuple(load / self.halves for load in self.loads or ())
 
     def normal_load(self, pair: GearPair) -> float | None:
-        """Load along the line of action [N]: the load, the driver's torque, or the largest of several; None without."""
+        """Load along the line of action [N]: the load, the driver's torque, or the largest of several; None without.
+
+        Of a double helical pair that of one half, which is what its gears carry where the load is even.
+        """
         if self.torque is not None:
-            return self.torque / pair.driver.base_radius
-        return max(self.several_loads(pair), default=None) if self.load is None else self.load
+            return self.torque / pair.driver.base_radius / self.halves
+        return max(self.several_loads(pair), default=None) if self.load is None else self.load / self.halves
 
     def all_loads(self, pair: GearPair) -> tuple[float, ...]:
         """Every load of the case along the line of action [N], ascending, the nominal one among them."""

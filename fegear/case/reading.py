@@ -16,6 +16,7 @@ from fegear.base.effects import Described
 from fegear.base.errors import PATH, InputError, shown
 from fegear.base.unit_text import plain_number
 from fegear.case.effects import started
+from fegear.case.halves import check_double_helical
 from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
 from fegear.case.nearest import nearest
@@ -248,6 +249,7 @@ def build_scene(
             )  # fmt: skip
     gears = with_working_flanks(case, gears)
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
+    check_double_helical(case, gears)
     case = _with_effects(case, pairs)
     helical_pairs = {
         key: pair.build_helical(

@@ -65,7 +65,7 @@ _LETTERS = str.maketrans({
 })  # fmt: skip
 _RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
 _STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
-_DOUBLE = "double-helical gears are not supported: model one half with half the face width and torque"
+_DOUBLE = "the gears are the half at end I, with its hand and face width"
 _BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
 _WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
 _CROSSED = "only cylindrical gears on parallel axes are supported"
@@ -219,7 +219,9 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("gravity weight_of_gears", (), "weight is not included; specify forces as shaft.NAME.loads"),
     # what is not there
     ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
-    ("herringbone double_helical double_helix pfeilverzahnung gap_width", (), _DOUBLE),
+    ("herringbone double_helical double_helix pfeilverzahnung pfeilrad", ("pair.NAME.double_helical",), _DOUBLE),
+    ("gap_width groove_width nutbreite", ("pair.NAME.double_helical.gap",), ""),
+    ("apex apex_error apex_point pfeilspitze", ("pair.NAME.double_helical.apex_offset",), ""),
     ("stepped_planet compound_planet stufenplanet", ("compound.NAME",), _STEPPED),
     ("crack cracks tooth_crack cracked_tooth crack_length riss", ("gear.NAME.odd_tooth",),
      "[[gear.NAME.odd_tooth]], one table for each tooth"),
@@ -261,6 +263,7 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("undercut clearance interference tip_thickness plausibility", ("tooth-geometry-check",), ""),
     ("tolerance_analysis monte_carlo sensitivity", ("robustness",), ""),
     ("planet_load_share k_gamma lastverteilung", ("planet-load-sharing",), ""),
+    ("herringbone double_helix half_load_sharing apex_error", ("double-helical",), ""),
     ("crack stress_intensity_factor sif riss", ("stress-intensity",), ""),
     ("crack_propagation crack_growth paris_law rissfortschritt", ("crack-path",), ""),
     ("wear wear_depth verschleiss", (), _WORN),
@@ -268,7 +271,9 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      "noise is not computed; see transmission-error and dynamic-factor for its excitation"),
 )  # fmt: skip
 _VALUES = {
-    "hand": dict.fromkeys(("double", "doublehelical", "herringbone", "both"), _DOUBLE),
+    "hand": dict.fromkeys(
+        ("double", "doublehelical", "herringbone", "both"), f"set pair.NAME.double_helical; {_DOUBLE}"
+    ),
 }
 
 

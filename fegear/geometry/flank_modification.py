@@ -211,6 +211,22 @@ class Topography(ReadOnlyArrays):
         return np.asarray(low + s * (v[i + 1, k] + t * (v[i + 1, k + 1] - v[i + 1, k]) - low))
 
 
+@dataclass(frozen=True, slots=True)
+class MirroredModification(FlankModification):
+    """A modification seen in a mirror at the middle of the face: that of the half of the other hand."""
+
+    of: FlankModification
+
+    @property
+    def face_kinks(self) -> tuple[float, ...]:
+        """On the other side of the middle."""
+        return tuple(-kink for kink in reversed(self.of.face_kinks))
+
+    def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
+        """What is removed at the opposite height."""
+        return self.of.removal(roll, -np.asarray(z, dtype=float))
+
+
 def _place(grid: Array, at: ArrayLike) -> tuple[Array, Array]:
     """Number of the piece that a value lies in, and how far along, 0 to 1."""
     inside = np.clip(np.asarray(at, dtype=float), grid[0], grid[-1])

@@ -13,7 +13,7 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored, twist_between
 from fegear.contact.double_helical.load_double import load_double
-from fegear.contact.pair_spec import PairSpec
+from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.wide.complementarity import tangent_compliance
 from fegear.contact.wide.lines import base_twist
 from fegear.contact.wide.maker import load_flanks
@@ -22,9 +22,11 @@ from fegear.fem.solid.influence import SolidInfluence
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import plane_section, solve_thin_slices
 from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.flank_modification import HelixSlope
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.relief_spec import BiasSpec
 from fegear.geometry.shaft_tilt import ShaftTilt
 
 MODULE, WIDTH, LOAD = 3e-3, 12e-3, 6000.0
@@ -331,10 +333,19 @@ def test_the_answer_says_who_carries_and_what_is_at_its_stop(gears, floating):
     assert "the half at end I carries nothing at some mesh positions; its other flanks touch, which is not" in apart
 
 
-def test_flanks_that_change_along_the_face_are_not_mirrored():
-    with pytest.raises(InputError, match="must not vary along the face to be mirrored; specify both halves"):
-        mirrored(half(tilt=ShaftTilt(1e-5)))
+def test_the_other_half_has_mirrored_flanks_and_the_same_axes():
+    z = np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, 5)
+    flank = FlankSpec(face=(HelixSlope(5e-6, WIDTH),), bias=BiasSpec(4e-6))
+    tilted = replace(half(tilt=ShaftTilt(1e-5)), driver=flank)
+    other = mirrored(tilted)
+    assert other.face.errors.tilt == tilted.face.errors.tilt  # a deviation of both halves' axes
+    (slope,) = other.driver.face
+    np.testing.assert_array_equal(slope.removal(0.5, z), flank.face[0].removal(0.5, -z))
+    assert other.driver.bias.amount == -4e-6
+    assert mirrored(other) == tilted
     assert mirrored(LEFT) == RIGHT
+    with pytest.raises(InputError, match="must not have a gap over the face to be mirrored; specify the deviations"):
+        mirrored(half(face_position=z, line_gap=np.abs(z) * 1e-3))
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,16 @@ RUNS = {
     ),
     "design_options": ("small/design_options", {}),
     "determinants": ("four_square_dynamics", {"results": ["dynamic-increments"], "dynamics.determinants": True}),
+    "double_helical": (
+        "double_helical",
+        {
+            "accuracy.tolerance": 0.3,
+            "pair.I.width": "slices",
+            "load_distribution.positions": 4,
+            "load_distribution.panels": 4,
+            "pair.I.double_helical.axial_play": "6 um",
+        },
+    ),
     "flank_design": ("helical_flank_design", {**ROUGH, "flank_design.positions": 8, "flank_design.grid": GRID}),
     "flank_design_options": ("small/flank_design", {}),
     "flank_generation": ("litvin_combined", {"results": ["flank-generation"], "tooth_contact.positions": 40}),

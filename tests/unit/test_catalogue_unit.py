@@ -48,7 +48,8 @@ def planned():
 
 #: Results that are made for external teeth only, or for pairs of external gears.
 EXTERNAL = {
-    "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "flank-design",
+    "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
+    "flank-design",
     "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response", "sizing", "tooth-contact",
     "transmissibility",

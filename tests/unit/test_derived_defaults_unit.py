@@ -102,6 +102,9 @@ ASYMMETRIC = joined(PAIR, {"results": ["geometry"], "gear.a.coast_pressure_angle
 
 #: Key, case, where it is written, and what is written: a value, or how it follows from the case as it was built.
 ROWS = {
+    "DoubleHelicalPart.floating": (
+        joined(shipped("double_helical"), {"pair.I.double_helical.floating": None}), "pair.I.double_helical.floating",
+        "driver"),
     "CrackGrowthPart.load_factors": (GROWTH, "crack_growth.load_factors", [1.0]),
     "CrowningPart.start_radius": (RELIEVED, "gear.a.relief.crowning.start_radius", lambda s: metres(ends(s)[0])),
     "CrowningPart.end_radius": (RELIEVED, "gear.a.relief.crowning.end_radius", lambda s: metres(ends(s)[1])),
@@ -271,10 +274,13 @@ NOT_THERE = {
     "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
     "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",
-    "DesignPart.film", "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
+    "DesignPart.film", "DoubleHelicalPart.axial_play", "DoubleHelicalPart.second_driven",
+    "DoubleHelicalPart.second_driver", "DoubleHelicalPart.torque_in", "DoubleHelicalPart.torque_out",
+    "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
     "FilletPart.scatter", "GearPart.fillet", "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh",
     "GearPart.web_thickness",
-    "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.loads", "PitPart.depth",
+    "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.double_helical",
+    "PairPart.loads", "PitPart.depth",
     "SetBodiesPart.carrier",
     "SetStiffnessPart.carrier", "SetStiffnessPart.pin", "SetStiffnessPart.ring", "SetStiffnessPart.sun",
     "SetStiffnessPart.turning", "ShaftInSpacePart.coupling", "StiffnessPart.face_positions", "StiffnessPart.gear",

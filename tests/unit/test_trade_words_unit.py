@@ -66,7 +66,7 @@ TYPED = {
     "gear.a.runout": "gear.NAME.spacing_errors",
     "gear.a.wear": "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)",
     "gear.a.temperature": "thermal expansion is not computed; flank-surface computes flank temperatures",
-    "gear.a.herringbone": "double-helical gears are not supported: model one half with half the face width and torque",
+    "gear.a.herringbone": "use pair.NAME.double_helical (the gears are the half at end I",
     "gear.a.asymmetric": "asymmetric teeth are not supported (one pressure angle for both flanks)",
     "gear.a.contact_ratio": "calculated from the gears, see geometry",
     "gear.a.torque": "use pair.NAME.torque",
@@ -200,7 +200,7 @@ def test_no_word_hides_a_key_of_its_own_table():
     ("change", "told"),
     [
         ({"gear": {"a": {"teeth": 30, "normal_module": "1 mm", "helix_angle": "30 deg", "hand": "double"}}},
-         "double-helical gears are not supported: model one half with half the face width and torque"),
+         "set pair.NAME.double_helical; the gears are the half at end I, with its hand and face width"),
         ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "model a rack as a gear with many teeth"),
         ({"planetary": {"P": {"sun": "a", "planet": ["a", "b"], "torque": "1 N m"}}},
          "stepped planets are groups with two gears in compound.NAME.planet"),

@@ -143,7 +143,7 @@ def spectrum_levels(
         turns = share * life * turning / (2.0 * math.pi)
         found.append(
             Level(
-                _tangential(level, pair, tangential), speed * turning / (part.speed or math.nan), share,
+                _tangential(level, part, pair, tangential), speed * turning / (part.speed or math.nan), share,
                 in_order((turns * one, turns * ratio * other), first=first),
             )
         )  # fmt: skip
@@ -156,10 +156,10 @@ def spectrum_levels(
     return tuple(found), life
 
 
-def _tangential(level: SpectrumPart, pair: GearPair, nominal: float) -> float:
-    """F_t of a level [N]."""
+def _tangential(level: SpectrumPart, part: PairPart, pair: GearPair, nominal: float) -> float:
+    """F_t of a level [N], of a half of a double helical pair."""
     if level.torque is not None:
-        return level.torque / pair.driver.pitch_radius
+        return level.torque / pair.driver.pitch_radius / part.halves
     return (level.load_factor or 0.0) * nominal
 
 

@@ -23,6 +23,7 @@ from fegear.case.built.rated_duty import (
     spectrum_levels,
 )
 from fegear.case.built.shafts import on_shafts
+from fegear.case.halves import halves_share
 from fegear.case.pair import Width
 from fegear.case.part import at
 from fegear.case.planetary import set_pair
@@ -81,6 +82,10 @@ class PairToRate:
         Whether the case misaligns the flanks that are computed.
     shares : str
         Planetary set whose load sharing gives K_gamma; empty where the case gives it, or the pair is of no set.
+    halves : int
+        1, or 2 of a double helical pair: all loads are those of one half.
+    uneven : bool
+        Whether the load sharing of the halves gives K_gamma.
     """
 
     conditions: Conditions
@@ -97,6 +102,8 @@ class PairToRate:
     gears: tuple[str, str] = field(compare=False)
     misaligned: bool = field(default=False, compare=False)
     shares: str = ""
+    halves: int = 1
+    uneven: bool = False
 
     def of(self, member: Member) -> int:
         """Place of driver or driven among pinion and wheel."""
@@ -186,13 +193,14 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     if levels and (operation.idler is not None or operation.reversed_load):
         said.append(f"Pair {name}: the same load ratio of alternating bending is used for all levels of the spectrum.")
     said += _of_its_set(scene, name)
+    said += _of_its_halves(scene, name)
     return PairToRate(
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
         (one, other), None if own is None else in_order((own[0], own[1]), first=first), life, part.width_in(pair),
         tuple(dict.fromkeys(said)), name, gears,
         scene.case.effects.misalignment
         and not (part.misalignment is None and part.line_error is None and not on_shafts(scene, name)),
-        set_that_shares(scene.case, name) or "",
+        set_that_shares(scene.case, name) or "", part.halves, halves_share(scene.case, name),
     )  # fmt: skip
 
 
@@ -212,6 +220,23 @@ def _stands_still(scene: Scene, name: str, gear: str) -> bool:
     found = set_of_pair(scene.case, name)
     part = None if found is None else scene.case.planetary[found]
     return part is not None and part.ring == gear and part.fixed == "ring"
+
+
+def _of_its_halves(scene: Scene, name: str) -> list[str]:
+    """How a double helical pair is rated, in words."""
+    part = scene.case.pair[name]
+    if part.double_helical is None:
+        return []
+    source = "as specified"
+    if halves_share(scene.case, name):
+        source = "from its double-helical"
+    elif part.operation.mesh_load_factor is None:
+        source = "1 (the floating member balances both halves)"
+    said = (
+        f"Pair {name}: double helical, rated as one half (face width b_B) under half of the load; K_gamma {source}. "
+        "Both helices count as helical gears in parallel (ISO 6336-1, not verified against a printed source)."
+    )
+    return [said]
 
 
 def _of_its_set(scene: Scene, name: str) -> list[str]:

@@ -111,8 +111,8 @@ def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
 
 
 def _pairs_of(scene: Scene, name: str, pairs: Iterable[str]) -> list[str]:
-    """Those of some pairs that a gear is in."""
-    return [key for key in pairs if name in (scene.case.pair[key].driver, scene.case.pair[key].driven)]
+    """Those of some pairs that a gear is in, at end II of a double helical one, too."""
+    return [key for key in pairs if name in scene.case.pair[key].gears]
 
 
 def _widths(scene: Scene, name: str) -> dict[str, Literal["solid", "slices"]]:

@@ -50,7 +50,8 @@ def double_error(steps: Sequence[LoadedDoublePair], missed: float) -> DoubleErro
     return DoubleError(
         changed("transmission_error") + missed * np.abs(te),
         changed("share_of_first") + uneven,
-        changed("axial_motion") + missed * np.abs(best.axial_motion),
+        # at a stop the place is given
+        changed("axial_motion") + missed * np.where(best.balance.free, np.abs(best.balance.position), 0.0),
         changed("mean_transmission_error") + missed * np.abs(best.mean_transmission_error) + by_fewer(te),
         changed("peak_to_peak") + missed * best.peak_to_peak + np.ptp(te, axis=0) - np.ptp(te[kept], axis=0),
         changed("load_factor") + factor,

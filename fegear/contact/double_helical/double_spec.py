@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from fegear.base.effects import SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.contact.double_helical.balance import AxialSeat
 from fegear.contact.wide.lines import base_twist
+from fegear.geometry.flank_modification import MirroredModification
+from fegear.geometry.placed_halves import PlacedHalves
 
 if TYPE_CHECKING:
-    from fegear.contact.pair_spec import PairSpec
+    from fegear.contact.pair_spec import FlankSpec, PairSpec
+    from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
 
@@ -23,7 +26,7 @@ _EQUAL = 1e-9
 
 
 @dataclass(frozen=True)
-class DoubleHelicalSpec:
+class DoubleHelicalSpec(PlacedHalves):
     """Two helical pairs of opposite hand on common shafts.
 
     Each half's gear bodies deflect by themselves; between the halves shafts twist as far as `twist_compliance` says.
@@ -55,14 +58,11 @@ class DoubleHelicalSpec:
 
     halves: tuple[PairSpec, PairSpec]
     loads: tuple[float, ...]
-    gap: float = 0.0
-    apex_offset: float = 0.0
     floating: Member | None = None
     axial_play: float = math.inf
     axial_force: float = 0.0
-    stagger: float = 0.0
     twist_compliance: tuple[float, float] = (0.0, 0.0)
-    name: str = ""
+    name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         """Refuse halves that do not go together, and numbers that are none."""
@@ -157,7 +157,7 @@ class DoubleHelicalSpec:
         return replace(half, loads=loads, nominal=part * self.loads[-1])
 
 
-def twist_between(pair: GearPair, gap: float, torque_in: End, torque_out: End) -> tuple[float, float]:
+def twist_between(pair: GearPair, gap: float, torque_in: End | None, torque_out: End | None) -> tuple[float, float]:
     """Compliances of both halves by the twist of tubes from bore to root circle over the gap [m/N].
 
     The half away from where the driver is driven lags behind the other one, and so does the half away from where the
@@ -169,11 +169,13 @@ def twist_between(pair: GearPair, gap: float, torque_in: End, torque_out: End) -
         Either half.
     gap : float
         Length of the tubes [m].
-    torque_in, torque_out : {"I", "II"}
-        Ends at which the driver is driven and the driven gear's torque is taken.
+    torque_in, torque_out : {"I", "II"} or None
+        Ends at which the driver is driven and the driven gear's torque is taken; None for a shaft that does not twist.
     """
     found = [0.0, 0.0]
     for gear, end in ((pair.driver, torque_in), (pair.driven, torque_out)):
+        if end is None:
+            continue
         material = gear.material
         shear = material.young_modulus / (2.0 * (1.0 + material.poisson_ratio))
         polar = 0.5 * math.pi * abs(gear.root_radius**4 - gear.bore_radius**4)
@@ -182,22 +184,38 @@ def twist_between(pair: GearPair, gap: float, torque_in: End, torque_out: End) -
 
 
 def mirrored(half: PairSpec) -> PairSpec:
-    """The same half of the other hand, for the other end: flanks that are the same all over the face.
+    """The half at the other end of a pair whose gears mirror themselves at the middle of the gap.
+
+    Flanks and what their cutter leaves are mirrored with the gears; deviations of the axes are those of both halves.
 
     Raises
     ------
     InputError
-        If anything of the half changes along its face: then both halves are specified.
+        If it has a gap over the face, which is of one half only.
     """
-    given = [flank.gear or "(unnamed)" for flank in half.both if flank.over_face]
-    if given or half.face.cutter or half.face.errors.given:
-        raise InputError("halves", ", ".join(given) or "(misaligned)", "must not vary along the face to be mirrored",
-                         "specify both halves")  # fmt: skip
+    errors = half.face.errors
+    if errors.line_gap.size or errors.shafts.given:
+        raise InputError("halves", "(line_error)", "must not have a gap over the face to be mirrored",
+                         "specify the deviations of the axes (misalignment), or both halves")  # fmt: skip
     pair = half.pair
-    driver, driven = _other_hand(pair.driver), _other_hand(pair.driven)
-    return replace(half, pair=replace(pair, driver=driver, driven=driven, axial_offset=-pair.axial_offset))
+    driver, driven = of_other_hand(pair.driver), of_other_hand(pair.driven)
+    wide = replace(half.face, cutter=_turned(half.face.cutter), errors=replace(errors, cutting=_turned(errors.cutting)))
+    return replace(
+        half, pair=replace(pair, driver=driver, driven=driven, axial_offset=-pair.axial_offset), wide=wide,
+        driver=_mirrored_flank(half.driver), driven=_mirrored_flank(half.driven),
+    )  # fmt: skip
 
 
-def _other_hand(gear: Gear) -> Gear:
+def _mirrored_flank(flank: FlankSpec) -> FlankSpec:
+    bias = None if flank.bias is None else replace(flank.bias, amount=-flank.bias.amount)
+    return replace(flank, face=_turned(flank.face), bias=bias)
+
+
+def _turned(parts: tuple[FlankModification, ...]) -> tuple[FlankModification, ...]:
+    return tuple(one.of if isinstance(one, MirroredModification) else MirroredModification(one) for one in parts)
+
+
+def of_other_hand(gear: Gear) -> Gear:
+    """The gear that mirrors one at a plane across its axis."""
     hand: Literal["left", "right"] = "left" if gear.hand == "right" else "right"
     return replace(gear, hand=hand)

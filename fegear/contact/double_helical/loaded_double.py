@@ -70,7 +70,8 @@ class LoadedDoublePair:
 
     def mean(self, values: Array) -> Array:
         """Mean over the base pitch of what is known at the mesh positions, shape (P, ...)."""
-        return np.asarray(np.tensordot(self.points.weights / self.points.period, values, axes=1))
+        weights = self.points.weights
+        return np.asarray(np.tensordot(weights / weights.sum(), values, axes=1))
 
     @property
     @shows("um", "loaded transmission error along the line of action", name="te")
@@ -114,7 +115,7 @@ class LoadedDoublePair:
         """Shape (P, L) [N]; the driven feels the opposite."""
         share = self.share
         first, second = self.spec.seat.twist
-        return np.asarray(-self.load * (share[0] * first + share[1] * second))
+        return np.asarray(0.0 - self.load * (share[0] * first + share[1] * second))
 
     @property
     @shows("", "mean load of each half over its part of the face width", name="K_gamma")

@@ -14,6 +14,7 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import on_shafts
 from fegear.case.built.table_ends import table_end_notes
+from fegear.case.halves import half_notes
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
@@ -57,7 +58,7 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
 
 def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
     spec = pair_spec(scene, name, over_face=True)
-    return AskedOfTeeth.of(scene, spec, table_end_notes(spec))
+    return AskedOfTeeth.of(scene, spec, (*half_notes(scene.case, name), *table_end_notes(spec)))
 
 
 def _compute(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedWidePair:

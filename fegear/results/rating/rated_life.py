@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def power_of(asked: PairToRate) -> float:
-    """Nominal power of the pair [W]."""
+    """Nominal power of the pair [W], of both halves of a double helical one."""
     duty = asked.conditions.duty
-    return duty.tangential * asked.conditions.geometry.pitch_line_velocity(duty.speed)
+    return asked.halves * duty.tangential * asked.conditions.geometry.pitch_line_velocity(duty.speed)
 
 
 def transmittable_power(data: RatingData, asked: PairToRate) -> Both:

@@ -118,7 +118,7 @@ def _equivalent_torques(curves: Curves, asked: PairToRate) -> dict[str, Both]:
     from fegear.formulas.iso6336.part6_spectrum import equivalent_torque, wohler_exponent
 
     radius = 0.5 * asked.conditions.geometry.diameters[asked.of("driver")]
-    torque = np.array([level.tangential * radius for level in asked.levels])
+    torque = np.array([asked.halves * level.tangential * radius for level in asked.levels])
     cycles = [np.array([level.cycles[i] for level in asked.levels]) for i in (0, 1)]
     found: dict[str, Both] = {}
     for part, lines, share in (("contact", curves.contact, 0.5), ("bending", curves.bending, 1.0)):

@@ -135,7 +135,8 @@ def _levels(data: RatingData, asked: PairToRate) -> list[Level]:
         Level(
             _load_factors(one.rating), LoadFactors() if of is None or asked.width == "plane"
             else replace(_load_factors(of.levels[k].rating), K_v=None), k + 1,
-            level.tangential * 0.5 * geometry.diameters[driver], level.speed * geometry.turns[driver], level.share,
+            asked.halves * level.tangential * 0.5 * geometry.diameters[driver],
+            level.speed * geometry.turns[driver], level.share,
         )
         for k, (level, one) in enumerate(zip(asked.levels, data.spectrum.levels, strict=True))
     ]  # fmt: skip

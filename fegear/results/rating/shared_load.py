@@ -1,10 +1,11 @@
-"""Which pairs of a case are rated, and K_gamma of a pair from the load sharing of its planetary set."""
+"""Which pairs of a case are rated, and K_gamma of a pair from the sharing of its planetary set or of its halves."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
+from fegear.case.halves import halves_share
 from fegear.case.planetary import MESHES, set_pair
 from fegear.case.set_pairs import set_of_pair, set_that_shares
 from fegear.engine.stage import Task, Upstream
@@ -13,9 +14,12 @@ if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
+    from fegear.results.helical.double_helical_data import DoubleHelicalData
     from fegear.results.planetary.planet_root_stress import PlanetStress
     from fegear.results.rating.rating_data import RatingInputs
 
+#: Stage of a double helical pair.
+_DOUBLE = "double-helical"
 #: Where annex B of ISO 6336-3 ends: lowest over highest stress.
 _MOST = -1.2
 
@@ -44,22 +48,27 @@ def external_rated_pairs(scene: Scene) -> tuple[str, ...]:
 
 
 def needs_shares(scene: Scene, name: str) -> tuple[Task, ...]:
-    """The load sharing of the planetary set that gives the K_gamma of a pair; none for most pairs."""
+    """The load sharing of planets, or of both halves, that gives the K_gamma of a pair; none for most pairs."""
+    if halves_share(scene.case, name):
+        return (Task(_DOUBLE, name),)
     found = set_that_shares(scene.case, name)
     return () if found is None else (Task("planet-load-sharing", found),)
 
 
 def with_shares(asked: PairToRate, upstream: Upstream) -> PairToRate:
-    """The pair with the K_gamma of its planetary set, where the case does not give it."""
-    if not asked.shares:
+    """The pair with the K_gamma of its planetary set or of its halves, where the case does not give it."""
+    if asked.uneven:
+        factor = cast("DoubleHelicalData", upstream[Task(_DOUBLE, asked.name)]).load_factor
+    elif asked.shares:
+        factor = cast("PlanetLoads", upstream[Task("planet-load-sharing", asked.shares)]).mesh_load_factor
+    else:
         return asked
-    loads = cast("PlanetLoads", upstream[Task("planet-load-sharing", asked.shares)])
-    duty = replace(asked.conditions.duty, mesh_load_factor=max(loads.mesh_load_factor, 1.0))
+    duty = replace(asked.conditions.duty, mesh_load_factor=max(factor, 1.0))
     return replace(asked, conditions=replace(asked.conditions, duty=duty))
 
 
 def inputs_with_shares(inputs: RatingInputs, upstream: Upstream) -> RatingInputs:
-    """The same with K_gamma of the pair's planetary set, for AGMA 2101 as well."""
+    """The same with K_gamma of the pair's planetary set or halves, for AGMA 2101 as well."""
     asked, agma = with_shares(inputs.asked, upstream), inputs.agma
     if agma is not None and asked is not inputs.asked:
         more = asked.conditions.duty.mesh_load_factor / inputs.asked.conditions.duty.mesh_load_factor
