@@ -25,6 +25,12 @@ def halves_share(case: Case, name: str) -> bool:
     return part.double_helical is not None and not part.double_helical.even and part.operation.mesh_load_factor is None
 
 
+def double_gears(case: Case) -> frozenset[str]:
+    """Gears that are one half of a double helical gear."""
+    double = (part for part in case.pair.values() if part.double_helical is not None)
+    return frozenset(gear for part in double for gear in (part.driver, part.driven))
+
+
 def half_notes(case: Case, name: str) -> tuple[str, ...]:
     """What results of the pair are of, where it is double helical."""
     if case.pair[name].double_helical is None:
@@ -66,6 +72,24 @@ def check_double_helical(case: Case, gears: Mapping[str, Gear]) -> None:
                 "remove the shafts, or describe both halves as pairs of their own",
             )  # fmt: skip
         _check_places(case, name, part)
+
+
+def _check_in_train(case: Case, key: str, part: PairPart) -> None:
+    """Refuse halves that are not two equal meshes side by side, which is what a train can be given."""
+    double = part.double_helical
+    if double is None:
+        return
+    equal = "requires equal halves that share evenly (a train has no axial motion)"
+    tilted = part.misalignment is not None and bool(part.misalignment.given) and case.effects.misalignment
+    for wrong, what, value, remedy in (
+        (not double.even, "floating", double.floating or "(limited)", "let a member float freely"),
+        (double.stagger > 0.0, "stagger", double.stagger, "set stagger = 0"),
+        (double.second_driver is not None, "second_driver", double.second_driver, "remove second_driver"),
+        (double.second_driven is not None, "second_driven", double.second_driven, "remove second_driven"),
+        (tilted, "gap", f"{double.gap * 1e3:.6g} mm", "set effects.misalignment = false"),
+    ):
+        if wrong:
+            raise InputError(f"{key}.{what}", value, f"is not available in a train, which {equal}", remedy)
 
 
 def _check_gear(key: str, name: str, gears: Mapping[str, Gear]) -> None:
@@ -113,7 +137,7 @@ def _check_places(case: Case, name: str, part: PairPart) -> None:
     key = f"pair.{name}.double_helical"
     train, taken = case.train, "remove it; use one half with half the face width and torque"
     if train is not None and any(name in (train.pair_of(one), train.loaded_pair_of(one)) for one in train.mesh):
-        raise InputError(key, "(given)", "is not available in a train", taken)
+        _check_in_train(case, key, part)
     if any(name in (set_pair(one, mesh) for mesh in MESHES) for one in case.planetary):
         raise InputError(key, "(given)", "is not available in a planetary gear set", taken)
     if any(name == one.mesh.pair for one in case.transmissibility.values()):

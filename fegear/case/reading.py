@@ -249,8 +249,8 @@ def build_scene(
             )  # fmt: skip
     gears = with_working_flanks(case, gears)
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
-    check_double_helical(case, gears)
     case = _with_effects(case, pairs)
+    check_double_helical(case, gears)
     helical_pairs = {
         key: pair.build_helical(
             pairs[key],

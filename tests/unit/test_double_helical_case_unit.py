@@ -286,13 +286,52 @@ def test_other_keys_of_the_pair_are_refused(change, message):
     assert message in str(refused.value)
 
 
-def test_trains_and_shafts_do_not_take_it_for_a_single_helical_pair():
-    document = case()
+def in_a_train(double, torque, **pair):
+    document = case(double, ("gear-train", "natural-modes"), **pair)
+    del document["pair"]["I"]["load"]
+    document["pair"]["I"]["torque"] = f"{torque} N m"
     document["train"] = {
-        "body": {"a": {"gears": ["p"]}, "b": {"gears": ["w"]}},
-        "mesh": {"I": {"driver": "a", "driven": "b"}}, "torque": {"a": "100 N m"}, "balance": "b",
+        "body": {"a": {"gears": ["p"]}, "b": {"gears": ["w"]}}, "shaft": {},
+        "mesh": {"I": {"driver": "a", "driven": "b"}}, "torque": {"a": f"{torque} N m"}, "balance": "b",
     }  # fmt: skip
-    with pytest.raises(FegearError, match="double_helical = \\(given\\): is not available in a train"):
+    return document
+
+
+def test_in_a_train_equal_halves_are_two_meshes_side_by_side():
+    """Twice the stiffness and twice the inertia of one half under half of the torque: the same frequencies."""
+    both, ran = values(in_a_train({"floating": "driver", "apex_offset": "5 um"}, 200.0))
+    single = in_a_train({}, 100.0)
+    del single["pair"]["I"]["double_helical"]
+    half, _ = values(single)
+    factor = {"I.mean_force": 2.0, "I.mean_stiffness": 2.0, "a.inertia": 2.0, "b.inertia": 2.0}
+    for name, value in half.items():
+        if name != "I.axial_force":
+            assert both[name].value == pytest.approx(factor.get(name, 1.0) * value.value, rel=1e-9), name
+    assert "I.axial_force" not in both
+    notes = [str(note) for outcome in ran.outcomes.values() for note in outcome.remarks]
+    assert any("double helical, two equal meshes side by side" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("double", "message"),
+    [
+        ({"floating": "none"}, "pair.I.double_helical.floating = none: is not available in a train"),
+        ({"axial_play": "1 mm"}, "pair.I.double_helical.floating = (limited): is not available in a train"),
+        ({"stagger": 0.5}, "pair.I.double_helical.stagger = 0.5: is not available in a train"),
+    ],
+)
+def test_a_train_refuses_halves_that_are_not_equal(double, message):
+    with pytest.raises(FegearError) as refused:
+        scene_of(in_a_train(double, 200.0))
+    assert message in str(refused.value)
+
+
+def test_shafts_and_planetary_sets_do_not_take_it_for_a_single_helical_pair():
+    document = case()
+    document["shaft"] = {
+        "s": {"sections": [{"length": "50 mm", "outer": "20 mm"}], "gears": [{"gear": "p", "at": "25 mm"}]}
+    }
+    with pytest.raises(FegearError, match="double_helical = \\(given\\): is not available for gears on shafts"):
         scene_of(document)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import InputError
 from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.torque_ripple import torque_ripples
+from fegear.case.halves import double_gears
 from fegear.dynamics.motion.motion_spec import MotionSpec
 from fegear.dynamics.train.friction import FrictionLaw
 from fegear.dynamics.train.matrices import static_forces
@@ -38,7 +39,8 @@ def check_train(scene: Scene) -> None:
     forces = static_forces(build_train(train_inputs(scene).spec))
     for name, force in zip(part.mesh, forces, strict=True):
         pair = part.loaded_pair_of(name)
-        stated = scene.case.pair[pair].normal_load(scene.pairs[pair])
+        of_one, halves = scene.case.pair[pair].normal_load(scene.pairs[pair]), scene.case.pair[pair].halves
+        stated = None if of_one is None else halves * of_one
         if part.mesh[name].like is None and stated is not None and abs(stated - force) > LOAD_AGREES * abs(stated):
             raise InputError(
                 f"pair.{pair}.load", f"{stated:.8g} N",
@@ -51,13 +53,14 @@ def check_train(scene: Scene) -> None:
 class MeshTeeth:
     """Whose teeth a mesh has: those of a loaded pair, or unmodified ones like them, so many times as wide.
 
-    `odd`: whether some of them differ from the others.
+    `odd`: whether some of them differ from the others. `halves`: 2 of a double helical pair, whose teeth are one half.
     """
 
     pair: str
     like: bool = False
     width_ratio: float = 1.0
     odd: bool = False
+    halves: int = 1
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ def train_inputs(scene: Scene) -> TrainInputs:
     )  # fmt: skip
     assumed = dynamics.speed_of is None and dynamics.speed_values.size > 0
     sources = {
-        name: " + ".join([*(f"gear {gear}" for gear in body.gears or ()), *(["inertia"] if body.inertia else [])])
+        name: " + ".join([*(_said(scene, gear) for gear in body.gears or ()), *(["inertia"] if body.inertia else [])])
         for name, body in part.body.items()
     }
     still = TrainInputs(spec, {name: _teeth(scene, part, name) for name in part.mesh}, sources, assumed)
@@ -112,17 +115,22 @@ def train_inputs(scene: Scene) -> TrainInputs:
     return replace(still, spec=replace(spec, ripple=ripple), ripple_means=means)
 
 
+def _said(scene: Scene, gear: str) -> str:
+    return f"gear {gear}" + (" (both halves)" if gear in double_gears(scene.case) else "")
+
+
 def _inertia(scene: Scene, part: BodyPart) -> float:
-    inertia = part.inertia or 0.0
+    inertia, double = part.inertia or 0.0, double_gears(scene.case)
     for gear_name in part.gears or ():
-        inertia += scene.gears[gear_name].mass_properties.inertia
+        inertia += (2.0 if gear_name in double else 1.0) * scene.gears[gear_name].mass_properties.inertia
     return inertia
 
 
 def _teeth(scene: Scene, part: TrainPart, name: str) -> MeshTeeth:
     like, pair = part.mesh[name].like, part.loaded_pair_of(name)
     odd = like is None and bool(odd_gears_of(scene, pair))
-    return MeshTeeth(pair, like is not None, like.width_ratio if like else 1.0, odd)
+    halves = scene.case.pair[pair].halves
+    return MeshTeeth(pair, like is not None, like.width_ratio if like else 1.0, odd, halves)
 
 
 def _shaft(name: str, part: ShaftPart) -> ShaftSpec:

@@ -117,7 +117,9 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     for number, (name, teeth) in enumerate(asked.teeth.items()):
         pair, force, width = teeth.pair, abs(float(forces[number])), teeth.width_ratio
         if Task("loaded-flanks", pair) in upstream:
-            found = excitation_of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
+            found = excitation_of_flanks(
+                loaded_flanks(upstream, pair), force / teeth.halves, forward=forward[number]
+            ).widened(teeth.halves)
         else:
             loaded = pair_over_revolution(upstream, pair) if teeth.odd else loaded_pair(upstream, pair)
             engagement = loaded.engagement.unmodified() if teeth.like else loaded.engagement
@@ -127,19 +129,19 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
         excitations[name] = found.widened(width)
         work.progress((number + 1) / len(asked.teeth))
     made = assemble(asked.spec, excitations)
-    flanks = {mesh: Task("loaded-flanks", teeth.pair) for mesh, teeth in asked.teeth.items()}
     meshes = tuple(
-        replace(one, doubt=_doubt(loaded_flanks(upstream, flanks[name].subject))) if flanks[name] in upstream else one
-        for name, one in zip(asked.teeth, made.meshes, strict=True)
-    )
+        replace(one, doubt=_doubt(loaded_flanks(upstream, teeth.pair), teeth.halves))
+        if Task("loaded-flanks", teeth.pair) in upstream else one
+        for teeth, one in zip(asked.teeth.values(), made.meshes, strict=True)
+    )  # fmt: skip
     return replace(made, meshes=meshes)
 
 
-def _doubt(data: LoadedWidePair) -> tuple[float, float]:
+def _doubt(data: LoadedWidePair, halves: int) -> tuple[float, float]:
     """Estimated errors of mean stiffness [N/m] and peak-to-peak transmission error [m] under the nominal load."""
     i, found, coarse = data.at, data.found, data.error.coarse
     fine, other = (1.0 / float(one.lines.mean(1.0 / one.contact.stiffness[:, i])) for one in (found, coarse))
-    return abs(other - fine), float(data.error.peak_to_peak[i])
+    return halves * abs(other - fine), float(data.error.peak_to_peak[i])
 
 
 @dataclass(frozen=True)
@@ -163,7 +165,9 @@ class MeshRow:
     @property
     @shows("N", "mean axial force (helix)")
     def axial_force(self) -> float | None:
-        """[N]; None for spur gears."""
+        """[N]; None for spur gears, and for double helical ones, whose halves balance."""
+        if self.teeth.halves > 1:
+            return None
         helix = self.made.pair.driver.base_helix_angle
         return self.made.force * math.tan(helix) if helix else None
 
@@ -275,6 +279,13 @@ _SHEET = Sheet(
                 when=lambda seen: seen.one.pitches > 1,
             ),
             Remark(_on_axial_force, when="axial_force"),
+            Remark(
+                neglecting(
+                    "Mesh {key}: double helical, two equal meshes side by side; axial mass and friction of the "
+                    "floating member are neglected, tooth forces are those of both halves together."
+                ),
+                when=lambda seen: seen.one.teeth.halves > 1,
+            ),
         ),
     ),
     settings={"inertia": lambda seen: {body.name: body.inertia for body in seen.data.train.bodies}},
