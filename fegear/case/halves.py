@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.nearest import nearest
-from fegear.case.planetary import MESHES, set_pair
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -138,7 +137,7 @@ def _check_places(case: Case, name: str, part: PairPart) -> None:
     train, taken = case.train, "remove it; use one half with half the face width and torque"
     if train is not None and any(name in (train.pair_of(one), train.loaded_pair_of(one)) for one in train.mesh):
         _check_in_train(case, key, part)
-    if any(name in (set_pair(one, mesh) for mesh in MESHES) for one in case.planetary):
+    if any(name in (f"{one}_sun", f"{one}_ring") for one in case.planetary):
         raise InputError(key, "(given)", "is not available in a planetary gear set", taken)
     if any(name == one.mesh.pair for one in case.transmissibility.values()):
         raise InputError(key, "(given)", "is not available with transmissibility", taken)

@@ -16,7 +16,6 @@ from fegear.base.effects import Described
 from fegear.base.errors import PATH, InputError, shown
 from fegear.base.unit_text import plain_number
 from fegear.case.effects import started
-from fegear.case.halves import check_double_helical
 from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
 from fegear.case.nearest import nearest
@@ -250,7 +249,10 @@ def build_scene(
     gears = with_working_flanks(case, gears)
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     case = _with_effects(case, pairs)
-    check_double_helical(case, gears)
+    if any(pair.double_helical is not None for pair in case.pair.values()):
+        from fegear.case.halves import check_double_helical  # few cases have such pairs
+
+        check_double_helical(case, gears)
     helical_pairs = {
         key: pair.build_helical(
             pairs[key],
