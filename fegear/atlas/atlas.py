@@ -214,6 +214,9 @@ class Atlas:
             what = "has undercut" if side == "undercut" else "has no undercut"
             raise RangeError("profile_shift", f"{place.shift:.6g}", f"{what}, unlike the gears of this atlas", _REMEDY)
         number, (low, high) = nearest
+        if number == 0:  # beyond all regions of its side
+            ends = [piece.domain.teeth for piece in self.pieces if piece.domain.side == side]
+            low, high = min(ends)[0], max(one[1] for one in ends)
         raise RangeError(
             KEYS[number], f"{place[number]:.6g}", f"is outside the atlas, {low:.6g} to {high:.6g}", _REMEDY
         )
@@ -225,7 +228,7 @@ class Atlas:
             "family": asdict(self.family), "settings": asdict(self.settings),
             "pieces": [asdict(one.domain) for one in self.pieces],
         }  # fmt: skip
-        arrays = {"head": np.array(json.dumps(head)), **self.common.kept()}
+        arrays = {"head": np.array(json.dumps(head)), **self.common.kept(self.layout)}
         for number, one in enumerate(self.pieces):
             arrays[f"degrees_{number}"] = one.degrees.astype(np.uint8)
             for name, values in (("coefficients", one.coefficients), ("solved", one.solved), ("errors", one.errors)):
@@ -260,7 +263,7 @@ def load_atlas(path: Path) -> Atlas:
                     "build it again",
                 )  # fmt: skip
             pieces = tuple(_piece_of(file, number, one) for number, one in enumerate(head["pieces"]))
-            common = CommonRows.of(file)
+            common = CommonRows.of(file, Layout(head["reach"]))
     except (ValueError, KeyError, TypeError, EOFError, OSError, zipfile.BadZipFile, zlib.error) as problem:
         if isinstance(problem, FileNotFoundError):
             raise

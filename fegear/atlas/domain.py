@@ -180,7 +180,8 @@ class Domain:
         spread = np.mod(0.5 + np.arange(1, count + 1)[:, None] * _STEPS, 1.0)
         every = np.concatenate([corners, -np.cos(math.pi * spread)]) * np.array(self.varies)
         rounded = (self.place(family, at) for at in every)
-        return list(dict.fromkeys(place._replace(shift=round(place.shift, 9)) for place in rounded))
+        # upwards: what should be on the undercut line would be undercut in its last digit, and other gears by 2e-3
+        return list(dict.fromkeys(place._replace(shift=math.ceil(place.shift * 1e9) * 1e-9) for place in rounded))
 
 
 def _of_bore(ratio: Array) -> Array:

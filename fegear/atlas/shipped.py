@@ -28,7 +28,7 @@ RACKS = {"A": (1.25, 0.38), "B": (1.25, 0.3), "C": (1.25, 0.25), "D": (1.4, 0.39
 #: Those whose atlas comes with fegear.
 SHIPPED = ("A", "C")
 #: Tooth numbers, profile shift (at the fewest teeth below the most), depth below the undercut line, tip height, bore.
-_FEWEST, _MOST = 12, 150
+_FEWEST, _MANY, _MOST = 12, 150, 400
 _LOWEST, _HIGHEST, _AT_FEWEST, _AT_SPLIT = -0.3, 0.7, 0.45, 0.6
 _DEEPEST, _AT_LINE = -0.3, -0.002
 _TIP_HEIGHT, _BORE = (0.88, 1.05), (0.35, 0.65)
@@ -50,12 +50,13 @@ def family_of(rack: str) -> Family:
 
 
 def domains_of(family: Family) -> list[Domain]:
-    """Where an atlas that comes with fegear holds: gears from 12 to 150 teeth, with undercut and without."""
-    split = next(z for z in range(_FEWEST + 1, _MOST) if family.least_shift(z) <= _LOWEST)
+    """Where an atlas that comes with fegear holds: gears from 12 to 400 teeth, with undercut and without."""
+    split = next(z for z in range(_FEWEST + 1, _MANY) if family.least_shift(z) <= _LOWEST)
     return [
-        Domain((split, _MOST), (_LOWEST, _HIGHEST), _TIP_HEIGHT, _BORE, highest_at_first=_AT_SPLIT),
+        Domain((split, _MANY), (_LOWEST, _HIGHEST), _TIP_HEIGHT, _BORE, highest_at_first=_AT_SPLIT),
         Domain((_FEWEST, split - 1), (_LOWEST, _AT_SPLIT), _TIP_HEIGHT, _BORE, highest_at_first=_AT_FEWEST),
         Domain((_FEWEST, split - 1), (_DEEPEST, _AT_LINE), _TIP_HEIGHT, _BORE, side="undercut"),
+        Domain((_MANY, _MOST), (_LOWEST, _HIGHEST), _TIP_HEIGHT, _BORE),
     ]
 
 

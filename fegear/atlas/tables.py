@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.influence import Side
 
 #: Changes whenever a row means something else.
-VERSION = 2
+VERSION = 3
 #: Contacts over the flank for which stress along fillets is kept, crowding to the fillet, and points along these,
 #: crowding to both ends.
 _LOADS, _POINTS = 33, 40

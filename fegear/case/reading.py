@@ -66,6 +66,8 @@ class Scene(Brief):
     drafts : mapping of str to float
         Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
         usually wants, and not compared with it.
+    previews : collection of str
+        Gears whose teeth come from an atlas though the case has them solved: for a first answer.
     renamed : tuple of str
         A sentence about every name of the case that is another one now.
     derived : tuple of str
@@ -85,6 +87,7 @@ class Scene(Brief):
     estimates: bool = True
     neglects: bool = True
     drafts: Mapping[str, float] = field(default_factory=dict)
+    previews: frozenset[str] = frozenset()
     renamed: tuple[str, ...] = ()
     derived: tuple[str, ...] = ()
     within: tuple[str, ...] | None = None

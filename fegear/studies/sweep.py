@@ -160,6 +160,7 @@ def sweep_case(
     path = Path(path)
     document = read_document(path, overrides)
     _check(axes, document)
+    document = _by_atlas(axes, document)
     points = [
         {"document": changed, "name": path.stem, "folder": str(path.parent.absolute())}
         for changed in map(_neglecting, itertools.count(), _grid(document, axes))
@@ -192,6 +193,18 @@ def _check(axes: Sequence[Axis], document: Mapping[str, Any]) -> None:
     trial = copy.deepcopy(dict(document))
     for axis in axes:
         set_key(trial, axis.key, axis.values[0], "--over")
+
+
+def _by_atlas(axes: Sequence[Axis], document: dict[str, Any]) -> dict[str, Any]:
+    """A document that takes teeth from an atlas where one answers, unless it says otherwise and where gears change."""
+    accuracy = document.get("accuracy", {})
+    said = not isinstance(accuracy, dict) or "source" in accuracy or any(one.key == _SOURCE for one in axes)
+    if said or not any(one.key.startswith("gear.") for one in axes):
+        return document
+    return {**document, "accuracy": {**accuracy, "source": "auto"}}
+
+
+_SOURCE = "accuracy.source"
 
 
 def _grid(document: Mapping[str, Any], axes: Sequence[Axis]) -> Iterator[dict[str, Any]]:

@@ -1,6 +1,7 @@
 """Reliefs by theory for the case on the desk: those that leave no transmission error, and the nearest to grind.
 
-A first answer where a gear has to be solved anew: the same results from a coarser mesh of it, reported as a draft.
+A first answer where a gear has to be solved anew: the same results with its teeth from an atlas, or else from a coarser
+mesh of it, reported as a draft.
 """
 
 from __future__ import annotations
@@ -15,10 +16,12 @@ from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
 from fegear.window.order import ANSWERS, in_order
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.changed_text import Path
     from fegear.case.reading import Scene
-    from fegear.engine.plan import Plan
+    from fegear.engine.plan import Plan, Step
     from fegear.engine.run import Results
     from fegear.results.relief.relief_in_case import How
     from fegear.window.job_queue import Asked
@@ -98,8 +101,8 @@ class Draft(NamedTuple):
     Attributes
     ----------
     scene : Scene
-        The case with drafts of the gears that are to be solved anew, without estimates of errors; gears that are known
-        are taken as they are.
+        The case with previews or drafts of the gears that are to be solved anew, without estimates of errors; gears
+        that are known are taken as they are.
     plan : Plan
         Of the results that come first alone.
     told : str
@@ -111,8 +114,26 @@ class Draft(NamedTuple):
     told: str
 
 
-def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
-    """The draft of a case; None where it has no answers, every gear is known, or nothing would be coarser.
+def anew_of(scene: Scene, plan: Plan, cache: SolutionCache) -> tuple[Step, ...]:
+    """Gears of a plan that are to be solved, and that nobody knows yet."""
+    solved = (step for step in plan.steps if step.task.stage == _SOLVED)
+    return tuple(step for step in solved if key_without_needs(scene, step) not in cache)
+
+
+def with_previews(scene: Scene, anew: Iterable[Step]) -> Scene:
+    """The case with gears from an atlas, of some that one answers about: for a first answer, before they are solved.
+
+    An atlas's error counts as that of a draft does.
+    """
+    from fegear.results.gear.solved_gear import held_by_atlases
+
+    enough = _COARSER * max(scene.case.accuracy.tolerance, _FINEST)
+    held = held_by_atlases(scene, (step.task.subject for step in anew), enough)
+    return replace(scene, previews=held) if held else scene
+
+
+def draft_of(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[Scene], Plan]) -> Draft | None:
+    """The draft of a case; None where it has no answers, every gear is known, or nothing would be faster.
 
     Parameters
     ----------
@@ -120,18 +141,37 @@ def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
     plan : Plan
         Of the case.
     cache : SolutionCache
+    planned : callable
+        Makes the plan of the same case with previews.
     """
     own = scene.case.accuracy.tolerance
     if own > _COARSEST or not any(step.task.stage in ANSWERS for step in plan.steps):
         return None  # without them everything comes first, and a robustness or a motion would be computed twice
     ordered = in_order(plan, scene, (), {})
-    steps = ordered.plan.steps[: ordered.at_once]
-    solved = [step for step in steps if step.task.stage == _SOLVED]
-    anew = [step for step in solved if key_without_needs(scene, step) not in cache]
+    anew = anew_of(scene, replace(plan, steps=ordered.plan.steps[: ordered.at_once]), cache)
     tolerance = _COARSER * max(own, _FINEST)
-    rough = replace(scene, estimates=False, drafts={step.task.subject: tolerance for step in anew})
+    rough = replace(with_previews(scene, anew), estimates=False)
+    coarse = [step for step in anew if step.task.subject not in rough.previews]
+    rough = replace(rough, drafts={step.task.subject: tolerance for step in coarse})
     # A case that names its settings is solved with them.
-    if not any(key_without_needs(scene, step) != key_without_needs(rough, step) for step in anew):
+    if not rough.previews and not any(key_without_needs(scene, one) != key_without_needs(rough, one) for one in coarse):
         return None
-    told = f"Preview with tolerance {tolerance:.2g} (no error estimate); result with {own:.2g} follows."
-    return Draft(rough, replace(plan, steps=steps), told)
+    first = in_order(planned(rough) if rough.previews else plan, rough, (), {})
+    return Draft(rough, replace(first.plan, steps=first.plan.steps[: first.at_once]), _told(rough, own, tolerance))
+
+
+def preview_told(scene: Scene) -> str:
+    """What a page says of answers from an atlas; empty where none are."""
+    if not scene.previews:
+        return ""
+    names = ", ".join(sorted(scene.previews))
+    gears = f"gear {names}" if len(scene.previews) == 1 else f"gears {names}"
+    return f"Preview: {gears} interpolated from an atlas"
+
+
+def _told(rough: Scene, own: float, tolerance: float) -> str:
+    follows = f"result with {own:.2g} follows."
+    if not rough.previews:
+        return f"Preview with tolerance {tolerance:.2g} (no error estimate); {follows}"
+    coarse = f", others with tolerance {tolerance:.2g}" if rough.drafts else ""
+    return f"{preview_told(rough)}{coarse} (no error estimate); {follows}"

@@ -7,6 +7,7 @@ import gc
 import tempfile
 import time
 import traceback
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ from fegear.engine.processes import loading
 from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
-from fegear.window.designs import design_asked, designed, draft_of
+from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, with_previews
 from fegear.window.drag_handles import hands_of
 from fegear.window.glance import field_tasks, glance_tasks, keys_of, numbers_of, plan_with
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Said, Unwanted
@@ -181,8 +182,12 @@ class Worker:
         more, at_once_told = wanted_on_gears(scene, asked.shows)
         beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
         inside = field_tasks(scene) if asked.field else []
-        plan = plan_with(scene, [*beside, *inside], more)
-        more += inside
+        planned = partial(plan_with, beside=[*beside, *inside], more=more)
+        plan = planned(scene)
+        if asked.moving and told:
+            scene = with_previews(scene, anew_of(scene, plan, self._cache))
+            plan = planned(scene) if scene.previews else plan
+        more = [*more, *inside]
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
@@ -200,7 +205,7 @@ class Worker:
             for content in () if asked.moving else at_once_told:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
-            self._draft(asked, scene, plan)
+            self._draft(asked, scene, plan, planned)
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
@@ -237,11 +242,11 @@ class Worker:
             self._say("assemblies", **drawn)
             self._assemblies = drawn
 
-    def _draft(self, asked: Asked, scene: Scene, plan: Plan) -> None:
+    def _draft(self, asked: Asked, scene: Scene, plan: Plan, planned: Callable[[Scene], Plan]) -> None:
         """Tell a first answer where a gear has to be solved anew."""
         from fegear.engine.run import run_plan
 
-        if not asked.moving and (draft := draft_of(scene, plan, self._cache)) is not None:
+        if not asked.moving and (draft := draft_of(scene, plan, self._cache, planned)) is not None:
             run_plan(
                 draft.scene, draft.plan, self, cache=self._cache,
                 found=lambda task, outcome: self._found(draft.scene, draft.plan, task, outcome, draft.told),
@@ -288,7 +293,7 @@ class Worker:
                 for one in figures
             ],
             "darker": darker(figures),
-            "draft": draft,
+            "draft": draft or preview_told(scene),
             "numbers": numbers_of(outcome.values),
             "loads": None if loads is None else {
                 "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),

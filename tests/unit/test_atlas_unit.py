@@ -210,7 +210,7 @@ def test_few_common_rows_stand_for_many():
     found = common_rows(rows, layout)
     assert found.rows.shape == (4, layout.size)
     assert np.abs(found.parts(rows) @ found.rows - rows).max() < 2.0 * KEPT * np.abs(rows).max()
-    again = type(found).of(found.kept())
+    again = type(found).of(found.kept(layout), layout)
     np.testing.assert_array_equal(again.rows, found.rows)
 
 

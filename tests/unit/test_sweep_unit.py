@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 from fegear.base.errors import InputError
 from fegear.cli import program
 from fegear.engine.executor import Executor
-from fegear.studies.sweep import SweepResults, point_content, read_axis, sweep_case
+from fegear.studies.sweep import SweepResults, _by_atlas, point_content, read_axis, sweep_case
 from fegear.studies.swept import Swept, best_lines
 
 CASE = """
@@ -161,6 +161,19 @@ def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_bette
         "Maximum I.driver.S_F: 6 at gear.a.profile_shift = 0.2, gear.b.teeth = 31; at the limit of the range of "
         "gear.a.profile_shift."
     )
+
+
+def test_sweeps_over_gears_take_teeth_from_an_atlas_unless_the_case_or_an_axis_says_otherwise():
+    gears, speed = read_axis("gear.a.teeth=20,21"), read_axis("pair.I.speed=10:20:2:rpm")
+    assert _by_atlas([gears], {"title": "x"}) == {"title": "x", "accuracy": {"source": "auto"}}
+    assert _by_atlas([speed, gears], {"accuracy": {"tolerance": 1e-2}})["accuracy"] == {
+        "tolerance": 1e-2,
+        "source": "auto",
+    }
+    said = {"accuracy": {"source": "solve"}}
+    assert _by_atlas([gears], said) is said
+    assert _by_atlas([speed], {}) == {}
+    assert _by_atlas([gears, read_axis("accuracy.source=solve,atlas")], {}) == {}
 
 
 def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path):

@@ -16,6 +16,7 @@ import threading
 import time
 import tomllib
 from dataclasses import replace
+from functools import partial
 from multiprocessing import Pipe
 from pathlib import Path
 from types import SimpleNamespace
@@ -46,7 +47,7 @@ from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper, Keys
 from fegear.window.bench import Bench
 from fegear.window.computing import PATIENCE, SAME, Computing, Sent, whole
-from fegear.window.designs import draft_of
+from fegear.window.designs import anew_of, draft_of, preview_told, with_previews
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
 from fegear.window.form import fields, fields_told, form, shortened, tables_to_add
@@ -1128,26 +1129,61 @@ def _count(most):
         most -= 1
 
 
-def test_a_gear_that_has_to_be_solved_anew_is_answered_by_a_draft_first(tmp_path):
+def drafted(folder, text, *known):
+    """The draft of a case whose gears are known as far as some scenes have them."""
+    scene, cache = scene_of(Asked(text, "c", str(folder))), SolutionCache()
+    for one in known:
+        for step in make_plan(one, STAGES).steps:
+            if step.stage.name == "gear-solution":
+                cache.solve(key_without_needs(one, step), lambda: "solved")
+    return draft_of(scene, make_plan(scene, STAGES), cache, lambda scene: make_plan(scene, STAGES))
+
+
+def test_a_gear_that_has_to_be_solved_anew_is_answered_from_an_atlas_first(tmp_path):
     text = TEXT.replace("weber-banaschek", "fe")
-
-    def draft(text, *known):
-        scene, cache = scene_of(Asked(text, "c", str(tmp_path))), SolutionCache()
-        for one in known:
-            for step in make_plan(one, STAGES).steps:
-                if step.stage.name == "gear-solution":
-                    cache.solve(key_without_needs(one, step), lambda: "solved")
-        return draft_of(scene, make_plan(scene, STAGES), cache)
-
+    draft = partial(drafted, tmp_path)
     found = draft(text)
-    assert [step.task.stage for step in found.plan.steps] == ["gear-solution", "loaded-pair", "load-sharing"]
-    assert found.scene.drafts == {"a": pytest.approx(3.2e-3)}
-    assert not found.scene.estimates
-    assert found.told == "Preview with tolerance 0.0032 (no error estimate); result with 0.001 follows."
+    assert [step.task.stage for step in found.plan.steps] == ["atlas-gear", "loaded-pair", "load-sharing"]
+    assert (found.scene.previews, found.scene.drafts, found.scene.estimates) == ({"a"}, {}, False)
+    assert found.told == ("Preview: gear a interpolated from an atlas (no error estimate); result with 0.001 follows.")
     scene = scene_of(Asked(text, "c", str(tmp_path)))
     assert draft(text, scene) is None  # the gear is known, as where only the load changes
     assert draft(TEXT) is None  # a formula needs none
     assert draft(text.replace("load-sharing", "stiffness")) is None  # nothing that would come before the rest
+    assert draft(f"{text}[accuracy]\nflank_edge_length = 0.08\n").scene.previews == {"a"}
+    # an atlas answers about one of two gears, the other one is drafted
+    two = text.replace('driven = "a"', 'driven = "b"') + (
+        '[gear.b]\nteeth = 31\nmodule = "3 mm"\nface_width = "20 mm"\nrack = { tip_radius = 0.2 }\n'
+    )
+    found = draft(two)
+    assert (found.scene.previews, list(found.scene.drafts)) == ({"a"}, ["b"])
+    assert "gear a interpolated from an atlas, others with tolerance 0.0032 (no" in found.told
+    stages = [step.task.stage for step in found.plan.steps]
+    assert stages == ["atlas-gear", "gear-solution", "loaded-pair", "load-sharing"]
+
+
+def test_while_a_tooth_moves_its_gear_comes_from_an_atlas(tmp_path):
+    text = TEXT.replace("weber-banaschek", "fe")
+    scene = scene_of(Asked(text, "c", str(tmp_path), moving=True))
+    plan = make_plan(scene, STAGES)
+    anew = anew_of(scene, plan, SolutionCache())
+    assert [step.task.subject for step in anew] == ["a"]
+    moved = with_previews(scene, anew)
+    assert moved.previews == {"a"}
+    assert next(step.task.stage for step in make_plan(moved, STAGES).steps) == "atlas-gear"
+    assert preview_told(moved) == "Preview: gear a interpolated from an atlas"
+    assert preview_told(with_previews(scene, ())) == ""
+
+
+def test_a_gear_outside_the_atlases_is_answered_by_a_draft_first(tmp_path):
+    text = TEXT.replace("weber-banaschek", "fe").replace("[pair.I]", "rack = { tip_radius = 0.2 }\n[pair.I]")
+    draft = partial(drafted, tmp_path)
+    found = draft(text)
+    assert [step.task.stage for step in found.plan.steps] == ["gear-solution", "loaded-pair", "load-sharing"]
+    assert found.scene.drafts == {"a": pytest.approx(3.2e-3)}
+    assert not found.scene.previews
+    assert not found.scene.estimates
+    assert found.told == "Preview with tolerance 0.0032 (no error estimate); result with 0.001 follows."
     assert draft(f"{text}[accuracy]\ntolerance = 0.01\n") is None
     assert draft(f"{text}[accuracy]\ntolerance = 1e-4\n").scene.drafts == {"a": pytest.approx(3.2e-3)}
     assert draft(f"{text}[accuracy]\nflank_edge_length = 0.08\n") is None  # solved with those settings
@@ -1181,10 +1217,11 @@ def test_nothing_is_computed_while_only_one_of_two_gears_has_the_new_pressure_an
 
 
 def test_the_draft_of_a_gear_is_its_solution_on_a_coarser_mesh(tmp_path):
-    text = f"{TEXT.replace('weber-banaschek', 'fe')}[accuracy]\ntolerance = 5e-3\n"
+    text = TEXT.replace("weber-banaschek", "fe").replace("[pair.I]", "rack = { tip_radius = 0.2 }\n[pair.I]")
+    text = f"{text}[accuracy]\ntolerance = 5e-3\n"
     scene, cache = scene_of(Asked(text, "c", str(tmp_path))), SolutionCache()
     plan, solution = make_plan(scene, STAGES), Task("gear-solution", "a")
-    draft = draft_of(scene, plan, cache)
+    draft = draft_of(scene, plan, cache, lambda scene: make_plan(scene, STAGES))
 
     def solved(scene, plan, cache):
         alone = replace(plan, steps=tuple(step for step in plan.steps if step.task == solution))
@@ -1198,7 +1235,7 @@ def test_the_draft_of_a_gear_is_its_solution_on_a_coarser_mesh(tmp_path):
     undrafted = solved(scene, plan, SolutionCache())
     assert np.array_equal(whole.fine.compliance[1], undrafted.fine.compliance[1])
     assert dict(whole.rounds[0].errors) == dict(undrafted.rounds[0].errors)
-    assert draft_of(scene, plan, cache) is None
+    assert draft_of(scene, plan, cache, lambda scene: make_plan(scene, STAGES)) is None
 
 
 @pytest.mark.long

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
@@ -46,25 +47,28 @@ class GearFromAtlas:
 
 def from_atlas(scene: Scene, name: str) -> bool:
     """Whether contact takes a gear from an atlas."""
-    return scene.case.accuracy.source == "atlas" or (
-        scene.case.accuracy.source == "auto" and not why_solved(scene, name)
-    )
+    source = scene.case.accuracy.source
+    return source == "atlas" or name in scene.previews or (source == "auto" and not why_solved(scene, name))
 
 
 def why_solved(scene: Scene, name: str) -> str:
     """Why a gear that might be taken from an atlas is solved; empty where none might, or none is."""
-    if scene.case.accuracy.source != "auto":
-        return ""
+    return why_not_known(scene, name, scene.case.accuracy.tolerance) if scene.case.accuracy.source == "auto" else ""
+
+
+def why_not_known(scene: Scene, name: str, tolerance: float) -> str:
+    """Why no atlas answers about a gear with a tolerance; empty where one does."""
     if scene.case.gear[name].tooth_mesh is not None:
         return "it has its own mesh"
     try:
         known = known_teeth(scene.gears[name])
     except RangeError as error:
         return str(error).split(";")[0]
-    tolerance, worst = scene.case.accuracy.tolerance, max(known.largest_errors().values())
+    worst = max(known.largest_errors().values())
     return "" if worst <= tolerance else f"estimated error {percent(worst)} (tolerance {percent(tolerance)})"
 
 
+@lru_cache(maxsize=8)
 def known_teeth(gear: Gear) -> AtlasGear:
     """What the shipped atlas says of a gear.
 

@@ -15,7 +15,7 @@ from fegear.base.arrays import Array
 from fegear.contact.loaded_teeth import Largest
 from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.pair_history import PairHistory, followed
-from fegear.contact.plane.peaks import LACKS, LEFT, refined_peaks
+from fegear.contact.plane.peaks import LACKS, LEFT, PASSES, refined_peaks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ _BESIDE, _NARROWED = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 2.0), 2
 
 
 def largest_on_pair(
-    e: Engagement, shifted: Sequence[Engagement], load: float, history: PairHistory, at: int
+    e: Engagement, shifted: Sequence[Engagement], load: float, history: PairHistory, at: int, passes: int = PASSES
 ) -> Largest | None:
     """Look for the largest values of a pair between its positions, and again with each compliance off by its error.
 
@@ -49,6 +49,8 @@ def largest_on_pair(
         The pair at the positions of its table.
     at : int
         Number of that load in it.
+    passes : int
+        How often what brackets a peak is narrowed.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def largest_on_pair(
     if not history.load[:, at].any():
         return None
     x, sampled = history.x, np.stack([history.share[:, at], _smooth(e, history.x, history.hertz_pressure[:, at])])
-    where, value = refined_peaks(lambda to: sampled if to is x else _curves(e, load, to), x, LACKS, _FOLLOWED)
+    where, value = refined_peaks(lambda to: sampled if to is x else _curves(e, load, to), x, LACKS, _FOLLOWED, passes)
     error = np.full(2, np.nan)
     if shifted:
         error = _own_errors(e, shifted, load, where) * value

@@ -33,6 +33,7 @@ from fegear.contact.plane.largest_on_pair import largest_on_pair
 from fegear.contact.plane.neglected_effects import neglected_effects
 from fegear.contact.plane.over_revolution import OverRevolution, over_revolution
 from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
+from fegear.contact.plane.peaks import PASSES
 from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
 from fegear.contact.plane.transmission_error import (
@@ -123,7 +124,8 @@ class LoadedPair:
         shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
         error = np.maximum(np.sum(shifts, axis=0), apart) if shifts else None
         where = ", corner contact outside it" if e.corner_contact else ""
-        largest = largest_on_pair(e, self.shifted, self.nominal, found, self._at)
+        passes = PASSES if self.exact else 1
+        largest = largest_on_pair(e, self.shifted, self.nominal, found, self._at, passes)
         return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS, largest)
 
     def _off_path(self, found: PairHistory) -> Array:

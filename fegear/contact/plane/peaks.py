@@ -13,10 +13,10 @@ _POINTS = 4
 
 #: Five passes leave 3e-4 of the distance of two samples: at a kink, where a tip corner takes over from a tooth pair,
 #: the error of a peak is in proportion to what is left.
-_PASSES = 5
+PASSES = 5
 
 #: What they leave of that distance.
-LEFT = (_POINTS + 1.0) ** -_PASSES
+LEFT = (_POINTS + 1.0) ** -PASSES
 
 
 #: A local maximum of the samples may lead to the largest value of a stress where it lacks no more than this part of it.
@@ -31,7 +31,7 @@ def refined_peaks(
     x: Array,
     lacks: float = LACKS,
     followed: int = _FOLLOWED,
-    passes: int = _PASSES,
+    passes: int = PASSES,
 ) -> tuple[Array, Array]:
     """Follow the largest value of each curve between the samples, through smooth maxima, kinks and up to jumps.
 

@@ -6,7 +6,7 @@ flank, in modules. What results of a pair need of either comes through `fegear.c
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, cast
 
@@ -18,6 +18,7 @@ from fegear.case.built.atlas_teeth import (
     from_atlas,
     known_teeth,
     solved_remarks,
+    why_not_known,
 )
 from fegear.case.built.rated_duty import thin_rim_remarks
 from fegear.case.built.solid_influence import (
@@ -78,6 +79,11 @@ def needs_solid_solution(*gears: str) -> tuple[Task, ...]:
 def needs_teeth_of(scene: Scene, *gears: str) -> tuple[Task, ...]:
     """The tasks that give what contact asks of plane gears: solved, or from an atlas where the case says so."""
     return tuple(Task(ATLAS if from_atlas(scene, name) else PLANE, name) for name in dict.fromkeys(gears))
+
+
+def held_by_atlases(scene: Scene, gears: Iterable[str], tolerance: float) -> frozenset[str]:
+    """Those of some gears that an atlas answers about with a tolerance."""
+    return frozenset(name for name in gears if not why_not_known(scene, name, tolerance))
 
 
 def teeth_of(upstream: Upstream, gear: str) -> SolvedTeeth:
