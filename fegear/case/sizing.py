@@ -34,6 +34,7 @@ from fegear.design.sizing.limits import SizingLimits
 Criterion = Literal[
     "transmission-error",
     "relieved-transmission-error",
+    "root-stress",
     "mass",
     "centre-distance",
     "loss",
@@ -204,7 +205,8 @@ class SizingPart(Part):
     limits: Table[LimitsPart] = Field(default_factory=LimitsPart, description="Limits that every variant must keep.")
     criteria: Annotated[list[Criterion], Field(min_length=1)] = Field(
         default_factory=_usual_criteria,
-        description="What variants are compared by, the most important first.",
+        description="What variants are compared by, the most important first. `transmission-error`, "
+        "`relieved-transmission-error` and `root-stress` (of unmodified flanks, nominal torque) are by FE.",
     )
     estimated: Annotated[int, Field(ge=0, le=30_000_000)] = Field(
         default=1_000_000,

@@ -17,6 +17,7 @@ from fegear.atlas.shipped import SHIPPED, family_of, shipped_atlas
 from fegear.contact.many import kernel
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_roots import root_stresses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -37,6 +38,8 @@ _FIRST = np.array([0.0, 0.15, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.6, 2.0, 2.5])
 _STEPS, _GOLDEN = 7, 0.5 * (np.sqrt(5.0) - 1.0)
 #: Amounts are whole tenths of a micrometre [m].
 _WHOLE = 1e-7
+#: Pairs whose root stress is looked up at once: their tables take 0.3 MB each.
+_STRESSED = 256
 #: Limits of a relief's length as shares of the flank.
 _SHORTEST, _LONGEST = 0.02, 0.98
 #: From which share of the largest amount tried on a relief is at its limit.
@@ -55,24 +58,36 @@ class AtlasDuty:
         On the pinion [N m]; the transmission error counts at its maximum over them.
     young_modulus, poisson_ratio : float
         [Pa].
+    root_torque : float
+        At which root stress is wanted [N m]; 0 where it is not, which saves most of the time.
     """
 
     torques: tuple[float, ...]
     young_modulus: float
     poisson_ratio: float
+    root_torque: float = 0.0
 
 
 class Bare(NamedTuple):
-    """Transmission error of unmodified variants, shape (N,); NaN of those that no atlas contains.
+    """Transmission error and root stress of unmodified variants, shape (N,); NaN of those that no atlas contains.
 
     Attributes
     ----------
     te, error : ndarray
         Maximum of the peak-to-peak value over the torques and its estimated error [m].
+    root, root_error : ndarray
+        Maximum root stress of both gears and its estimated error [Pa]; NaN where it is not wanted.
     """
 
     te: Array
     error: Array
+    root: Array
+    root_error: Array
+
+    @classmethod
+    def unknown(cls, count: int) -> Bare:
+        """Of so many variants."""
+        return cls(*np.full((4, count), np.nan))
 
 
 class Relieved(NamedTuple):
@@ -131,22 +146,30 @@ def _loads(pairs: ManyGearPairs, duty: AtlasDuty) -> Array:
 
 
 def bare_errors(pairs: ManyGearPairs, duty: AtlasDuty) -> Bare:
-    """Transmission error of unmodified pairs.
+    """Transmission error and root stress of unmodified pairs.
 
     Raises
     ------
     MissingLibraryError
         If numba is not installed.
     """
-    te, error = np.full(len(pairs), np.nan), np.full(len(pairs), np.nan)
-    for atlas, rows in of_an_atlas(pairs, duty.poisson_ratio):
-        some = pairs.at(rows)
-        known = known_pairs(atlas, spur_pairs(some, young_modulus=duty.young_modulus))
-        found = transmission_errors(known.engagements, _loads(some, duty))
-        te[rows] = found.peak_to_peak.max(axis=1)
-        # Both ends of the peak-to-peak value are deflections, each off by no more than its share of the compliances.
-        error[rows] = 2.0 * known.error.max(axis=0) * found.mean.max(axis=1)
-    return Bare(te, error)
+    te, error, root, root_error = bare = Bare.unknown(len(pairs))
+    stressed = duty.root_torque > 0.0
+    for atlas, every in of_an_atlas(pairs, duty.poisson_ratio):
+        size = _STRESSED if stressed else max(every.size, 1)
+        for rows in (every[first : first + size] for first in range(0, every.size, size)):
+            some = pairs.at(rows)
+            known = known_pairs(atlas, spur_pairs(some, young_modulus=duty.young_modulus), root_stress=stressed)
+            found = transmission_errors(known.engagements, _loads(some, duty))
+            te[rows] = found.peak_to_peak.max(axis=1)
+            # Both ends of the peak-to-peak value are deflections, each off by no more than its share of compliances.
+            error[rows] = 2.0 * known.error.max(axis=0) * found.mean.max(axis=1)
+            if known.fillets is not None:
+                load = duty.root_torque / (0.5 * some.base_diameters[0])
+                tension = root_stresses(known.engagements, known.fillets, load[:, None]).tension[:, :, 0]
+                root[rows] = tension.max(axis=0)
+                root_error[rows] = (known.stress_error[:, :, 0] * tension).max(axis=0)
+    return bare
 
 
 def relieved_errors(pairs: ManyGearPairs, duty: AtlasDuty) -> Relieved:

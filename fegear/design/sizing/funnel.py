@@ -24,8 +24,10 @@ if TYPE_CHECKING:
 LARGER_IS_BETTER = frozenset({"safety", "contact-ratio", "sliding"})
 #: Transmission error of unmodified flanks, and with the best tip relief.
 BARE, RELIEVED = "transmission-error", "relieved-transmission-error"
+#: Root stress of unmodified flanks.
+ROOT = "root-stress"
 #: Criteria that only finite elements give, at first hand or by an atlas of solved gears.
-BY_FE = frozenset({BARE, RELIEVED})
+BY_FE = frozenset({BARE, RELIEVED, ROOT})
 
 
 @dataclass(frozen=True)

@@ -54,10 +54,11 @@ def bare_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, pro
     known = [rows for _, rows in of_an_atlas(pairs, duty.poisson_ratio)]
     rows = np.sort(np.concatenate(known)) if known else np.zeros(0, dtype=np.int64)
     found = _mapped(bare_part, pairs.at(rows), duty, work, _PART, progress)
-    te, error = np.full(numbers.size, np.nan), np.full(numbers.size, np.nan)
-    if found:
-        te[rows], error[rows] = (np.concatenate([one[name] for one in found]) for name in ("te", "error"))
-    return Bare(te, error)
+    bare = Bare.unknown(numbers.size)
+    for name, values in bare._asdict().items():
+        if found:
+            values[rows] = np.concatenate([one[name] for one in found])
+    return bare
 
 
 def relieved_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, progress: Progress) -> Relieved:

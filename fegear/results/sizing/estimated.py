@@ -14,7 +14,7 @@ import numpy as np
 
 from fegear.design.sizing.by_atlas import LENGTHS, AtlasDuty, Bare, Relieved, bare_errors, relieved_errors
 from fegear.design.sizing.front import best_by_fronts, best_by_ranks, pareto_front, rounded_costs
-from fegear.design.sizing.funnel import BARE, RELIEVED
+from fegear.design.sizing.funnel import BARE, RELIEVED, ROOT
 from fegear.results.sizing.by_atlas import bare_of, relieved_of
 from fegear.results.sizing.by_fe import FromFE
 from fegear.results.sizing.sizing_data import BestRelief
@@ -76,8 +76,8 @@ class Estimated:
 
 
 def _from_atlas(bare: Bare, row: int) -> FromFE | None:
-    te, error = float(bare.te[row]), float(bare.error[row])
-    return FromFE(te, error, source="atlas") if math.isfinite(te) else None
+    te, *others = (float(values[row]) for values in bare)
+    return FromFE(te, *others, source="atlas") if math.isfinite(te) else None
 
 
 def _relief(found: Relieved, at: int) -> BestRelief | None:
@@ -113,29 +113,28 @@ def estimated(
     work, progress
     """
     count = lives.numbers.size
-    nothing = np.full(count, np.nan)
     costs = np.full((count, len(names)), np.nan)
     for k, name in enumerate(names):
         if name in lives.names:
             costs[:, k] = lives.criteria[:, lives.names.index(name)]
     if duty is None or not count:
-        return Estimated(costs, Bare(nothing, nothing), np.zeros(0, dtype=np.int64), None)
-    bare, share = Bare(nothing.copy(), nothing.copy()), 0.5 if RELIEVED in names else 1.0
+        return Estimated(costs, Bare.unknown(count), np.zeros(0, dtype=np.int64), None)
+    bare, share = Bare.unknown(count), 0.5 if RELIEVED in names else 1.0
     looked = best_by_ranks(lives.criteria, most[0])
-    bare.te[looked], bare.error[looked] = bare_of(
-        space, lives.numbers[looked], duty, work, lambda part: progress(share * part)
-    )
+    found = bare_of(space, lives.numbers[looked], duty, work, lambda part: progress(share * part))
+    for values, of_looked in zip(bare, found, strict=True):
+        values[looked] = of_looked
     for k, name in enumerate(names):
-        if name in (BARE, RELIEVED):
-            costs[:, k] = bare.te
+        if name in (BARE, RELIEVED, ROOT):
+            costs[:, k] = bare.root if name == ROOT else bare.te
     if RELIEVED not in names:
         return Estimated(costs, bare, np.zeros(0, dtype=np.int64), None)
     held = np.flatnonzero(np.isfinite(costs).all(axis=1))
     rows = held[best_by_fronts(costs[held], most[1])]
-    found = relieved_of(space, lives.numbers[rows], duty, work, lambda part: progress(share + (1.0 - share) * part))
+    relieved = relieved_of(space, lives.numbers[rows], duty, work, lambda part: progress(share + (1.0 - share) * part))
     costs[:, names.index(RELIEVED)] = np.nan
-    costs[rows, names.index(RELIEVED)] = found.te
-    return Estimated(costs, bare, rows, found)
+    costs[rows, names.index(RELIEVED)] = relieved.te
+    return Estimated(costs, bare, rows, relieved)
 
 
 def shown_rows(costs: Array, rows: Index, first: int, *, compared: bool) -> Index:

@@ -24,6 +24,7 @@ _MOST = 60
 _CRITERIA = {
     "transmission-error": ("te", "transm.\nerror", "µm", 1e-6),
     "relieved-transmission-error": ("te_relieved", "transm. error,\nrelieved", "µm", 1e-6),
+    "root-stress": ("root_stress", "root\nstress", "MPa", 1e6),
     "mass": ("mass", "mass", "kg", 1.0),
     "safety": ("margin", "load\nmargin", "", 1.0),
     "loss": ("loss_factor", "loss\nfactor", "", 1.0),

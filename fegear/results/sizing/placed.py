@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.design.sizing.front import pareto_front, rounded_costs
-from fegear.design.sizing.funnel import BY_FE, LARGER_IS_BETTER, costs_of, reasons_of_rating
+from fegear.design.sizing.funnel import BARE, LARGER_IS_BETTER, RELIEVED, ROOT, costs_of, reasons_of_rating
 from fegear.design.sizing.limits import broken
 from fegear.results.sizing.basis import present_pair
 from fegear.results.sizing.sizing_data import Placed, PresentPlaced, SizedVariant
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from fegear.results.sizing.sizing_inputs import SizingInputs
 
 #: Significant digits in which criteria differ when variants are put in order: ties are decided by the rule.
-_DIGITS_OF_FE, _DIGITS = 2, 3
+_DIGITS_OF_TE, _DIGITS = 2, 3
 #: Units in which criteria are read, and their size in SI.
 _MICROMETRES, _MILLIMETRES = ("um", 1e-6), ("mm", 1e-3)
 UNITS = {
-    "transmission-error": _MICROMETRES, "relieved-transmission-error": _MICROMETRES, "centre-distance": _MILLIMETRES,
+    BARE: _MICROMETRES, RELIEVED: _MICROMETRES, ROOT: ("MPa", 1e6), "centre-distance": _MILLIMETRES,
     "module": _MILLIMETRES, "mass": ("kg", 1.0),
 }  # fmt: skip
 
@@ -36,7 +36,7 @@ def in_order(criteria: Sequence[str], chosen: Sequence[SizedVariant]) -> list[Si
     unknown = [one for one in chosen if not all(map(math.isfinite, one.costs))]
     costs = np.array([one.costs for one in known]).reshape(len(known), len(criteria))
     on = set(pareto_front(costs).tolist())
-    digits = [_DIGITS_OF_FE if name in BY_FE else _DIGITS for name in criteria]
+    digits = [_DIGITS_OF_TE if name in (BARE, RELIEVED) else _DIGITS for name in criteria]
     rounded = [rounded_costs(costs[:, k], n) for k, n in enumerate(digits)]
 
     def key(i: int) -> tuple[float, ...]:

@@ -18,7 +18,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.design.sizing.by_atlas import AtlasDuty, may_hold
 from fegear.design.sizing.front import best_by_fronts, pareto_front
-from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, costs_of, sieve
+from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT, costs_of, sieve
 from fegear.design.sizing.limits import masses
 from fegear.design.sizing.rated import safeties
 from fegear.design.sizing.space import variant_of
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 _SIEVED, _LOOKED_UP, _SCREENED = 0.1, 0.5, 0.7
 
 #: Poisson's ratio of steel, for forecasts; seconds of a look-up of half the variants, and of a search for a relief.
-_POISSON, _LOOK_UP, _SEARCH = 0.3, 1.5e-4, 8e-3
+_POISSON, _LOOK_UP, _ROOT_STRESS, _SEARCH = 0.3, 1.5e-4, 3e-4, 8e-3
 
 
 def _inputs(scene: Scene, _subject: str) -> SizingInputs:
@@ -67,7 +67,8 @@ def _atlas_duty(part: SizingPart, space: SizingSpace, duty: SizingDuty) -> Atlas
     if not wanted or not may_hold(space, material.poisson_ratio) or importlib.util.find_spec("numba") is None:
         return None
     torques = (duty.pinion_torque,) if part.torques is None else tuple(part.torques.in_order.tolist())
-    return AtlasDuty(torques, material.young_modulus, material.poisson_ratio)
+    root = duty.pinion_torque if ROOT in part.criteria else 0.0
+    return AtlasDuty(torques, material.young_modulus, material.poisson_ratio, root)
 
 
 def _check(scene: Scene, _subject: str) -> None:
@@ -213,7 +214,7 @@ def _formula_costs(asked: SizingInputs, pairs: ManyGearPairs, margin: Array) -> 
 
 def _costs(asked: SizingInputs, one: SizedVariant) -> tuple[float, ...]:
     """Costs with what the atlas or finite elements give."""
-    by_fe = {BARE: one.te, RELIEVED: one.te_relieved}
+    by_fe = {BARE: one.te, RELIEVED: one.te_relieved, ROOT: one.root_stress}
     return tuple(by_fe.get(name, cost) for name, cost in zip(asked.criteria, one.costs, strict=True))
 
 
@@ -236,7 +237,11 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     slow = 4.0 if part.verified_width == "slices" else 40.0
     loads = 1 if part.torques is None else part.torques.in_order.size
     seconds = forecasts.LIBRARIES + 3e-6 * space.count + screened * (0.6 if spur else 4.0)
-    seconds += loads * (_LOOK_UP * looked_up + _SEARCH * relieved) + part.verified_count * (2.0 if spur else slow)
+    seconds += (
+        (_ROOT_STRESS * looked_up if ROOT in part.criteria else 0.0)
+        + loads * (_LOOK_UP * looked_up + _SEARCH * relieved)
+        + part.verified_count * (2.0 if spur else slow)
+    )
     return Forecast(
         {"variants": space.count, "by_atlas": looked_up, "screened": screened, "verified": part.verified_count}, seconds
     )

@@ -189,6 +189,12 @@ class SizedVariant:
         return self.te_relieved_estimated if math.isnan(known) else known
 
     @property
+    def root_stress(self) -> float:
+        """Maximum root stress of unmodified flanks, verified where it was."""
+        by = self.estimate if self.verified is None else self.verified
+        return math.nan if by is None else by.root_stress
+
+    @property
     def relieved_variant(self) -> Variant:
         """Itself with its tip relief."""
         one = self.relief

@@ -8,7 +8,7 @@ from typing import Any
 
 from fegear.case.sizing import SizingPart
 from fegear.design.sizing.by_atlas import AtlasDuty
-from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED
+from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT
 from fegear.design.sizing.limits import SizingLimits
 from fegear.design.sizing.rated import SizingDuty
 from fegear.design.sizing.space import SizingSpace
@@ -70,5 +70,5 @@ class SizingInputs:
 
     @property
     def bare(self) -> bool:
-        """Whether the transmission error of unmodified flanks counts."""
-        return BARE in self.criteria or not self.relieved
+        """Whether numbers of unmodified flanks count."""
+        return BARE in self.criteria or ROOT in self.criteria or not self.relieved
