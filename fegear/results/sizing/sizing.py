@@ -6,7 +6,6 @@ gears, or of some by coarse finite elements, the Pareto front, the best verified
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,6 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.extras import absent
+from fegear.base.notes import neglecting
 from fegear.design.sizing.by_atlas import AtlasDuty, may_hold
 from fegear.design.sizing.front import best_by_fronts, pareto_front
 from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT, costs_of, sieve
@@ -55,6 +56,8 @@ def _inputs(scene: Scene, _subject: str) -> SizingInputs:
     asked = requirement_of(part)
     duty, said = duty_of(part, asked, scene.folder)
     limits, space = limits_of(part, duty.material.density), space_of(part)
+    if BY_FE & set(part.criteria) and absent("motion") and may_hold(space, duty.material.poisson_ratio):
+        said = (neglecting("Sizing: atlas of solved gears not used (pip install 'fegear[motion]')."), *said)
     return SizingInputs(
         part, space, limits, duty, asked, _atlas_duty(part, space, duty), str(Path(scene.folder).absolute()), said
     )
@@ -64,7 +67,7 @@ def _atlas_duty(part: SizingPart, space: SizingSpace, duty: SizingDuty) -> Atlas
     """What variants are looked up for; arrays need numba."""
     material = duty.material
     wanted = BY_FE & set(part.criteria) and part.estimated > 0
-    if not wanted or not may_hold(space, material.poisson_ratio) or importlib.util.find_spec("numba") is None:
+    if not wanted or not may_hold(space, material.poisson_ratio) or absent("motion"):
         return None
     torques = (duty.pinion_torque,) if part.torques is None else tuple(part.torques.in_order.tolist())
     root = duty.pinion_torque if ROOT in part.criteria else 0.0
@@ -230,7 +233,7 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     spur = all(beta == 0.0 for beta in part.chosen_helix_angles)
     wanted = BY_FE & set(part.criteria)
     looked_up = 0
-    if wanted and part.estimated and may_hold(space, _POISSON) and importlib.util.find_spec("numba") is not None:
+    if wanted and part.estimated and may_hold(space, _POISSON) and not absent("motion"):
         looked_up = min(space.count, part.estimated)
     screened = part.screened if wanted and RELIEVED not in wanted else 0
     relieved = min(looked_up, part.relieved) if RELIEVED in part.criteria else 0
