@@ -76,8 +76,8 @@ class Estimated:
 
 
 def _from_atlas(bare: Bare, row: int) -> FromFE | None:
-    te, *others = (float(values[row]) for values in bare)
-    return FromFE(te, *others, source="atlas") if math.isfinite(te) else None
+    te, error, root, root_error = (float(values[row]) for values in bare)
+    return FromFE(te, error, root, root_error, source="atlas") if math.isfinite(te) else None
 
 
 def _relief(found: Relieved, at: int) -> BestRelief | None:
