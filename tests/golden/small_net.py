@@ -56,7 +56,15 @@ RUNS = {
             "pair.I.double_helical.axial_play": "6 um",
         },
     ),
-    "flank_design": ("helical_flank_design", {**ROUGH, "flank_design.positions": 8, "flank_design.grid": GRID}),
+    "flank_design": (
+        "helical_flank_design",
+        {
+            **ROUGH,
+            "flank_design.positions": 8,
+            "flank_design.grid": GRID,
+            "flank_design.families": ["profile", "lead", "profile-and-lead"],
+        },
+    ),
     "flank_design_options": ("small/flank_design", {}),
     "flank_generation": ("litvin_combined", {"results": ["flank-generation"], "tooth_contact.positions": 40}),
     "forced_response": ("small/forced_response", {}),

@@ -11,7 +11,6 @@ from fegear.design.flanks import flank_design
 from fegear.design.flanks.flank_design import EXACT, ROBUST, UNRELIEVED, FlankDesignTask, design_flanks
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
-from fegear.design.flanks.judge import SEARCHED
 from fegear.design.flanks.scatter import NOMINAL, Scatter
 
 PITCH, START = 8e-3, -3e-3
@@ -45,12 +44,13 @@ class Best:
 
     family: str
     relief: GroundRelief
+    valleys: tuple
     made: tuple
 
 
 @pytest.fixture
 def steps(monkeypatch):
-    calls = {name: [] for name in ("best", "settled", "led_on", "compliance", "lines_at")}
+    calls = {name: [] for name in ("best", "led_on", "compliance")}
     pair = SimpleNamespace(
         driver=SimpleNamespace(module=3e-3), path_length=14e-3, face_width=20e-3, base_pitch=PITCH,
         x_start=START, x_end=START + 14e-3,
@@ -83,27 +83,19 @@ def steps(monkeypatch):
     put("usual_grid", lambda *given: calls.update(grid=given) or "usual")
     put("FlankTrials", Trials)
     put("design_force", lambda lines, loading, load: ("force", lines.name, load))
-    put(
-        "lines_at",
-        lambda pair, roll, panel: (
-            calls["lines_at"].append((roll, panel)) or lines(f"at {len(calls['lines_at'])}", roll)
-        ),
-    )
 
     def best(trials, family, grid, force, most, starts, scan):
         calls["best"].append((trials, family, grid, force, most, tuple(starts), scan))
-        return Best(family, replace(GroundRelief()), ("best", family, trials.scatter.over_face.size))
-
-    def settled(trials, one, grid, starts, most):
-        calls["settled"].append((trials, one, grid, tuple(starts), most))
-        return replace(one, made=("settled", *one.made))
+        number = 1e-6 * (1 + list(FAMILIES).index(family))
+        tips, leads = (number, 1e-3) if "profile" in family else (0.0, 0.0), number if "profile" not in family else 0.0
+        valleys = tuple(GroundRelief(*(k * v for v in tips), crowning=k * leads) for k in (1, 2))
+        return Best(family, valleys[0], valleys, ("best", family, trials.scatter.over_face.size))
 
     def led_on(trials, one, grid, start, most):
         calls["led_on"].append((trials, one, grid, start, most))
         return replace(one, made=("led on", *one.made))
 
     put("best_of_family", best)
-    put("settled", settled)
     put("led_on", led_on)
     judged = []
 
@@ -120,7 +112,7 @@ def steps(monkeypatch):
         at=lambda pair, lines, loads: ("apart", lines.name, loads.tolist()),
     )
     known = SimpleNamespace(lines=lines("known", [START, START + 0.5 * PITCH]))
-    return SimpleNamespace(flanks=flanks, apart=apart, known=known, calls=calls, judged=judged)
+    return SimpleNamespace(flanks=flanks, apart=apart, known=known, calls=calls, judged=judged, plain=plain)
 
 
 def task(families=tuple(FAMILIES), scatter=NOMINAL, grid=None):
@@ -134,32 +126,29 @@ def designed(steps, **how):
     return found, told
 
 
-def test_every_family_begins_with_those_that_it_holds_and_is_settled_where_more_is_looked_at(steps):
+def test_every_family_begins_with_the_valleys_of_those_that_it_holds_and_their_sums(steps):
     found, told = designed(steps)
     calls = steps.calls
     assert list(found.found) == list(FAMILIES)
     assert [one[1] for one in calls["best"]] == list(FAMILIES)
     assert told == pytest.approx([0.3, *(0.3 + 0.4 * k / len(FAMILIES) for k in range(1, len(FAMILIES) + 1)), 0.8])
+    counts = dict(zip(FAMILIES, (0, 0, 2, 10, 12), strict=True))
     for trials, family, grid, force, most, starts, scan in calls["best"]:
         assert (grid, force, most) == ("usual", ("force", "known", 1200.0), 1.4)
-        assert len(starts) == len([held for held in flank_design.held_by(family) if held in FAMILIES])
+        assert len(starts) == counts[family]
         assert scan.known is steps.known
         assert scan.apart == ("apart", "known", [900.0, 1200.0])
-        assert trials.known.name == "at 1"
+        assert trials.known is steps.plain.known
+        assert trials.apart == ("apart", "plain", [900.0, 1200.0])
         assert trials.loads.tolist() == [900.0, 1200.0]
-    assert {one[0].known.name for one in calls["settled"]} == {"at 2"}
-    assert [one[4] for one in calls["settled"]] == [1.4] * len(FAMILIES)
+    both = calls["best"][3][5][-4:]
+    assert [one.driver_tip for one in both] == [found.found["profile"].valleys[k].driver_tip for k in (0, 0, 1, 1)]
+    assert [one.crowning for one in both] == [found.found["lead"].valleys[k].crowning for k in (0, 1, 0, 1)]
     assert calls["led_on"] == []
-    # Positions of the other results, of the design's lines, and evenly as many as a search looks at, within one pitch.
-    (first, panel), (second, _) = calls["lines_at"]
-    np.testing.assert_allclose(first, START + PITCH * np.array([0.0, 0.2, 0.5]))
-    even = START + PITCH * (np.arange(SEARCHED) + 0.5) / SEARCHED
-    np.testing.assert_allclose(second, np.unique([START, START + 0.5 * PITCH, *even]))
-    assert panel == pytest.approx(1.5e-3)
     assert calls["design"][1:] == ("loading", 24, pytest.approx(1.5e-3))
     assert calls["station"] == ("design", ("aligned", 1200.0, "design"), "loading", 1200.0)
     assert calls["grid"] == (pytest.approx(3e-6), 14e-3, 20e-3, PITCH)
-    assert [one[1] for one in calls["compliance"]] == [1200.0] * 3
+    assert [one[1] for one in calls["compliance"]] == [1200.0]
     assert calls["compliance"][0][2] == {"coupling": True, "hertz": "h", "cache": "c"}
     assert calls["judge"][1:3] == ("coarse", calls["judge"][2])
     assert calls["judge"][3:] == (1200.0, 2e-6)
@@ -187,13 +176,11 @@ def test_scatter_has_a_relief_of_its_own_and_leads_the_freest_family_on(steps):
     found, _ = designed(steps, scatter=scatter)
     last = list(FAMILIES)[-1]
     assert list(found.found) == [*FAMILIES, ROBUST]
-    assert found.found[ROBUST].made == ("settled", "best", last, 3)
-    assert found.found[last].made == ("led on", "settled", "best", last, 1)
+    assert found.found[ROBUST].made == ("best", last, 3)
+    assert found.found[last].made == ("led on", "best", last, 1)
     trials, family, *_, starts, scan = steps.calls["best"][-1]
     assert (family, trials.scatter, scan.scatter) == (last, scatter, scatter)
     assert len(starts) == len([one for one in (*flank_design.held_by(last), last) if one in FAMILIES])
-    assert steps.calls["settled"][-1][0].scatter is scatter
-    assert steps.calls["settled"][-1][3] == ()
     assert steps.calls["led_on"][0][0].scatter is NOMINAL
     assert [state.label for state in found.robust] == [ROBUST]
     assert found.best.label != ROBUST

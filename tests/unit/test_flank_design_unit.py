@@ -15,6 +15,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages, solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.loaded import FlankPair
+from fegear.design.flanks import families, valleys
 from fegear.design.flanks.families import best_of_family, quick_values
 from fegear.design.flanks.forms import LENGTHS, NUMBERS, FormsAt, GroundRelief
 from fegear.design.flanks.grid import FAMILIES, ReliefGrid, held_by
@@ -256,12 +257,15 @@ GRID = ReliefGrid(
 
 @pytest.fixture(scope="module")
 def found(trials, exact):
-    """The best of a family, looked for when it is first asked for."""
+    """The best of a family by few descents, looked for when it is first asked for."""
 
     @functools.cache
     def best(family):
         starts = [best(held).relief for held in held_by(family)]
-        return best_of_family(trials, family, GRID, exact[1].force, starts=starts)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(valleys, "_DESCENTS", 6)
+            patch.setattr(valleys, "_ROUNDS", 1)
+            return best_of_family(trials, family, GRID, exact[1].force, starts=starts)
 
     return best
 
@@ -312,9 +316,13 @@ def test_last_digits_of_a_start_stay_last_digits_of_where_it_leads(trials, famil
         assert trials.value(trials.of_numbers(near).peak_to_peak) >= found[0][0] * (1.0 - 1e-5)
 
 
-@pytest.mark.long
-def test_evolution_finds_no_better_relief(trials, found):
-    low, high = GRID.limits("profile")
+WIDE = ReliefGrid((3e-6, 10e-6, 25e-6), (1.5e-3, 3e-3, 6e-3), (), (), (), (), ())
+
+
+def beside_evolution(trials, family, grid, force, generations, popsize=8):
+    """What an own differential evolution and a descent from its end leave, over what the search finds."""
+    best = best_of_family(trials, family, grid, force)
+    low, high = box = grid.limits(family)
     free = np.flatnonzero(high > low)
 
     def left(x):
@@ -322,8 +330,25 @@ def test_evolution_finds_no_better_relief(trials, found):
         at[free] = x
         return trials.value(trials.of_numbers(at).peak_to_peak) * 1e6
 
-    best = differential_evolution(left, list(zip(low[free], high[free], strict=True)), seed=1, maxiter=60, tol=1e-6)
-    assert best.fun >= 0.99e6 * found("profile").value
+    bounds = list(zip(low[free], high[free], strict=True))
+    found = differential_evolution(left, bounds, rng=1, popsize=popsize, maxiter=generations, tol=1e-6, polish=False)
+    at = low.copy()
+    at[free] = found.x
+    return min(found.fun * 1e-6, descend(trials, at, found.fun * 1e-6, box)[0]) / best.value
+
+
+@pytest.mark.dear
+def test_a_short_evolution_finds_no_better_relief(trials, exact, monkeypatch):
+    monkeypatch.setattr(valleys, "_DESCENTS", 8)
+    monkeypatch.setattr(families, "_LEAST_EXACT", 24)
+    assert beside_evolution(trials, "profile", WIDE, exact[1].force, 2, popsize=4) >= 0.99
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("family", ["profile", "lead", "profile-and-lead"])
+def test_evolution_finds_no_better_relief(trials, exact, family):
+    grid = replace(GRID, tip_amounts=WIDE.tip_amounts, tip_lengths=WIDE.tip_lengths)
+    assert beside_evolution(trials, family, grid, exact[1].force, 60) >= 0.99
 
 
 def test_scatter_of_nothing_is_the_nominal_pair(trials):

@@ -1,4 +1,7 @@
-"""The search over a grid of ground reliefs: how many are loaded exactly, which the best is, what is proven of it."""
+"""The search over a grid of ground reliefs: how many are loaded exactly, which the best is, what is proven of it.
+
+With few candidates loaded exactly; valleys have a test of their own.
+"""
 
 from types import SimpleNamespace
 
@@ -7,7 +10,7 @@ import pytest
 
 from fegear.base.errors import RangeError
 from fegear.design.flanks import families
-from fegear.design.flanks.families import best_of_family, led_on, settled
+from fegear.design.flanks.families import best_of_family, led_on
 from fegear.design.flanks.forms import GroundRelief
 
 LOW, HIGH = np.zeros(9), np.arange(1000.0, 1009.0)
@@ -42,7 +45,7 @@ def search(monkeypatch):
     """A search in which quick values are given, and no descent gains anything but that of one start."""
     calls = SimpleNamespace(descents=[], quick=None)
 
-    def of(rough, leaves, factors=None, quick_factors=None, gains=None, **how):
+    def of(rough, leaves, factors=None, quick_factors=None, gains=None, kept=True, **how):
         rough, trials = np.asarray(rough, float), Trials(np.asarray(leaves, float), factors)
         numbers = np.array([numbered(i) for i in range(rough.size)])
         quick_factors = np.ones(rough.size) if quick_factors is None else np.asarray(quick_factors, float)
@@ -55,7 +58,15 @@ def search(monkeypatch):
             assert box[1] is HIGH
             return value - (gains or {}).get(int(start[0]), 0.0), start + 0.25
 
+        def valleys(few, more, places, box, most):
+            assert few.tried is trials.tried
+            reached = [descend(more, at, more.value(more.leaves[int(at[0])]), box, most) for at in places]
+            return sorted(reached, key=lambda one: one[0])[:3] if kept else []
+
         monkeypatch.setattr(families, "descend", descend)
+        monkeypatch.setattr(families, "deepest_valleys", valleys)
+        monkeypatch.setattr(families, "_LEAST_EXACT", 24)
+        monkeypatch.setattr(families, "_STARTS", 6)
         return best_of_family(trials, "lead", GRID, "force", **how), trials, calls
 
     return of
@@ -129,16 +140,23 @@ def test_the_largest_factor_is_kept_to_and_the_quick_way_may_err_by_a_twentieth(
         search(rough, leaves, [1.5] * 4, [1.4, 1.3, 1.5, 1.6], most_factor=1.2)
 
 
-def test_further_starts_are_led_on_within_the_box(search):
+def test_further_starts_come_first_and_are_led_on_within_the_box(search):
     start = GroundRelief.of(numbered(5))
     found, trials, calls = search([1.0, 2.0], [6.0, 7.0, 8.0, 8.0, 8.0, 5.5], gains={5: 1.0}, starts=[start])
-    assert calls.descents[-1][:2] == (5, 5.5)
+    assert [one[:2] for one in calls.descents] == [(5, 5.5), (0, 6.0), (1, 7.0)]
     assert (found.value, found.relief.numbers[0], found.value_on_grid) == (4.5, 5.25, 6.0)
+    assert [one.numbers[0] for one in found.valleys] == [5.25, 0.25, 1.25]
     above = led_on(trials, found, GRID, GroundRelief.of(numbered(1)), np.inf)
     assert above is found  # What is not better is not taken.
     outside = GroundRelief.of(numbered(-3.0))
     led_on(trials, found, GRID, outside)
     assert calls.descents[-1][:2] == (0, 6.0)
+
+
+def test_where_no_start_keeps_to_the_limit_at_more_positions_the_best_of_few_stays(search):
+    found, _, _ = search([1.0, 2.0], [6.0, 5.0], kept=False)
+    assert (found.value, found.relief.numbers[0], found.on_grid.numbers[0]) == (5.0, 1, 1)
+    assert len(found.valleys) == 1
 
 
 def test_a_start_whose_factor_is_too_large_is_left_out(search):
@@ -148,12 +166,3 @@ def test_a_start_whose_factor_is_too_large_is_left_out(search):
     assert led_on(trials, found, GRID, GroundRelief.of(numbered(2)), 1.2) is found
     assert len(calls.descents) == before
     assert led_on(trials, found, GRID, GroundRelief.of(numbered(2)), 1.3).value == 1.0
-
-
-def test_what_is_settled_is_told_at_more_positions_and_led_on_from_all_starts(search):
-    found, _, calls = search([1.0, 2.0], [6.0, 7.0], gains={1: 0.5})
-    finer = Trials(np.array([6.25, 5.0, 4.0]))
-    later = settled(finer, found, GRID, [GroundRelief.of(numbered(2)), GroundRelief.of(numbered(1))])
-    assert [start for start, _, _ in calls.descents[-3:]] == [0, 2, 1]
-    assert (later.value, later.relief.numbers[0]) == (4.0, 2.25)
-    assert settled(finer, found, GRID, []).value == 6.25

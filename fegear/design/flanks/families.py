@@ -1,8 +1,9 @@
-"""The modification of a family that leaves the least: all combinations of a grid, then descent from the best of them.
+"""The modification of a family that leaves the least: all combinations of a grid, then descents from the best of them.
 
 Every combination is loaded with `QuickFlanks`; the best are loaded exactly, in the order of what the quick way found,
 until the next is so much above the least found that no error of the quick way seen so far could make up for it. The
-least of the grid is thereby known, not guessed. From the best few, a descent within the box of the grid leads on.
+least of the grid is thereby known, not guessed. From the best of them that lie apart, and from further starts, valleys
+within the box of the grid are searched (`fegear.design.flanks.valleys`).
 """
 
 from __future__ import annotations
@@ -19,13 +20,11 @@ from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, GROUPS, Family, ReliefGrid
 from fegear.design.flanks.quick import QuickFlanks, quick_flanks
 from fegear.design.flanks.search import descend
-from fegear.design.flanks.trials import FlankTrials, Tried
+from fegear.design.flanks.trials import FlankTrials
+from fegear.design.flanks.valleys import deepest_valleys, keeps
 
-#: Candidates loaded exactly, at least and at most; those from which a descent starts; coarse panels over the face.
-_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 6, 5
-
-#: Promised gain, over the value, that ends descents from the grid: they tell valleys apart, the best is led on.
-_SCOUTED = 2e-3
+#: Candidates loaded exactly, at least and at most; those from which descents start; coarse panels over the face.
+_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 24, 5
 
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05
@@ -44,12 +43,15 @@ class FamilyBest:
         Best of all, after the descents.
     value : float
         What this one leaves, see `FlankTrials.value` [m].
+    valleys : tuple of GroundRelief
+        It and the next best that were found, in other valleys or in the same.
     """
 
     family: Family
     on_grid: GroundRelief
     relief: GroundRelief
     value: float
+    valleys: tuple[GroundRelief, ...]
     candidates: int = shown("", "number of combinations evaluated", name="combinations")
     exact: int = shown("", "computed exactly", name="loaded_exactly")
     value_on_grid: float = shown(
@@ -113,16 +115,17 @@ def best_of_family(
     Parameters
     ----------
     trials : FlankTrials
+        At the roll positions that count.
     family : str
     grid : ReliefGrid
     force : ndarray, shape (P, M)
-        Design forces at the stations of `scan`, about which the quick way takes compliances as straight [N].
+        Forces at the stations of `scan`, about which the quick way takes compliances as straight [N].
     most_factor : float
         Largest K_Hbeta that is allowed, at all loads and misalignments.
     starts : sequence of GroundRelief
-        Further starts of descents: a best one of a smaller family, so that more freedom never leaves more.
+        Further starts of descents: the best of smaller families, so that more freedom never leaves more.
     scan : FlankTrials, optional
-        Fewer roll positions at which all combinations are tried the quick way; those of `trials` without.
+        Fewer roll positions at which the grid is tried; those of `trials` without.
 
     Raises
     ------
@@ -139,12 +142,12 @@ def best_of_family(
     for i in order[:_MOST_EXACT].tolist():
         if exact >= _LEAST_EXACT and seen and rough[i] - error > seen[0][0]:
             break
-        tried = trials.of_numbers(numbers[i])
+        tried = few.of_numbers(numbers[i])
         exact += 1
-        value = trials.value(tried.peak_to_peak)
+        value = few.value(tried.peak_to_peak)
         error = max(error, rough[i] - value)
         # K_Hbeta costs as much as the contact: asked only of those that a descent might start from.
-        if (len(seen) < _STARTS or value < seen[-1][0]) and _keeps(tried, most_factor):
+        if (len(seen) < _STARTS or value < seen[-1][0]) and keeps(tried, most_factor):
             seen = sorted([*seen, (value, i)])[:_STARTS]
     if not seen:
         raise RangeError(
@@ -152,18 +155,18 @@ def best_of_family(
             f"is not met by any of the {len(numbers)} combinations of {family}; minimum about {factor.min():.4g}",
             "increase the limit, or extend the grid to more crowning, end relief or slope",
         )  # fmt: skip
-    on_grid = seen[0]
-    proven = exact == len(order) or float(rough[order[exact]]) - error > on_grid[0]
-    low, high = grid.limits(family)
-    reached = [descend(trials, numbers[i], value, (low, high), most_factor, _SCOUTED) for value, i in seen]
-    value, at = min(reached, key=lambda found: found[0])
-    best = FamilyBest(
-        family, trials.relief(numbers[on_grid[1]]), trials.relief(at), value, len(numbers), exact, on_grid[0],
+    left_on_grid, best = seen[0]
+    proven = exact == len(order) or float(rough[order[exact]]) - error > left_on_grid
+    low, high = box = grid.limits(family)
+    places = [*(np.clip(start.numbers, low, high) for start in starts), *(numbers[i] for _, i in seen)]
+    valleys = deepest_valleys(few, trials, places, box, most_factor)
+    if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
+        valleys = [(trials.value(trials.of_numbers(numbers[best]).peak_to_peak), numbers[best])]
+    found = tuple(trials.relief(at) for _, at in valleys)
+    return FamilyBest(
+        family, trials.relief(numbers[best]), found[0], valleys[0][0], found, len(numbers), exact, left_on_grid,
         error, proven,
     )  # fmt: skip
-    for start in starts:
-        best = led_on(trials, best, grid, start, most_factor)
-    return best
 
 
 def led_on(
@@ -173,33 +176,7 @@ def led_on(
     low, high = grid.limits(best.family)
     at = np.clip(start.numbers, low, high)
     tried = trials.of_numbers(at)
-    if not _keeps(tried, most_factor):
+    if not keeps(tried, most_factor):
         return best
     value, at = descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
     return replace(best, relief=trials.relief(at), value=value) if value < best.value else best
-
-
-def settled(
-    trials: FlankTrials, best: FamilyBest, grid: ReliefGrid, starts: Sequence[GroundRelief], most_factor: float = np.inf
-) -> FamilyBest:
-    """Lead what a search on few roll positions found on to a minimum of more of them; the best of all starts.
-
-    Parameters
-    ----------
-    trials : FlankTrials
-        At more roll positions.
-    best : FamilyBest
-    grid : ReliefGrid
-    starts : sequence of GroundRelief
-        Further starts, see `best_of_family`.
-    most_factor : float
-        Where the relief found keeps to it no more, it stays as it is.
-    """
-    found = replace(best, value=trials.value(trials.of_numbers(best.relief.numbers).peak_to_peak))
-    for start in (best.relief, *starts):
-        found = led_on(trials, found, grid, start, most_factor)
-    return found
-
-
-def _keeps(tried: Tried, most_factor: float) -> bool:
-    return most_factor == np.inf or float(tried.face_load_factor.max()) <= most_factor

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -13,17 +14,16 @@ from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
-from fegear.design.flanks.families import FamilyBest, best_of_family, led_on, settled
+from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
-from fegear.design.flanks.judge import SEARCHED, FlankJudge, Judged, flank_judge
+from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge
 from fegear.design.flanks.scatter import Scatter
 from fegear.design.flanks.topography import (
     FlankLoading,
     StationRelief,
     design_force,
     design_lines,
-    lines_at,
     station_relief,
     table_nodes,
     tabulated,
@@ -214,46 +214,48 @@ def design_flanks(
     removal = tabulated(station, pair, x, z)
     table = topography(pair, "driver", x, z, removal)
     grid = task.grid or usual_grid(float(np.ptp(removal)), pair.path_length, pair.face_width, pair.base_pitch)
-    # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
-    # may leave as much between few of them: it is chosen by both, and led on at more of them.
+    judge = flank_judge(flanks, coarse, aligned, task.load, task.deviation)
+    plain = judge.plain.known
+    # What is ground leaves most where contact lines begin and end, and may leave as much between few roll positions:
+    # grids and leaps are tried at few, reliefs are chosen by those that the judge has on both sides of these places.
     loads = np.array(task.loads)
-    scan = FlankTrials(pair, known, apart.at(pair, known.lines, loads), loads, weights=task.weights)
+    few = FlankTrials(pair, known, apart.at(pair, known.lines, loads), loads, weights=task.weights)
     force = design_force(known.lines, task.loading, task.load)
-
-    def trials_at(roll: Array) -> FlankTrials:
-        lines = lines_at(pair, np.unique(np.mod(roll - pair.x_start, pair.base_pitch) + pair.x_start), panel)
-        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines, loads), loads, weights=task.weights)
-
-    trials = trials_at(np.concatenate([known.lines.roll, lines.roll]))
-    even = pair.x_start + pair.base_pitch * (np.arange(SEARCHED) + 0.5) / SEARCHED
-    closer = trials_at(np.concatenate([known.lines.roll, even]))
+    more = FlankTrials(pair, plain, apart.at(pair, plain.lines, loads), loads, weights=task.weights)
     found: dict[str, FamilyBest] = {}
     wanted = [family for family in FAMILIES if family in task.families]
     for number, family in enumerate(wanted):
-        starts = [found[held].relief for held in held_by(family) if held in found]
-        best = best_of_family(trials, family, grid, force, task.most_factor, starts, scan)
-        found[family] = settled(closer, best, grid, starts, task.most_factor)
+        starts = _starts([found[held] for held in held_by(family) if held in found])
+        found[family] = best_of_family(more, family, grid, force, task.most_factor, starts, few)
         report(0.3 + 0.4 * (number + 1) / len(wanted))
     if wanted and task.scatter.over_face.size > 1:
         starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
-        few, more, scattered = (replace(one, scatter=task.scatter) for one in (scan, closer, trials))
-        best = best_of_family(scattered, wanted[-1], grid, force, task.most_factor, starts, few)
-        found[ROBUST] = settled(more, best, grid, (), task.most_factor)
+        scattered, scan = (replace(one, scatter=task.scatter) for one in (more, few))
+        found[ROBUST] = best_of_family(scattered, wanted[-1], grid, force, task.most_factor, starts, scan)
         # One start more: where scattered misalignment leads may be the better valley without it, too.
-        found[wanted[-1]] = led_on(closer, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
+        found[wanted[-1]] = led_on(more, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
     report(0.8)
     reliefs: dict[str, GroundRelief | Topography] = {
         UNRELIEVED: GroundRelief(),
         EXACT: table,
         **{label: one.relief for label, one in found.items()},
     }
-    here = replace(scan, loads=np.array([task.load]), apart=aligned.at(pair, known.lines), weights=None)
-    judge = flank_judge(flanks, coarse, aligned, task.load, task.deviation)
-    plain = judge.plain.known
-    over = FlankTrials(pair, plain, apart.at(pair, plain.lines, loads), loads)
+    here = replace(few, loads=np.array([task.load]), apart=aligned.at(pair, known.lines), weights=None)
+    over = replace(more, weights=None)
     states = tuple(_state(label, relief, here, judge, over, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
+
+
+def _starts(held: Sequence[FamilyBest]) -> list[GroundRelief]:
+    """Where a family's search begins besides its grid: valleys of those that it holds, and their sums."""
+    found = [valley for one in held for valley in one.valleys]
+    tips, leads = ([one for one in held if one.family == family] for family in ("profile", "lead"))
+    sums = [
+        GroundRelief.of(profile.numbers + lead.numbers)
+        for first in tips for second in leads for profile, lead in product(first.valleys, second.valleys)
+    ]  # fmt: skip
+    return [*found, *sums]
 
 
 def _state(

@@ -49,6 +49,8 @@ class ReliefGrid:
         Of the end relief [m].
     slopes, biases : tuple of float
         [m].
+    tip_reach : tuple of float, optional
+        Shortest and longest tip relief that a descent may lead to where these are beyond the lists [m].
     """
 
     tip_amounts: tuple[float, ...]
@@ -58,6 +60,7 @@ class ReliefGrid:
     end_lengths: tuple[float, ...]
     slopes: tuple[float, ...]
     biases: tuple[float, ...]
+    tip_reach: tuple[float, ...] = ()
 
     def choices(self, group: str) -> Array:
         """What a group of numbers may be, the first of them nothing, shape (n, numbers of the group)."""
@@ -71,12 +74,14 @@ class ReliefGrid:
         return np.array([0.0, *sorted({v for v in single if v})])[:, None]
 
     def limits(self, family: Family) -> tuple[Array, Array]:
-        """Least and largest value of each of the nine numbers, shape (9,) each: the box that the grid fills."""
+        """Least and largest value of each of the nine numbers, shape (9,) each: the box of the grid, or more."""
         low, high = np.zeros(len(NUMBERS)), np.zeros(len(NUMBERS))
         for group in FAMILIES[family]:
             values = self.choices(group)
             for column, number in enumerate(GROUPS[group]):
                 seen = values[1:, column] if column else values[:, column]
+                if column and seen.size and group in ("driver_tip", "driven_tip"):
+                    seen = np.append(seen, self.tip_reach)
                 if seen.size:
                     low[number], high[number] = seen.min(), seen.max()
         return low, high
@@ -113,4 +118,5 @@ def usual_grid(depth: float, path: float, face: float, base_pitch: float) -> Rel
         end_lengths=tuple(face * f for f in (0.15, 0.35)),
         slopes=tuple(depth * f for f in (-0.1, 0.1)),
         biases=tuple(depth * f for f in (-1.0, -0.4, 0.4, 1.0)),
+        tip_reach=(0.1 * path, path),
     )  # fmt: skip

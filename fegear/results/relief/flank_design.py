@@ -32,7 +32,7 @@ _MAPPED, _MAPPED_ALONE = (-2.0, -1.0, 0.0, 1.0, 2.0), (-10e-6, -5e-6, 0.0, 5e-6,
 
 
 #: Seconds of a contact line on both gears, of one combination of a grid and of the exact loads of one family.
-_LINE, _COMBINATION, _FAMILY = 0.05, 4e-4, 1.0
+_LINE, _COMBINATION, _FAMILY = 0.05, 4e-4, 7.0
 
 
 def _part(scene: Scene) -> FlankDesignPart:
