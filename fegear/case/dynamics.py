@@ -141,6 +141,10 @@ class DynamicsPart(Part):
     lines: Annotated[int, Field(ge=1, le=50)] = Field(
         default=3, description="Number of mesh harmonics in the Campbell diagram."
     )
+    measured_frequencies: Annotated[list[Frequency], Field(min_length=1), at_most(1000, "frequencies")] | None = Field(
+        default=None,
+        description="Measured natural frequencies of the train, to compare with the computed ones (`natural-modes`).",
+    )
     frequencies: Table[FrequenciesPart] = Field(
         default_factory=FrequenciesPart, description="Frequencies of the dynamic increments."
     )

@@ -23,6 +23,7 @@ from fegear.case.studies import CostPart, StudyPart, TolerancePart
 if TYPE_CHECKING:
     from fegear.case.compound import CompoundPart
     from fegear.case.design import DesignPart
+    from fegear.case.encoders import EncodersPart
     from fegear.case.flank_design import FlankDesignPart
     from fegear.case.gauge import GaugePart
     from fegear.case.planetary import PlanetaryPart
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 else:  # tables that few cases have
     CompoundPart = Later("fegear.case.compound", "CompoundPart")
     DesignPart = Later("fegear.case.design", "DesignPart")
+    EncodersPart = Later("fegear.case.encoders", "EncodersPart")
     FlankDesignPart = Later("fegear.case.flank_design", "FlankDesignPart")
     GaugePart = Later("fegear.case.gauge", "GaugePart")
     PlanetaryPart = Later("fegear.case.planetary", "PlanetaryPart")
@@ -61,6 +63,9 @@ class Case(Part):
     pair: dict[str, Table[PairPart]] = Field(default_factory=dict, description="Gear pairs in mesh, by name.")
     gauge: dict[str, Table[GaugePart]] = Field(
         default_factory=dict, description="Strain gauges in root fillets, by name."
+    )
+    encoders: dict[str, Table[EncodersPart]] = Field(
+        default_factory=dict, description="Transmission errors measured with encoders, by name."
     )
     crack_growth: Table[CrackGrowthPart] = Field(
         default_factory=CrackGrowthPart, description="Growth of the cracks of odd teeth (result `crack-path`)."

@@ -44,6 +44,8 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     for name, gauge in case.gauge.items():
         yield f"gauge.{name}.gear", gauge.gear, "gear"
         yield f"gauge.{name}.pair", gauge.pair, "pair"
+    for name, encoders in case.encoders.items():
+        yield f"encoders.{name}.pair", encoders.pair, "pair"
     if case.study is not None:
         yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:

@@ -25,7 +25,7 @@ COSTLY = {
     "cases-and-runs", "choose-a-tolerance", "commands", "compound-planetary-set", "corner-contact-warning", "cost",
     "cracked-gear", "double-helical-pair", "dynamic-factor", "export", "fem",
     "gear-with-its-width", "helical", "helical-misalignment", "design",
-    "load-over-the-face", "measured-root-strain", "mesh-as-fmu", "mesh-in-adams",
+    "load-over-the-face", "measured-root-strain", "measured-transmission-error", "mesh-as-fmu", "mesh-in-adams",
     "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python", "python-formulas",
     "python-mechanics", "python-output", "python-planetary", "python-speeds", "python-wide-pair", "several-meshes",
     "relief-for-torques", "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table",

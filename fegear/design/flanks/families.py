@@ -134,6 +134,58 @@ def best_of_family(
     """
     few = scan or trials
     quick = quick_flanks(few.known, force, _PANELS, few.cells)
+    found = _screened(few, quick, family, grid, most_factor)
+    if not found.best:
+        raise RangeError(
+            "flank_design.largest_face_load_factor", f"{most_factor:.4g}",
+            f"is not met by any of the {found.candidates} combinations of {family}; minimum about "
+            f"{found.least_factor:.4g}",
+            "increase the limit, or extend the grid to more crowning, end relief or slope",
+        )  # fmt: skip
+    left_on_grid, on_grid = found.best[0]
+    low, high = box = grid.limits(family)
+    places = [*(np.clip(start.numbers, low, high) for start in starts), *(at for _, at in found.best)]
+    if family == "profile" and (finer := grid.finer_tips()) is not grid:  # few lengths miss valleys
+        places += [at for _, at in _screened(few, quick, family, finer, most_factor).best]
+    valleys = deepest_valleys(few, trials, places, box, most_factor)
+    if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
+        valleys = [(trials.value(trials.of_numbers(on_grid).peak_to_peak), on_grid)]
+    reliefs = tuple(trials.relief(at) for _, at in valleys)
+    return FamilyBest(
+        family, trials.relief(on_grid), reliefs[0], valleys[0][0], reliefs, found.candidates, found.exact,
+        left_on_grid, found.error, found.proven,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Screened:
+    """The best combinations of a grid, by the positions at which it was tried.
+
+    Parameters
+    ----------
+    best : list of (float, ndarray)
+        What is left [m] and nine numbers, the best first, at most `_STARTS`.
+    candidates, exact : int
+        Combinations, and those that were loaded exactly.
+    error : float
+        By which the quick way was too high at most [m].
+    proven : bool
+    least_factor : float
+        Smallest K_Hbeta of any, by the quick way.
+    """
+
+    best: list[tuple[float, Array]]
+    candidates: int
+    exact: int
+    error: float
+    proven: bool
+    least_factor: float
+
+
+def _screened(
+    few: FlankTrials, quick: QuickFlanks, family: Family, grid: ReliefGrid, most_factor: float
+) -> _Screened:  # fmt: skip
+    """Try all combinations of a grid the quick way, and the best of them exactly."""
     numbers, rough, factor = quick_values(quick, few, family, grid)
     allowed = factor <= most_factor * _FACTOR_SLACK
     order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
@@ -149,24 +201,9 @@ def best_of_family(
         # K_Hbeta costs as much as the contact: asked only of those that a descent might start from.
         if (len(seen) < _STARTS or value < seen[-1][0]) and keeps(tried, most_factor):
             seen = sorted([*seen, (value, i)])[:_STARTS]
-    if not seen:
-        raise RangeError(
-            "flank_design.largest_face_load_factor", f"{most_factor:.4g}",
-            f"is not met by any of the {len(numbers)} combinations of {family}; minimum about {factor.min():.4g}",
-            "increase the limit, or extend the grid to more crowning, end relief or slope",
-        )  # fmt: skip
-    left_on_grid, best = seen[0]
-    proven = exact == len(order) or float(rough[order[exact]]) - error > left_on_grid
-    low, high = box = grid.limits(family)
-    places = [*(np.clip(start.numbers, low, high) for start in starts), *(numbers[i] for _, i in seen)]
-    valleys = deepest_valleys(few, trials, places, box, most_factor)
-    if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
-        valleys = [(trials.value(trials.of_numbers(numbers[best]).peak_to_peak), numbers[best])]
-    found = tuple(trials.relief(at) for _, at in valleys)
-    return FamilyBest(
-        family, trials.relief(numbers[best]), found[0], valleys[0][0], found, len(numbers), exact, left_on_grid,
-        error, proven,
-    )  # fmt: skip
+    proven = bool(seen) and (exact == len(order) or float(rough[order[exact]]) - error > seen[0][0])
+    best = [(value, numbers[i]) for value, i in seen]
+    return _Screened(best, len(numbers), exact, error, proven, float(factor.min()))
 
 
 def led_on(

@@ -29,6 +29,10 @@ GROUPS: Mapping[str, tuple[int, ...]] = {
 }  # fmt: skip
 
 
+#: Amounts that tell the valleys of tip reliefs apart, over the mean transmission error; so many lengths do.
+TIP_AMOUNTS, _TIP_LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), 7
+
+
 def held_by(family: Family) -> tuple[Family, ...]:
     """Families whose every candidate is one of this family's, too."""
     own = set(FAMILIES[family])
@@ -85,6 +89,16 @@ class ReliefGrid:
                 if seen.size:
                     low[number], high[number] = seen.min(), seen.max()
         return low, high
+
+    def finer_tips(self) -> ReliefGrid:
+        """Tip reliefs only, over the same box, with more amounts and lengths where there are few."""
+        low, high = self.limits("profile")
+        count = len(set(self.tip_amounts)) * len(set(self.tip_lengths))
+        if count >= len(TIP_AMOUNTS) * _TIP_LENGTHS or not count:
+            return self
+        amounts = tuple(share / TIP_AMOUNTS[-1] * float(high[0]) for share in TIP_AMOUNTS)
+        lengths = tuple(sorted(set(np.geomspace(low[1], high[1], _TIP_LENGTHS).tolist())))
+        return ReliefGrid(amounts, lengths, (), (), (), (), ())
 
     def combinations(self, family: Family) -> Index:
         """Every combination as one choice of each of the family's groups, shape (C, groups)."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from fegear.design.flanks.families import FamilyBest, best_of_family
-from fegear.design.flanks.grid import ReliefGrid
+from fegear.design.flanks.grid import TIP_AMOUNTS, ReliefGrid
 from fegear.design.flanks.tip_bench import TipTrials
 from fegear.geometry.pair import GearPair
 
-#: Amounts that are tried, over the mean transmission error, and lengths over the path of contact.
-_AMOUNTS, _LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), (0.1, 0.17, 0.27, 0.4, 0.55, 0.75, 1.0)
+#: Lengths that are tried, over the path of contact.
+_LENGTHS = (0.1, 0.17, 0.27, 0.4, 0.55, 0.75, 1.0)
 #: What a tip may lose at most [modules].
 _DEEPEST = 0.1
 
@@ -25,7 +25,7 @@ def tip_grid(pair: GearPair, mean: float) -> ReliefGrid:
         Transmission error at the largest load [m].
     """
     deepest = _DEEPEST * pair.driver.module
-    amounts = tuple(min(mean * share, deepest) for share in _AMOUNTS)
+    amounts = tuple(min(mean * share, deepest) for share in TIP_AMOUNTS)
     return ReliefGrid(amounts, tuple(pair.path_length * share for share in _LENGTHS), (), (), (), (), ())
 
 

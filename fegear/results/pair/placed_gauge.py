@@ -113,8 +113,8 @@ def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
         ) from None  # fmt: skip
 
 
-def comparison_values(prefix: str = "") -> tuple[Number | Each, ...]:
-    """Values of a comparison, which stands at `compared`; their names begin with the prefix."""
+def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | Each, ...]:
+    """Values of a comparison, which stands there; their names begin with the prefix."""
     names = {
         "offset": "measured_offset", "scale": "measured_scale", "shift": "measured_shift", "gain": "measured_gain",
         "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
@@ -126,7 +126,7 @@ def comparison_values(prefix: str = "") -> tuple[Number | Each, ...]:
 
     def fitted(quantity: Fitted) -> Each:
         return Each(
-            lambda seen: [seen.data.compared],
+            lambda seen: [seen.find(at)],
             Number(quantity, name=name(quantity)), Number(f"{quantity}_error", name=name(f"{quantity}_error")),
             when=lambda seen: seen.one is not None and quantity in seen.one.fit,
         )  # fmt: skip
@@ -134,8 +134,8 @@ def comparison_values(prefix: str = "") -> tuple[Number | Each, ...]:
     others = ("gain", "gain_error", "rms", "correlation")
     return (
         *map(fitted, FITTED),
-        *(Number(one, of="compared", name=name(one)) for one in others),
-        Number("samples", exact, of="compared", name=name("samples")),
+        *(Number(one, of=at, name=name(one)) for one in others),
+        Number("samples", exact, of=at, name=name("samples")),
     )
 
 

@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.errors import InputError
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.dynamics import DynamicsPart
 from fegear.dynamics.train.gear_train import GearTrain
+from fegear.dynamics.train.measured_modes import MeasuredModes, beside_modes
 from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.figure.axis import Axis
@@ -24,7 +26,7 @@ from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen, itself
-from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Reads, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, TRAIN_SOURCES, gear_train, needs_train, the_train
@@ -95,11 +97,12 @@ class Meetings:
 
 @dataclass(frozen=True)
 class ModesData:
-    """Modes, and the Campbell diagram where the case gives speeds (in rad/s of the first body)."""
+    """Modes, the Campbell diagram where the case gives speeds (of the first body, in rad/s), and what was measured."""
 
     train: GearTrain
     modes: Modes
     campbell: Campbell | None
+    measured: MeasuredModes | None = None
 
     @property
     def shapes(self) -> dict[str, Array]:
@@ -196,7 +199,24 @@ def _modes(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> Modes
 
     data = gear_train(upstream)
     speeds = asked.part.speed_values / data.speed_ratio
-    return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.part.lines) if speeds.size else None)
+    found = modes(data.train)
+    return ModesData(
+        data, found, campbell(data.train, speeds, asked.part.lines) if speeds.size else None,
+        _measured(asked.part.measured_frequencies, found.frequencies[1:]),
+    )  # fmt: skip
+
+
+def _measured(given: list[float] | None, natural: Array) -> MeasuredModes | None:
+    """What was measured beside the natural frequencies above zero."""
+    if given is None:
+        return None
+    if len(given) > natural.size:
+        raise InputError(
+            "dynamics.measured_frequencies", f"{len(given)} frequencies",
+            f"exceeds the {natural.size} natural frequencies above zero of the train",
+            "remove those of other parts, or add bodies",
+        )  # fmt: skip
+    return beside_modes(np.array(given), natural)
 
 
 def _mode_words(natural: Array, room: float) -> list[tuple[float, str]]:
@@ -258,9 +278,16 @@ def _critical(seen: Seen) -> Iterator[str]:
     )
 
 
+def _beside(seen: Seen) -> Iterator[str]:
+    """How far measured frequencies are off."""
+    if (found := seen.data.measured) is not None:
+        one = found.measured.size == 1
+        yield f"Measured natural {'frequency is' if one else 'frequencies are'} {found.verdict}."
+
+
 _SHEET = Sheet(
     answer=Answer(
-        _frequencies, _critical,
+        _frequencies, _beside, _critical,
         figure=lambda seen: "campbell" if seen.data.diagram is not None else "natural_modes",
     ),
     name=lambda _asked: "",
@@ -290,11 +317,17 @@ _SHEET = Sheet(
             ),
             stacked="of_ripple", when="of_ripple",
         ),
+        Rows(
+            "measured_frequencies", "Measured and computed natural frequencies",
+            ("mode", "measured", "computed", "ratio"), of="measured",
+        ),
     ),
     values=(
         Number(
             "frequencies", of=lambda seen: seen.data.modes, si=itself, name="natural_frequency_{key}", each="flexible"
         ),
+        Number("mean_ratio", of="measured"),
+        Number("scatter", of="measured"),
     ),
     figures=(
         Chart(
@@ -361,7 +394,23 @@ _SHEET = Sheet(
             ),
             when="critical",
         ),
+        Chart(
+            "measured_frequencies", "Measured natural frequencies",
+            "Measured and computed (undamped) natural frequencies over the mode.",
+            (
+                Over(
+                    "mode",
+                    (
+                        Line("computed", "computed", kind="points", look={"symbol": "square", "size": 8.0}),
+                        Line("measured", "measured", "series:1", kind="points", look={"symbol": "circle", "size": 6.0}),
+                    ),
+                    x_options={"whole": True},
+                ),
+            ),
+            of="measured",
+        ),
     ),
+    remarks=(Remark(lambda seen: next(_beside(seen)), when="measured"),),
 )  # fmt: skip
 
 

@@ -1,0 +1,134 @@
+"""Measured transmission errors of a case: which pair, at which loads, and the traces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import InputError
+from fegear.case.csv_file import read_columns
+
+if TYPE_CHECKING:
+    from fegear.case.encoders import EncodersPart
+    from fegear.case.reading import Scene
+    from fegear.contact.fitted_curve import Fitted
+    from fegear.geometry.pair import GearPair, Member
+
+#: Loads that differ by less, over one of them, are the same.
+_SAME_LOAD = 1e-6
+#: Largest transmission error of a pair [m].
+_LARGEST = 5e-3
+
+
+@dataclass(frozen=True)
+class ErrorTrace:
+    """One measured transmission error.
+
+    Parameters
+    ----------
+    angle, te : ndarray, shape (N,)
+        Rotation of the shaft in its sense [rad]; lag of the driven gear along the line of action [m].
+    load : float
+        [N].
+    key, file : str
+        Where the case names it.
+    """
+
+    angle: Array
+    te: Array
+    load: float
+    key: str = field(compare=False)
+    file: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Encoders:
+    """Traces of a pair.
+
+    Parameters
+    ----------
+    pair : str
+    member : {"driver", "driven"}
+        Whose rotation the angles count.
+    fit : tuple of str
+    load_tolerance : float
+    traces : tuple of ErrorTrace
+        By load, ascending.
+    """
+
+    pair: str
+    member: Member
+    fit: tuple[Fitted, ...]
+    load_tolerance: float
+    traces: tuple[ErrorTrace, ...]
+    name: str = field(compare=False)
+
+
+def pair_of_encoders(scene: Scene, name: str) -> str:
+    """Name of the pair whose transmission error was measured."""
+    part, pairs = scene.case.encoders[name], tuple(scene.case.pair)
+    if part.pair is not None:
+        return part.pair
+    if len(pairs) != 1:
+        raise InputError(
+            f"encoders.{name}.pair", "(not given)", f"is required: the case has {len(pairs)} pairs", "specify one"
+        )
+    return pairs[0]
+
+
+def encoders_of(scene: Scene, name: str) -> Encoders:
+    """Measured transmission errors of a case.
+
+    Raises
+    ------
+    InputError
+        If a file is no trace, or a torque is none of the pair's.
+    """
+    part, pair = scene.case.encoders[name], pair_of_encoders(scene, name)
+    placed, mesh = scene.pairs[pair], scene.case.pair[pair]
+    loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
+    traces = []
+    for i, one in enumerate(part.traces):
+        key = f"encoders.{name}.traces[{i}]"
+        wanted = nominal if one.torque is None else one.torque / placed.driver.base_radius
+        known = [load for load in loads if wanted is not None and abs(load - wanted) <= _SAME_LOAD * load]
+        if wanted is not None and not known:
+            torques = ", ".join(f"{load * placed.driver.base_radius:.5g}" for load in loads)
+            raise InputError(
+                f"{key}.torque", f"{wanted * placed.driver.base_radius:.6g} N*m",
+                f"is not a torque of pair {pair} ({torques} N*m)", f"add it to pair.{pair}.torques",
+            )  # fmt: skip
+        angle, te = _trace(scene, part, placed, one.file, f"{key}.file")
+        traces.append(ErrorTrace(angle, te, known[0] if known else 0.0, key, one.file))
+    traces.sort(key=lambda one: one.load)
+    same = [first for first, second in pairwise(traces) if first.load == second.load]
+    if same:
+        raise InputError(f"{same[0].key}.torque", "(not given)", "is that of another trace", "specify the torque")
+    return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), name)
+
+
+def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> tuple[Array, Array]:
+    """Angle and transmission error of one file, in the senses of the computed ones."""
+    along = part.te_at == "line-of-action"
+    columns = {part.angle_column: "angle", part.te_column: "length" if along else "angle"}
+    given = {part.angle_column: part.angle, part.te_column: part.te}
+    found = read_columns(scene.file(file, key), key, columns, {name: unit for name, unit in given.items() if unit})
+    for column, word in ((part.angle_column, "angle_column"), (part.te_column, "te_column")):
+        if column not in found:
+            raise InputError(key, f'"{file}"', f"requires a column {column}", f"add it or set {word}")
+    angle, te = found[part.angle_column], found[part.te_column]
+    if not along:
+        te = te * (pair.driver if part.te_at == "driver" else pair.driven).base_radius
+    largest = float(np.ptp(te))
+    if largest > _LARGEST:
+        raise InputError(
+            key, f"range of {largest * 1e3:.4g} mm", f"is above {_LARGEST * 1e3:g} mm", "check the unit and te_at"
+        )
+    for what, values in (("angle", angle), ("transmission error", te)):
+        if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
+            raise InputError(key, f'"{file}"', f"has only one {what}", "check the columns")
+    return (-angle if part.reverse else angle), (-te if part.positive == "lead" else te)

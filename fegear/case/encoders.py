@@ -1,0 +1,67 @@
+"""``[encoders.NAME]``: transmission error of a pair as two encoders measured it, at one torque or at several."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.part import Number, Part, PositiveTorque, at_most, refuse
+
+
+class ErrorTracePart(Part):
+    """``traces = [{ file, torque }, ...]``: one trace of both encoders at one torque."""
+
+    file: str = Field(description="CSV file with the columns `angle [deg]` (rotation of `shaft`) and `te [um]`.")
+    torque: PositiveTorque | None = Field(
+        default=None,
+        description="Torque on the driver at which it was measured, one of the pair's loads. Default: nominal load of "
+        "the pair.",
+    )
+
+
+class EncodersPart(Part):
+    """Transmission error of a pair measured with encoders on both shafts."""
+
+    pair: str | None = Field(default=None, description="Pair. Default: the only pair.")
+    traces: Annotated[list[ErrorTracePart], Field(min_length=1), at_most(100, "traces")] = Field(
+        description="Traces, one for each torque."
+    )
+    shaft: Literal["driver", "driven"] = Field(
+        default="driver", description="Shaft whose rotation the angle column counts."
+    )
+    te_at: Literal["line-of-action", "driver", "driven"] = Field(
+        default="line-of-action",
+        description="How the transmission error is given: as a length along the line of action, or as an angle of one "
+        "of the shafts.",
+    )
+    positive: Literal["lag", "lead"] = Field(
+        default="lag",
+        description="Sign: positive where the driven gear lags behind (as computed) or where it leads (angle of the "
+        "driven gear minus ideal angle).",
+    )
+    angle: str | None = Field(default=None, description="Unit of the angle column, if its head has none.")
+    te: str | None = Field(default=None, description="Unit of the column of the transmission error, if its head has "
+                           "none: `um`, `arcsec`, `urad`.")  # fmt: skip
+    angle_column: str = Field(default="angle", description="Name of the angle column.")
+    te_column: str = Field(default="te", description="Name of the column of the transmission error.")
+    reverse: bool = Field(default=False, description="The measured angle counts against the rotation of the shaft.")
+    fit: list[Literal["offset", "scale", "shift"]] = Field(
+        default_factory=list,
+        description="What is fitted by least squares: `offset` (zero of the encoders), `scale` and `shift` (zero of "
+        "the angle, within one tooth pitch). Default: nothing.",
+    )
+    load_tolerance: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.01, description="Relative uncertainty (±) of the torque."
+    )
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if len(set(self.fit)) < len(self.fit):
+            raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
+        if self.angle_column == self.te_column:
+            raise refuse("is the column of the angle", "specify another column", key="te_column")
+        torques = [trace.torque for trace in self.traces]
+        if len(set(torques)) < len(torques):
+            raise refuse("contains one torque twice", "specify one trace for each torque", key="traces")
+        return self

@@ -1,0 +1,232 @@
+"""A measured transmission error: order spectrum of its trace, the curve over one tooth pitch, and both beside computed.
+
+A trace of two encoders has everything that turns with the shafts: eccentricity, pitch deviations, couplings. Over whole
+turns its harmonics stand at whole orders of the shaft; those of the mesh are the multiples of the number of teeth. What
+stands beside a computed transmission error is the curve of the mesh: the trace less its mean over a tooth pitch to
+either side of each sample, which takes slow parts away and nothing of the mesh, averaged over all teeth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.shown import shown, shows
+from fegear.contact.fitted_curve import FittedCurve, fit_curve
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fitted_curve import Fitted
+
+#: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
+FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
+#: Part of a turn that a trace may lack of a whole one: the last of evenly spaced samples.
+_SLACK = 1e-3
+#: Harmonics of the mesh that are compared at most.
+_HARMONICS = 12
+_TURN = 2.0 * math.pi
+
+
+class ShortTraceError(ValueError):
+    """A trace covers too few tooth pitches, or has too few samples on each."""
+
+    def __init__(self, pitches: float, samples: float) -> None:
+        super().__init__(f"{pitches:.3g} tooth pitches, {samples:.3g} samples on each")
+        self.pitches, self.samples = pitches, samples
+
+
+@dataclass(frozen=True)
+class OrderSpectrum(ReadOnlyArrays):
+    """Orders of a trace over whole turns of the shaft, or over whole tooth pitches where it has no whole turn.
+
+    Parameters
+    ----------
+    turns : float
+        That it is taken over.
+    order, amplitude : ndarray, shape (N,)
+        Per turn of the shaft, from the first above zero; 0-peak [m].
+    phase : ndarray, shape (N,)
+        Of cos(order angle - phase) [rad].
+    """
+
+    turns: float
+    phase: Array
+    order: Array = shown("", "order per revolution of the shaft of the angle", label="order")
+    amplitude: Array = shown("um", "amplitude of the measured transmission error", label="amplitude")
+
+
+@dataclass(frozen=True)
+class MeasuredError(ReadOnlyArrays):
+    """What a trace says of the mesh.
+
+    Parameters
+    ----------
+    teeth : int
+        Of the gear on the shaft of the angle.
+    spectrum : OrderSpectrum
+    angle, te : ndarray, shape (B,)
+        Of the curve averaged over all teeth, over one tooth pitch of the shaft [rad], with the mean of the trace [m].
+    spread : float
+        Standard deviation between teeth, mean over the curve [m].
+    pitches : int
+        Tooth pitches averaged.
+    n : ndarray of int, shape (H,)
+        Harmonics of the mesh.
+    amplitude, phase : ndarray, shape (H,)
+        Of these [m], [rad].
+    """
+
+    teeth: int
+    spectrum: OrderSpectrum
+    angle: Array
+    te: Array
+    spread: float
+    pitches: int
+    n: NDArray[np.int64]
+    amplitude: Array
+    phase: Array
+
+
+@dataclass(frozen=True)
+class FittedError(FittedCurve):
+    """A measured curve of the mesh over the computed one; angles are those of the shaft."""
+
+    offset: float = shown("um", "offset of the measured transmission error", name="measured_offset")
+    scale: float = shown("", "scale of the measured transmission error (measured / computed)", name="measured_scale")
+    gain: float = shown(
+        "", "measured / computed transmission error by least squares at this offset and shift", name="measured_gain"
+    )
+    angle: Array = shown(
+        "deg", "rotation of the shaft within one tooth pitch, measured angle less the shift",
+        label="rotation of the shaft",
+    )  # fmt: skip
+    measured: Array = shown(
+        "um", "measured transmission error, mean of all teeth, less the offset and divided by the scale",
+        label="transmission error",
+    )  # fmt: skip
+    computed: Array = shown("um", "computed transmission error at this angle")
+
+    @property
+    @shows("um", "measured transmission error less the computed one", label="residual")
+    def residual(self) -> Array:
+        """Shape (K,)."""
+        return self.measured - self.computed
+
+    @property
+    @shows("um", "standard error of measured_offset", name="measured_offset_standard_error")
+    def offset_error(self) -> float:
+        """Zero where it was not fitted."""
+        return self.errors["offset"]
+
+    @property
+    @shows("um", "root mean square of the residual", name="residual_rms")
+    def rms(self) -> float:
+        """Over one tooth pitch."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    @shows("", "correlation coefficient of measured and computed transmission error")
+    def correlation(self) -> float:
+        """Of Pearson."""
+        return super().correlation
+
+
+def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
+    """Orders of a trace and its curve over one tooth pitch.
+
+    Parameters
+    ----------
+    angle, te : ndarray, shape (N,)
+        Rotation of a shaft, counted on or from zero in each turn [rad], and transmission error [m].
+    teeth : int
+        Of the gear on this shaft.
+
+    Raises
+    ------
+    ShortTraceError
+    """
+    from scipy.interpolate import CubicSpline
+
+    turned, order = np.unique(np.unwrap(angle), return_index=True)
+    te = te[order]
+    pitch, length = _TURN / teeth, float(turned[-1] - turned[0])
+    samples = turned.size * pitch / length if length else 0.0
+    step = length / max(turned.size - 1, 1)  # the last sample stands for as much as each
+    if samples < FEWEST_A_TOOTH or length + step < FEWEST_PITCHES * pitch * (1.0 - _SLACK):
+        raise ShortTraceError(length / pitch, samples)
+    turns = math.floor((length + step) / _TURN + _SLACK)
+    cycles = teeth * turns if turns else math.floor((length + step) / pitch + _SLACK)
+    places = min(round(samples), _MOST_A_TOOTH)
+    # Evenly spaced and from a whole number of pitches on, so that phases count from angle zero.
+    first = math.ceil(turned[0] / pitch - _SLACK) if turned[0] + (cycles + 1) * pitch <= turned[-1] else None
+    start = turned[0] if first is None else first * pitch
+    even = start + pitch / places * np.arange(cycles * places)
+    values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
+    spectrum = _spectrum(values, cycles / teeth, start)
+    curve, spread, averaged = _over_pitch(values, places)
+    n = 1 + np.arange(min(_HARMONICS, places // 2 - 1))
+    at = n * cycles - 1  # the record has `cycles` tooth pitches: harmonic n of the mesh is its n-th multiple
+    at = at[at < spectrum.order.size]
+    return MeasuredError(
+        teeth, spectrum, np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size], spectrum.amplitude[at],
+        spectrum.phase[at],
+    )  # fmt: skip
+
+
+def _spectrum(values: Array, turns: float, start: float) -> OrderSpectrum:
+    found = np.fft.rfft(values - values.mean()) * 2.0 / values.size
+    if values.size % 2 == 0:
+        found[-1] *= 0.5
+    order = np.arange(1, found.size) / turns
+    return OrderSpectrum(turns, np.mod(order * start - np.angle(found[1:]), _TURN), order, np.abs(found[1:]))
+
+
+def _over_pitch(values: Array, places: int) -> tuple[Array, float, int]:
+    """Curve over one tooth pitch, from the first value on; spread between teeth, and how many there are of each."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    mean = (total[places:] - total[:-places]) / places  # of each run of one pitch
+    half = places // 2
+    slow = mean if places % 2 else 0.5 * (mean[1:] + mean[:-1])
+    quick = values[half : half + slow.size] - slow
+    whole = quick.size // places
+    by_tooth = np.roll(quick[: whole * places].reshape(whole, places), half, axis=1)
+    spread = float(by_tooth.std(axis=0).mean())
+    return by_tooth.mean(axis=0) + values.mean(), spread, whole
+
+
+def beside_computed(
+    found: MeasuredError, x: Array, te: Array, base_pitch: float, fit: Collection[Fitted]
+) -> FittedError:  # fmt: skip
+    """Lay a measured curve of the mesh over a computed one.
+
+    Parameters
+    ----------
+    found : MeasuredError
+    x, te : ndarray, shape (P,)
+        Computed transmission error over one base pitch [m].
+    base_pitch : float
+        [m].
+    fit : collection of {"offset", "scale", "shift"}
+        A shift is within half a tooth pitch to either side.
+    """
+    phase = _TURN * (x - x[0]) / base_pitch
+    inside = phase < _TURN
+    curve_angle, curve = np.append(phase[inside], _TURN), np.append(te[inside], te[0])
+    begin = _TURN * x[0] / base_pitch
+    # Zero of both angles is where a tooth pair is at the pitch point.
+    one = fit_curve(found.teeth * found.angle - begin, found.te, curve_angle, curve, fit)
+    turn = 1.0 / found.teeth
+    angle = np.mod((one.angle + begin) * turn, _TURN * turn)
+    order = np.argsort(angle, kind="stable")
+    return FittedError(
+        one.fit, {**one.errors, "shift": one.errors["shift"] * turn}, one.outside, one.offset, one.scale,
+        one.shift * turn, one.gain, one.gain_error, angle[order], one.measured[order], one.computed[order],
+    )  # fmt: skip

@@ -1,0 +1,191 @@
+"""Measured transmission errors as they are shown: what each trace says, the computed curve beside it, a verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fegear.base.arrays import Array
+from fegear.base.printed import percent
+from fegear.base.shown import shown, shows
+from fegear.contact.measured_error import FittedError, MeasuredError
+
+#: Standard errors that count as scatter.
+_CERTAIN = 2.0
+#: Correlation below which shapes differ.
+_ALIKE = 0.98
+#: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
+_DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
+
+
+@dataclass(frozen=True)
+class TraceBeside:
+    """One trace beside what is computed at its load.
+
+    Parameters
+    ----------
+    found : MeasuredError
+    fitted : FittedError
+    computed_amplitude : ndarray, shape (H,)
+        Of the mesh harmonics that both have [m].
+    computed_error : float or None
+        Estimated error of the computed peak-to-peak value [m].
+    load_tolerance : float
+    """
+
+    found: MeasuredError
+    fitted: FittedError
+    computed_amplitude: Array = shown("um", "amplitude computed")
+    computed_error: float | None = shown("um", "estimated error of computed_peak_to_peak")
+    torque: float = shown("N.m", "torque on the driver")
+    load: float = shown("N", "load along the line of action")
+    computed_peak_to_peak: float = shown("um", "peak-to-peak transmission error computed")
+    load_tolerance: float = 0.01
+
+    @property
+    @shows("", "harmonic of the tooth-mesh frequency")
+    def n(self) -> NDArray[np.int64]:
+        """Of both amplitudes, shape (H,)."""
+        return self.found.n[: self.computed_amplitude.size]
+
+    @property
+    @shows("um", "amplitude measured (not divided by the scale)")
+    def measured_amplitude(self) -> Array:
+        """Of the mesh harmonics, shape (H,) [m]."""
+        return self.found.amplitude[: self.computed_amplitude.size]
+
+    @property
+    @shows("um", "peak-to-peak value of the measured mesh curve, mean of all teeth")
+    def measured_peak_to_peak(self) -> float:
+        """[m]."""
+        return float(np.ptp(self.found.te))
+
+    @property
+    @shows("", "measured / computed peak-to-peak value")
+    def ratio(self) -> float:
+        """Infinite where nothing is computed."""
+        computed = self.computed_peak_to_peak
+        return self.measured_peak_to_peak / computed if computed else math.inf
+
+    @property
+    @shows("um", "standard deviation of the measured curve between teeth")
+    def spread(self) -> float:
+        """[m]."""
+        return self.found.spread
+
+    @property
+    @shows("", "tooth pitches averaged")
+    def pitches(self) -> int:
+        """Of the trace."""
+        return self.found.pitches
+
+    @property
+    @shows("", "revolutions of the shaft in the order spectrum")
+    def turns(self) -> float:
+        """Whole ones, or tooth pitches over the number of teeth."""
+        return self.found.spectrum.turns
+
+    @property
+    @shows("", "order per revolution of the shaft of the angle", label="order")
+    def drawn_order(self) -> Array:
+        """Up to some multiples of the mesh order."""
+        return self.found.spectrum.order[: self._drawn]
+
+    @property
+    @shows("um", "amplitude of the measured transmission error", label="amplitude")
+    def drawn_amplitude(self) -> Array:
+        """Of these orders [m]."""
+        return self.found.spectrum.amplitude[: self._drawn]
+
+    @property
+    def _drawn(self) -> int:
+        order = self.found.spectrum.order
+        return int(np.searchsorted(order, _DRAWN_ORDERS * self.found.teeth))
+
+    @property
+    @shows("", "largest order that is no multiple of the mesh order")
+    def largest_order(self) -> float | None:
+        """None where only mesh orders are resolved."""
+        order, amplitude = self.found.spectrum.order, self.found.spectrum.amplitude
+        other = np.abs(order / self.found.teeth - np.round(order / self.found.teeth)) > 1e-6
+        return float(order[other][amplitude[other].argmax()]) if other.any() else None
+
+    @property
+    @shows("um", "amplitude of largest_order")
+    def largest_amplitude(self) -> float | None:
+        """[m]."""
+        if (largest := self.largest_order) is None:
+            return None
+        spectrum = self.found.spectrum
+        return float(spectrum.amplitude[np.searchsorted(spectrum.order, largest - 1e-9)])
+
+    @property
+    def verdict(self) -> str:
+        """Measured against computed, a clause without a subject."""
+        fitted, computed = self.fitted, self.computed_peak_to_peak
+        if fitted.gain <= 0.0:
+            return "measured and computed curve go against each other; check positive, reverse and fit"
+        parts = {
+            "torque": self.load_tolerance, "computation": (self.computed_error or 0.0) / computed,
+            "scatter": _CERTAIN * fitted.gain_error,
+        }  # fmt: skip
+        together = math.hypot(*parts.values())
+        off = fitted.gain - 1.0
+        within = abs(off) <= together
+        said = (
+            f"measured transmission error is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed "
+            f"one, {'within' if within else 'beyond'} ±{percent(together)} ("
+            + ", ".join(f"{name} {percent(part)}" for name, part in parts.items()) + ")"
+        )  # fmt: skip
+        if fitted.correlation < _ALIKE:
+            said += f"; the curves differ in shape (correlation {fitted.correlation:.3f}, limit {_ALIKE:g}): check "
+            said += "relief, profile deviations and misalignment" + ("" if "shift" in fitted.fit else ", or fit shift")
+        elif not within:
+            said += "; check torque, relief and the unit of the trace"
+        return f"{said}; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
+
+
+@dataclass(frozen=True)
+class OverTorque:
+    """One mesh harmonic over the torques of the traces."""
+
+    n: int
+    torque: Array = shown("N.m", "torque on the driver")
+    measured: Array = shown("um", "amplitude of the mesh harmonic", label="amplitude")
+    computed: Array = shown("um", "amplitude computed", label="amplitude")
+
+
+@dataclass(frozen=True)
+class MeasuredErrorData:
+    """Traces of a pair by load, ascending."""
+
+    traces: Sequence[TraceBeside]
+    shaft: str
+
+    @property
+    def last(self) -> TraceBeside:
+        """Of the largest load."""
+        return self.traces[-1]
+
+    @property
+    def several(self) -> bool:
+        """Whether there are several torques."""
+        return len(self.traces) > 1
+
+    @cached_property
+    def over_torque(self) -> list[OverTorque]:
+        """First mesh harmonics against torque."""
+        count = min(_DRAWN_HARMONICS, *(one.n.size for one in self.traces))
+        torque = np.array([one.torque for one in self.traces])
+        return [
+            OverTorque(
+                n + 1, torque, np.array([one.measured_amplitude[n] for one in self.traces]),
+                np.array([one.computed_amplitude[n] for one in self.traces]),
+            )
+            for n in range(count)
+        ]  # fmt: skip

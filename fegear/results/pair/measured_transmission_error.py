@@ -1,0 +1,206 @@
+"""Stage ``measured-transmission-error``: traces of encoders beside the computed transmission error of their pair."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.case.built.encoders import Encoders, encoders_of, pair_of_encoders
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import ALL, Bundle, Chart, Family, Line, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Cell, Rows
+from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.results import forecasts
+from fegear.results.pair.measured_error_data import MeasuredErrorData, TraceBeside
+from fegear.results.pair.placed_gauge import comparison_values
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.built.encoders import ErrorTrace
+    from fegear.case.reading import Scene
+    from fegear.contact.error_over_pitch import ErrorOverPitch
+    from fegear.contact.measured_error import MeasuredError
+
+_DOTS = {"size": 3.0, "symbol": "circle"}
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return (Task("transmission-error", pair_of_encoders(scene, name)),)
+
+
+def _measured(trace: ErrorTrace, teeth: int) -> MeasuredError:
+    from fegear.contact.measured_error import FEWEST_A_TOOTH, FEWEST_PITCHES, ShortTraceError, measured_error
+
+    try:
+        return measured_error(trace.angle, trace.te, teeth)
+    except ShortTraceError as short:
+        if short.pitches < FEWEST_PITCHES:
+            rule = f"covers {short.pitches:.3g} tooth pitches, fewer than {FEWEST_PITCHES}"
+            raise InputError(
+                f"{trace.key}.file", f'"{trace.file}"', rule, "specify at least a turn, or check the unit of the angle"
+            ) from None
+        raise InputError(
+            f"{trace.key}.file", f'"{trace.file}"',
+            f"has {short.samples:.3g} samples per tooth pitch, fewer than {FEWEST_A_TOOTH}", "sample more often",
+        ) from None  # fmt: skip
+
+
+def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorData:
+    from fegear.contact.measured_error import beside_computed
+
+    found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
+    pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
+    relative = None if found.shift is None or not nominal else found.shift.peak_to_peak / nominal
+    traces = []
+    for trace in asked.traces:
+        at = min(range(len(found.loads)), key=lambda i: abs(found.loads[i] - trace.load))
+        measured = _measured(trace, abs(pair.gear(asked.member).teeth))
+        fitted = beside_computed(measured, found.x, found.te[:, at], pair.base_pitch, asked.fit)
+        amplitude: Array = found.series[at].amplitude[: measured.n.size]
+        size = float(found.te_peak_to_peak[at])
+        traces.append(
+            TraceBeside(
+                measured, fitted, amplitude, None if relative is None else relative * size,
+                trace.load * pair.driver.base_radius, trace.load, size, asked.load_tolerance,
+            )
+        )  # fmt: skip
+    return MeasuredErrorData(traces, asked.member)
+
+
+def _mesh_orders(seen: Seen) -> list[Mark]:
+    """Multiples of the number of teeth, the first with its word."""
+    one: TraceBeside = seen.one
+    teeth, last = one.found.teeth, float(one.drawn_order[-1])
+    count = int(last // teeth)
+    return [Mark("x", float(k * teeth), "mesh" if k == 1 else f"{k}") for k in range(1, count + 1)]
+
+
+_TORQUE = Cell("torque")
+_SHEET = Sheet(
+    tables=(
+        Rows(
+            "measured_te_summary_{name}", "Measured and computed transmission error of {name} for every torque",
+            (
+                "torque", "load", "measured_peak_to_peak", "computed_peak_to_peak", "ratio", "spread", "pitches",
+                "turns", "largest_order", "largest_amplitude", "fitted.offset", "fitted.scale", "fitted.shift",
+                "fitted.gain", "fitted.gain_error", "fitted.rms", "fitted.correlation",
+            ),
+            of="traces",
+        ),
+        Rows(
+            "measured_te_{name}", "Measured and computed transmission error of {name} over one tooth pitch",
+            (
+                _TORQUE, "fitted.angle", "fitted.measured", "fitted.computed", "fitted.residual",
+            ),
+            stacked="traces",
+        ),
+        Rows(
+            "measured_te_harmonics_{name}", "Measured and computed mesh harmonics of {name}",
+            (_TORQUE, "n", "measured_amplitude", "computed_amplitude"), stacked="traces",
+        ),
+        Rows(
+            "measured_te_orders_{name}", "Order spectrum of the measured transmission error of {name}",
+            (_TORQUE, "found.spectrum.order", "found.spectrum.amplitude"), stacked="traces",
+        ),
+    ),
+    values=(
+        Number("measured_peak_to_peak", of="last", meaning="peak to peak of the measured mesh curve at the largest "
+               "torque of the traces"),
+        Number("computed_peak_to_peak", "last.computed_error", of="last"),
+        Number("ratio", of="last", name="measured_to_computed"),
+        Number("spread", of="last", name="spread_between_teeth"),
+        Number("largest_order", exact, of="last", name="largest_other_order"),
+        Number("largest_amplitude", of="last", name="largest_other_amplitude"),
+        *comparison_values(at="last.fitted"),
+    ),
+    figures=(
+        Chart(
+            "measured_te_{name}", "Measured transmission error of {name}",
+            "{name}: measured transmission error (mean of all teeth, less slow parts, fitted offset, scale and shift) "
+            "and the computed one over one tooth pitch of the shaft, and the residual.",
+            (
+                Over(
+                    "fitted.angle",
+                    (
+                        Line("fitted.measured", "measured", "series:1", kind="points", look=_DOTS),
+                        Line("fitted.computed", "computed", look={"markers": False}),
+                    ),
+                    "fitted.measured",
+                ),
+                Over(
+                    "fitted.angle", (Line("fitted.residual", "measured less computed", "series:1", kind="points",
+                                          look=_DOTS),),
+                    marks=lambda _seen: (Mark("y", 0.0),),
+                ),
+            ),
+            views="traces", view="{one.torque:.4g}",
+        ),
+        Chart(
+            "measured_te_orders_{name}", "Orders of the measured transmission error of {name}",
+            "{name}: order spectrum of the measured transmission error over whole revolutions of the shaft "
+            "(amplitudes); dashed: multiples of the mesh order.",
+            (
+                Over("drawn_order", (Line("drawn_amplitude", kind="stems"),), marks=_mesh_orders),
+            ),
+            views="traces", view="{one.torque:.4g}",
+        ),
+        Chart(
+            "measured_te_harmonics_{name}", "Mesh harmonics of {name} over torque",
+            "{name}: amplitudes of the first mesh harmonics over torque, measured (circles) and computed (lines).",
+            (
+                Over(
+                    Axis("torque on the driver", "N.m"),
+                    (
+                        Bundle(
+                            Family("over_torque", "{one.n}", most=ALL),
+                            (
+                                Line("computed", "harmonic {one.n}, computed", x="torque", look={"markers": False}),
+                                Line("measured", "harmonic {one.n}, measured", x="torque", kind="points",
+                                     look={"symbol": "circle", "size": 7.0}),
+                            ),
+                        ),
+                    ),
+                ),
+            ),
+            when="several",
+        ),
+    ),
+    answer=Answer(
+        "Encoders {name} at {d.last.torque:.4g}: measured {v[measured_peak_to_peak]} peak to peak, computed "
+        "{v[computed_peak_to_peak]}.",
+        lambda seen: [f"Encoders {seen.name}: {seen.data.last.verdict}."],
+        "Encoders {name}: largest order that is none of the mesh: {v[largest_other_order]}, amplitude "
+        "{v[largest_other_amplitude]}.",
+        figure="measured_te_{name}",
+    ),
+    remarks=(
+        Remark(
+            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.verdict}.", each="traces",
+        ),
+    ),
+    sharper_by="",
+)  # fmt: skip
+
+
+def _check(scene: Scene, name: str) -> None:
+    encoders_of(scene, name)
+
+
+MEASURED_TRANSMISSION_ERROR = Stage(
+    subjects=lambda scene: tuple(scene.case.encoders),
+    every_load=True,
+    answers=("transmission error",),
+    needs=_needs,
+    inputs=encoders_of,
+    compute=_compute,
+    present=_SHEET.present,
+    check=_check,
+    cites=citing(Citation("mark", "static transmission error and its Fourier series", "1.1 to 1.32")),
+    forecast=lambda _scene, _name: forecasts.constant(0.02),
+)

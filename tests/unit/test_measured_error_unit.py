@@ -1,0 +1,214 @@
+"""Measured transmission errors: orders, the curve of the mesh, and a synthetic trace beside the computed curve."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.encoders import encoders_of
+from fegear.case.reading import build_scene
+from fegear.contact.measured_error import ShortTraceError, beside_computed, measured_error
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+
+TEETH, PITCH, TURN = 23, 9e-3, 2.0 * np.pi
+X = np.linspace(-2e-3, -2e-3 + PITCH, 181)
+
+
+def curve(x):
+    phase = TURN * np.asarray(x) / PITCH
+    return 1e-6 * (10.0 + np.cos(phase - 0.4) + 0.5 * np.sin(2.0 * phase) + 0.2 * np.cos(3.0 * phase))
+
+
+def trace(turns, a_tooth=46.7, start=0.3, shift=0.0, offset=0.0, scale=1.0, noise=0.0):
+    """Samples of a shaft that turns uniformly, with once and twice a turn besides."""
+    count = int(turns * TEETH * a_tooth)
+    angle = start + TURN * turns * np.arange(count) / count
+    te = offset + scale * curve((angle - shift) * TEETH * PITCH / TURN)
+    te = te + 8e-6 * np.cos(angle - 0.7) + 2e-6 * np.cos(2.0 * angle - 2.0)
+    return angle, te + noise * np.random.default_rng(1).normal(size=count)
+
+
+@pytest.mark.parametrize("wrapped", [False, True])
+def test_orders_of_a_trace_are_those_that_it_was_made_of(wrapped):
+    angle, te = trace(3.4)
+    found = measured_error(np.mod(angle, TURN) if wrapped else angle, te, TEETH)
+    spectrum = found.spectrum
+    assert spectrum.turns == 3.0
+    for order, amplitude, phase in ((1, 8e-6, 0.7), (2, 2e-6, 2.0), (23, 1e-6, 0.4), (46, 0.5e-6, 0.5 * np.pi)):
+        at = int(np.argmin(np.abs(spectrum.order - order)))
+        assert spectrum.order[at] == pytest.approx(order)
+        assert spectrum.amplitude[at] == pytest.approx(amplitude, rel=1e-4)
+        assert np.angle(np.exp(1j * (spectrum.phase[at] - phase))) == pytest.approx(0.0, abs=1e-3)
+    others = np.abs(spectrum.order[:, None] - [1, 2, 23, 46, 69]).min(axis=1) > 1e-6
+    assert spectrum.amplitude[others].max() < 1e-9
+    assert found.n[:3].tolist() == [1, 2, 3]
+    np.testing.assert_allclose(found.amplitude[:3], [1e-6, 0.5e-6, 0.2e-6], rtol=1e-3)
+    # Parseval: the mean square is that of all orders.
+    assert 0.5 * (spectrum.amplitude**2).sum() == pytest.approx(0.5 * (64 + 4 + 1 + 0.25 + 0.04) * 1e-12, rel=1e-3)
+
+
+def test_the_curve_of_the_mesh_has_nothing_of_slow_parts():
+    found = measured_error(*trace(2.0, a_tooth=40.0, start=0.0), TEETH)
+    expected = curve(found.angle * TEETH * PITCH / TURN)
+    np.testing.assert_allclose(found.te - found.te.mean(), expected - expected.mean(), atol=2e-8)
+    assert found.te.mean() == pytest.approx(10e-6, abs=1e-7)
+    assert found.spread < 0.1e-6  # what bends within a tooth pitch of once a turn
+    assert found.pitches == 45
+
+
+def test_a_part_of_a_turn_serves_too():
+    found = measured_error(*trace(0.4, start=1.0), TEETH)
+    assert found.spectrum.turns == pytest.approx(9.0 / TEETH)
+    np.testing.assert_allclose(found.spectrum.order[:9:1][0], TEETH / 9.0)
+    np.testing.assert_allclose(np.ptp(found.te), np.ptp(curve(X)), rtol=0.02)
+
+
+@pytest.mark.parametrize(("turns", "a_tooth"), [(0.1, 50.0), (2.0, 12.0)])
+def test_short_and_sparse_traces_are_refused(turns, a_tooth):
+    with pytest.raises(ShortTraceError):
+        measured_error(*trace(turns, a_tooth), TEETH)
+
+
+@pytest.mark.parametrize("fit", [("offset", "scale", "shift"), ("offset", "shift"), ("scale", "offset"), ("offset",)])
+def test_offset_scale_and_shift_are_recovered_within_their_errors(fit):
+    true = {
+        "offset": 7e-6 if "offset" in fit else 0.0, "scale": 1.12 if "scale" in fit else 1.0,
+        "shift": 0.05 if "shift" in fit else 0.0,
+    }  # fmt: skip
+    found = measured_error(*trace(5.2, noise=0.3e-6, **true), TEETH)
+    fitted = beside_computed(found, X, curve(X), PITCH, fit)
+    for name in fit:
+        error = fitted.errors[name]
+        assert error > 0.0
+        assert abs(getattr(fitted, name) - true[name]) < 4.0 * error + 2e-3 * abs(true[name])
+    assert fitted.correlation > 0.99
+    assert fitted.rms < 0.1e-6
+    # Angles are those of the shaft: the computed curve at them is that of the same position of the mesh.
+    np.testing.assert_allclose(fitted.computed, curve(fitted.angle * TEETH * PITCH / TURN), atol=2e-9)
+    assert fitted.angle.max() <= TURN / TEETH
+
+
+CASE = {
+    "results": ["measured-transmission-error"],
+    "gear": {
+        "a": {"teeth": 20, "module": "2 mm", "face_width": "10 mm", "profile_shift": 0.1},
+        "b": {"teeth": 31, "module": "2 mm", "face_width": "10 mm"},
+    },
+    "pair": {"p": {"driver": "a", "driven": "b", "torques": ["10 N*m", "20 N*m"]}},
+    "encoders": {"rig": {"traces": [{"file": "high.csv"}], "fit": ["offset", "scale", "shift"]}},
+    "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True},
+    "accuracy": {"tolerance": 1e-2},
+}
+_CACHE = SolutionCache()
+
+
+def ran(document, folder):
+    scene = build_scene(document, "case", folder)
+    return run_plan(scene, make_plan(scene, STAGES), cache=_CACHE)
+
+
+def changed(**encoders):
+    document = copy.deepcopy(CASE)
+    for key, value in encoders.items():
+        document["encoders"]["rig"][key] = value
+    return document
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory):
+    document = copy.deepcopy(CASE)
+    document["results"] = ["transmission-error"]
+    del document["encoders"]
+    return ran(document, tmp_path_factory.mktemp("computed")).outcomes[Task("transmission-error", "p")].data.found
+
+
+def written(folder, name, computed, at, shaft="driver", sign=1.0, unit=1e-6, head="te [um]", noise=0.05e-6):
+    """A trace of two turns: offset 3 um, scale 0.9, shift 0.04 rad, eccentricity, noise."""
+    pair = computed.pair
+    teeth = pair.gear(shaft).teeth
+    angle = TURN * 2.0 * np.arange(100 * teeth) / (100 * teeth)
+    x = (angle - 0.04) * teeth * pair.base_pitch / TURN
+    inside = computed.x < computed.x[0] + pair.base_pitch
+    te = np.interp(x, computed.x[inside], computed.te[inside, at], period=pair.base_pitch)
+    te = 3e-6 + 0.9 * te + 5e-6 * np.cos(angle) + noise * np.random.default_rng(2).normal(size=angle.size)
+    rows = zip(np.rad2deg(angle), sign * te / unit, strict=True)
+    (folder / name).write_text(f"angle [deg],{head}\n" + "".join(f"{a:.6f},{v:.8g}\n" for a, v in rows))
+
+
+def numbers(results, name="rig"):
+    found = results.outcomes[Task("measured-transmission-error", name)]
+    return found, {value.name.removeprefix(f"{name}."): value.si for value in found.values}
+
+
+def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
+    for name, at in (("low.csv", 0), ("high.csv", 1)):
+        written(tmp_path, name, computed, at)
+    traces = [{"file": "low.csv", "torque": "10 N*m"}, {"file": "high.csv", "torque": "20 N*m"}]
+    found, values = numbers(ran(changed(traces=traces), tmp_path))
+    assert values["measured_offset"] == pytest.approx(3e-6, abs=5.0 * values["measured_offset_standard_error"] + 2e-8)
+    assert values["measured_scale"] == pytest.approx(0.9, abs=5.0 * values["measured_scale_standard_error"] + 1e-3)
+    assert np.angle(np.exp(20j * (values["measured_shift"] - 0.04))) == pytest.approx(0.0, abs=0.01)
+    assert values["correlation"] > 0.999
+    assert values["measured_to_computed"] == pytest.approx(0.9, rel=0.02)
+    assert (values["largest_other_order"], values["largest_other_amplitude"]) == pytest.approx((1.0, 5e-6), rel=1e-2)
+    harmonics = next(one for one in found.tables if one.name == "measured_te_harmonics_rig")
+    columns = {column.name: column.si for column in harmonics.columns}
+    assert np.unique(columns["torque"].round(9)).tolist() == pytest.approx([10.0, 20.0])
+    first = columns["n"] == 1
+    np.testing.assert_allclose(columns["measured_amplitude"][first], 0.9 * columns["computed_amplitude"][first],
+                               rtol=0.01)  # fmt: skip
+    assert any("10 % below the computed one, beyond" in remark for remark in found.remarks)
+    assert {figure.name for figure in found.figures} >= {"measured_te_rig", "measured_te_orders_rig",
+                                                         "measured_te_harmonics_rig"}  # fmt: skip
+
+
+def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_path):
+    written(tmp_path, "high.csv", computed, 1, "driven")
+    _, plain = numbers(ran(changed(shaft="driven"), tmp_path))
+    radius = computed.pair.driven.base_radius
+    written(tmp_path, "high.csv", computed, 1, "driven", -1.0, radius * np.pi / 180.0 / 3600.0, "te [arcsec]")
+    _, other = numbers(ran(changed(shaft="driven", te_at="driven", positive="lead"), tmp_path))
+    for name in ("measured_offset", "measured_scale", "measured_shift", "correlation", "measured_peak_to_peak"):
+        assert other[name] == pytest.approx(plain[name], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("encoders", "rule"),
+    [
+        ({"traces": []}, "must not be empty"), ({"traces": [{}]}, "is required"),
+        ({"fit": ["scale", "scale"]}, "twice"),
+        ({"te_column": "angle"}, "is the column of the angle"), ({"te_column": "SG"}, "requires a column SG"),
+        ({"traces": [{"file": "none.csv"}]}, "file not found"), ({"pair": "q"}, "is not a pair"),
+        ({"traces": [{"file": "t.csv", "torque": "11 N*m"}]}, "is not a torque of pair p"),
+        ({"traces": [{"file": "t.csv"}, {"file": "t.csv"}]}, "one torque twice"),
+        ({"traces": [{"file": "t.csv"}, {"file": "t.csv", "torque": "20 N*m"}]}, "is that of another trace"),
+        ({"te_at": "driven"}, "is not an angle"), ({"te": "mm"}, "the case says mm"),
+        ({"load_tolerance": 2.0}, "less than or equal to 1"),
+    ],
+)  # fmt: skip
+def test_wrong_keys_are_one_sentence(encoders, rule, tmp_path):
+    (tmp_path / "t.csv").write_text("angle [deg],te [um]\n" + "".join(f"{a},{a % 7}\n" for a in range(400)))
+    with pytest.raises(InputError) as refused:
+        encoders_of(build_scene(changed(**{"traces": [{"file": "t.csv"}], **encoders}), "case", tmp_path), "rig")
+    assert rule in str(refused.value)
+    assert str(refused.value).startswith("encoders.rig")
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("lines", "rule"),
+    [
+        (range(30), "fewer than 3"), (range(0, 400, 9), "samples per tooth pitch"), ([5] * 400, "has only one angle"),
+    ],
+)  # fmt: skip
+def test_traces_that_say_too_little_are_refused(lines, rule, tmp_path):
+    (tmp_path / "high.csv").write_text("angle [deg],te [um]\n" + "".join(f"{a},{k % 7}\n" for k, a in enumerate(lines)))
+    with pytest.raises(InputError) as refused:
+        ran(changed(), tmp_path)
+    assert rule in str(refused.value)
+    assert "encoders.rig.traces[0].file" in str(refused.value)
