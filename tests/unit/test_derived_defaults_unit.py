@@ -150,6 +150,8 @@ ROWS = {
     "GaugePart.pair": (GAUGE, "gauge.g.pair", "I"),
     "GaugePart.member": (GAUGE, "gauge.g.member", "driver"),
     "GaugePart.tangent_angle": (GAUGE, "gauge.g.tangent_angle", "30 deg"),
+    "EncodersPart.pair": (
+        joined(shipped("measured_transmission_error"), {"accuracy": {"tolerance": 0.03}}), "encoders.rig.pair", "test"),
     "DesignPart.pair": (DESIGN, "design.pair", "I"),
     "DesignPart.load": (DESIGN, "design.load", "2 kN"),
     "DesignPart.length": (DESIGN, "design.length", lambda s: metres(s.pairs["I"].x_end - s.pairs["I"].x_start)),
@@ -304,7 +306,7 @@ NOT_WRITTEN = {
     "CompoundPlanetPart.body", "CompoundShaftPart.body",
     "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares",
     "CrackGrowthPart.step", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
-    "DesignPart.peak",
+    "DesignPart.peak", "ErrorTracePart.torque",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
     "FlankDesignPart.load", "FlankDesignPart.loads", "FlankDesignPart.pair", "FlankMapPart.over_face",
     "GearBodyPart.hub_width", "GearPlacePart.seat", "IsoPart.micropitting_material_factor",

@@ -97,8 +97,8 @@ class ReliefGrid:
         if count >= len(TIP_AMOUNTS) * _TIP_LENGTHS or not count:
             return self
         amounts = tuple(share / TIP_AMOUNTS[-1] * float(high[0]) for share in TIP_AMOUNTS)
-        lengths = tuple(sorted(set(np.geomspace(low[1], high[1], _TIP_LENGTHS).tolist())))
-        return ReliefGrid(amounts, lengths, (), (), (), (), ())
+        lengths = np.unique(np.clip(np.geomspace(low[1], high[1], _TIP_LENGTHS), low[1], high[1]))
+        return ReliefGrid(amounts, tuple(lengths.tolist()), (), (), (), (), ())
 
     def combinations(self, family: Family) -> Index:
         """Every combination as one choice of each of the family's groups, shape (C, groups)."""
