@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import PATH, InputError, shown
 from fegear.case.known_keys import keys_at, places_of
@@ -11,7 +11,7 @@ from fegear.case.nearest import nearest
 from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from pydantic import ValidationError
     from pydantic_core import ErrorDetails
@@ -41,7 +41,6 @@ _KINDS = {
     "dict_type": "must be a table",
     "model_type": "must be a table of keys and values",
     "finite_number": "must be finite",
-    "too_short": "must not be empty",
 }
 
 
@@ -88,8 +87,18 @@ def _sentence(error: ErrorDetails) -> InputError:
         return InputError(key, "(not given)", "is required")
     if kind == "literal_error":
         return InputError(key, _show(value), f"must be {context['expected']}", of_value(key, value))
+    if kind in ("too_short", "too_long"):
+        return InputError(key, _show(value), _entries(kind, context), of_value(key, value))
     rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
     return InputError(key, _show(value), rule[0].lower() + rule[1:], of_value(key, value))
+
+
+def _entries(kind: str, context: Mapping[str, Any]) -> str:
+    """How many entries a list must have."""
+    if kind == "too_long":
+        return f"must have at most {context['max_length']} entries"
+    least = context["min_length"]
+    return "must not be empty" if least == 1 else f"must have at least {least} entries"
 
 
 def _dotted(loc: list[str]) -> str:

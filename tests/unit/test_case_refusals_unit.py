@@ -114,7 +114,17 @@ def test_torque_becomes_a_load_along_the_line_of_action():
         ("accuracy.order=5", "accuracy.order", "less than or equal to 4"),
         ("effects.friction=1", "effects.friction", "true or false"),
         ("effects.hertz=non-linear", "effects.hertz", "'load-dependent'"),
-        ("results=[]", "results", "empty"),
+        ("results=[]", "results", "must not be empty"),
+        (
+            'gear.a.fillet={kind="points",x=["1 mm","2 mm"],y=["3 mm","4 mm"]}',
+            "gear.a.fillet.x",
+            "must have at least [3-9] entries",
+        ),
+        (
+            'gear.a.fillet={kind="arcs",radii=["1 mm","2 mm","3 mm"]}',
+            "gear.a.fillet.radii",
+            "must have at most 2 entries",
+        ),
     ],
 )
 def test_a_refusal_names_key_and_rule(override, key, words):
