@@ -1,6 +1,7 @@
 """The atlases that come with fegear: gears of steel cut by racks of ISO 53 at 20 degrees, in plane strain.
 
-`python -m fegear.atlas A` builds one again: some 600 gears, four minutes of one core; stopped, it goes on where it was.
+`python -m fegear.atlas A` builds one again: some 700 gears, five minutes of one core; stopped, it goes on where it was.
+Made like others fewer are enough: B from A and C by 326 gears.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ if TYPE_CHECKING:
 #: h_fP and rho_fP of the basic racks of ISO 53 [modules].
 RACKS = {"A": (1.25, 0.38), "B": (1.25, 0.3), "C": (1.25, 0.25), "D": (1.4, 0.39)}
 #: Those whose atlas comes with fegear.
-SHIPPED = ("A", "C")
+SHIPPED = ("A", "B", "C")
+#: Those that are made like others.
+_LIKE = {"B": ("A", "C")}
 #: Tooth numbers, profile shift (at the fewest teeth below the most), depth below the undercut line, tip height, bore.
 _FEWEST, _MANY, _MOST = 12, 150, 400
 _LOWEST, _HIGHEST, _AT_FEWEST, _AT_SPLIT = -0.3, 0.7, 0.45, 0.6
@@ -64,8 +67,8 @@ def built(
     rack: str, *, cache: SolutionCache | None = None, progress: Callable[[int, int], None] | None = None
 ) -> Atlas:
     """Build the atlas of a rack; see `build_atlas`."""
-    family = family_of(rack)
-    return build_atlas(family, domains_of(family), reach=_REACH, cache=cache, progress=progress)
+    family, like = family_of(rack), [shipped_atlas(one) for one in _LIKE.get(rack, ())]
+    return build_atlas(family, domains_of(family), reach=_REACH, cache=cache, progress=progress, like=like)
 
 
 @cache

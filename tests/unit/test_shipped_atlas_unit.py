@@ -39,13 +39,15 @@ def test_it_states_its_errors_and_is_found_by_gear():
     assert atlas_of(_gear(401, 0.0)) is None
     default = Tooth(31, BasicRack(1.0, 1.25, 0.25), 0.1)
     assert atlas_of(Gear(default, 3e-3, 1.5e-3 * default.root_radius)) is shipped_atlas("C")
+    between = Tooth(31, BasicRack(1.0, 1.25, 0.3), 0.1)
+    assert atlas_of(Gear(between, 3e-3, 1.5e-3 * between.root_radius)) is shipped_atlas("B")
     assert atlas_of(_gear(31, 0.1, plane="stress")) is None
     assert atlas.domains == tuple(domains_of(atlas.family))
     for rack in RACKS:
         for domain in domains_of(family_of(rack)):
             domain.check(family_of(rack))
     with pytest.raises(InputError, match=r"python -m fegear\.atlas"):
-        shipped_atlas("B")
+        shipped_atlas("D")
     with pytest.raises(InputError, match="must be one of A, B, C, D"):
         family_of("E")
     assert main(["E"]) == 2
