@@ -108,6 +108,7 @@ RUNS = {
     "measured_flanks": ("measured_flanks", {"accuracy.tolerance": 0.2}),
     "mesh_by_keys": ("small/mesh_by_keys", {}),
     "neighbours_in_train": ("small/neighbours_in_train", {}),
+    "odd_planet": ("small/odd_planet", {}),
     "own_mesh": ("own_mesh", COARSE),
     "pinion_and_wheel": ("pinion_and_wheel", COARSE),
     "planet_and_ring": ("planet_and_ring", COARSE),
