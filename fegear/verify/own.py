@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,29 @@ from fegear.verify.row import Compared, Rows, near
 
 ROWS = Rows()
 E, NU = 206e9, 0.3
+
+
+@dataclass(frozen=True)
+class StiffeningHalf:
+    """Half of a double helical pair whose approach is gap + (W / a)^n."""
+
+    a: float
+    n: float
+    gap: float
+
+    @property
+    def touch(self) -> Array:
+        """Approach at which it first touches [m]."""
+        return np.array([[self.gap]])
+
+    def under(self, load: Array) -> tuple[Array, Array]:
+        """Approach [m] and stiffness [N/m] under loads [N]."""
+        zeta = (load / self.a) ** self.n
+        return self.gap + zeta, load / (self.n * zeta)
+
+    def force(self, zeta: float) -> float:
+        """Load at an approach [N]."""
+        return self.a * max(zeta - self.gap, 0.0) ** (1.0 / self.n)
 
 
 # ---- geometry ---------------------------------------------------------------------------------------------------
@@ -208,6 +232,41 @@ def face_load_of_springs() -> Iterator[Compared]:
 
         zeta = brentq(lambda at, load=load: load(at).mean() - specific_load, 0.0, gap + 1.0)
         yield from near(face_load_factor(gap, stiffness, specific_load), load(zeta).max() / specific_load, 1e-4)
+
+
+@ROWS.add(
+    "load sharing of double helical halves", "own", "the floating member's axial position searched for, not the share"
+)
+def double_helical_halves() -> Iterator[Compared]:
+    """Share, transmission error and position of 40 pairs of stiffening halves: free, with play, located."""
+    from scipy.optimize import brentq
+
+    from fegear.contact.double_helical.balance import AxialSeat, balance
+
+    rng = np.random.default_rng(52)
+    for number in range(40):
+        halves = [StiffeningHalf(rng.uniform(1e8, 1e9), rng.uniform(0.7, 1.0), rng.uniform(0, 1e-5)) for _ in range(2)]
+        twist = (rng.uniform(0.2, 0.6), -rng.uniform(0.2, 0.6))
+        room = (0.0, 1e-6, 1e-2)[number % 3]
+        seat, load = AxialSeat(twist, rng.uniform(-1e-5, 1e-5), room, rng.uniform(-50.0, 50.0)), 4000.0
+
+        def at(q: float, halves: Any = halves, twist: Any = twist, load: float = load) -> tuple[float, float]:
+            def forces(zeta: float) -> list[float]:
+                return [half.force(zeta + t * q) for half, t in zip(halves, twist, strict=True)]
+
+            zeta = brentq(lambda one: sum(forces(one)) - load, -1e-2, 1.0, xtol=1e-18, rtol=1e-14)
+            return zeta, forces(zeta)[0]
+
+        def push(q: float, at: Any = at, seat: Any = seat, twist: Any = twist, load: float = load) -> float:
+            first = at(q)[1]
+            return float(first * twist[0] + (load - first) * twist[1] - seat.force)
+
+        low, high = seat.offset - room, seat.offset + room
+        q = low if push(low) >= 0.0 else high if push(high) <= 0.0 else brentq(push, low, high, xtol=1e-18, rtol=1e-14)
+        found, (zeta, first) = balance(halves[0], halves[1], load, seat), at(q)
+        yield from near(found.share.item(), first / load, 1e-7, scale=1.0)
+        yield from near(found.approach.item(), zeta, 1e-8)
+        yield from near(found.position.item(), q, 1e-6, scale=1e-5)
 
 
 # ---- tooth beams ------------------------------------------------------------------------------------------------

@@ -361,3 +361,14 @@ def test_a_hundred_mutations_of_the_keys_are_refused_in_one_sentence_or_taken():
             assert "\n" not in said, double
             assert len(said) < 400, double
     assert 0 < taken < 60
+
+
+def test_rexs_gets_one_half_with_its_torque_and_says_so():
+    from fegear.exchange.rexs.written_gearbox import model_text
+
+    scene = scene_of(case())
+    text, remarks = model_text(scene, "2026-01-01")
+    said = "only one half (end I) of the double helical pair written to REXS, with half of the torque."
+    assert f"Pair I: {said}" in remarks
+    torque = 3000.0 * scene.pairs["I"].driver.base_radius
+    assert f"{torque:.6g}"[:6] in text

@@ -181,6 +181,10 @@ def _stage(
     placed = part.driver in standing and part.driven in standing
     left_out(written, f"Pair {name}", part, _PAIR | ({"axial_offset"} if placed else set()))
     left_out(written, f"Pair {name}, operation", part.operation, _OPERATION)
+    if part.double_helical is not None:
+        written.remarks.append(
+            f"Pair {name}: only one half (end I) of the double helical pair written to REXS, with half of the torque."
+        )
     pair = scene.pairs[name]
     stage = written.part("cylindrical_stage", name).say("length", center_distance=pair.centre_distance)
     written.relate("assembly", assembly=unit, part=stage)
