@@ -134,7 +134,7 @@ def test_of_a_neighbours_deflection_more_of_the_order_counts_where_edges_are_lon
     for patch in (0.18, 0.25, 0.36):
         found = estimate([0.1] * 5, {})
         shares.append(Estimate(found.fine, found.coarse, patch, 1.4 * patch)._neighbour_share)
-    assert shares[0] == shares[1] == 0.15
+    assert shares[0] == shares[1] == 0.3
     assert 0.33 < shares[2] < 0.4
 
 

@@ -23,11 +23,14 @@ _SHARE = {2: 0.1, 3: 0.25, 4: 1.3}
 #: The fewer edges a pressure covers, the farther the lower order lags behind the higher one: of fourth order the part
 #: falls with this power of the number of edges below the wider half-width where that is smaller than this number.
 _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
-#: Neighbours err by the width of the pressures above all, which both orders share: this times what half the width
-#: changes, and a part of what elements one order lower do. Of fourth order that part is for a half-width of so much,
-#: and grows with this power of wider ones, which go with the root of the edges' length: long edges bend a thin rim.
-_WIDTH_SHARE, _NEIGHBOUR_SHARE = 2.0, {2: 0.5, 3: 0.5, 4: 0.15}
-_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 2.5
+#: Neighbours err by the width of the pressures, which both orders share: this times what pressures half as wide change,
+#: those that are narrowed beside the flank's ends, too; and by a part of what elements one order lower do. Of fourth
+#: order that part is for a half-width of so much, and grows with this power of wider ones, which go with the root of
+#: the edges' length.
+_WIDTH_SHARE, _NEIGHBOUR_SHARE = 1.5, {2: 0.5, 3: 0.5, 4: 0.3}
+_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 0.6
+#: Of what all teeth have in common, as a gear turns as a whole, that part is, and grows so.
+_COMMON_SHARE, _COMMON_POWER = {2: 0.5, 3: 0.5, 4: 0.15}, 2.5
 #: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
 #: number over the number of edges that the fillet would have if all were as long as along most of it (those that are
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
@@ -63,8 +66,10 @@ _SCATTERS = 3.0
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
-#: Of neighbours, whose errors by the width of the pressures grow steadily toward the flank's ends.
-_USUAL_NEIGHBOUR = 0.6
+#: Of neighbours, whose errors by the width of the pressures are local: of fourth order for that half-width, more by
+#: this power of wider ones up to so much, for long edges bend a thin rim, and what that moves passes through zero
+#: between two solutions. Of lower orders the last.
+_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR = 0.2, 3.8, 0.8
 #: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
 #: whole the tension of a tooth may pass through zero.
 _LEAST_STRESS = 0.1
@@ -141,7 +146,8 @@ class Estimate:
     @cached_property
     def common_errors(self) -> tuple[float, float]:
         """What of the errors of c_0, and of neighbours, all teeth have in common: the gear turns as a whole."""
-        return self._self_share * abs(self._turned), self._neighbour_share * abs(self._turned)
+        share = self._for_width(_COMMON_SHARE[self.fine.flank.order], _COMMON_POWER)
+        return self._self_share * abs(self._turned), share * abs(self._turned)
 
     @cached_property
     def _turned(self) -> float:
@@ -201,7 +207,7 @@ class Estimate:
 
     def _neighbour_difference(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         value = self.fine.neighbour(k, p, q, self.patch)
-        of_width = np.abs(value - self.fine.neighbour(k, p, q, 0.5 * self.patch))
+        of_width = np.abs(value - self.fine.neighbour(k, p, q, self.patch, 0.5))
         of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch) - self._turned)
         return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order + self._of_edges(k, p, q)
 
@@ -216,10 +222,11 @@ class Estimate:
 
     @property
     def _neighbour_share(self) -> float:
-        share = _NEIGHBOUR_SHARE[self.fine.flank.order]
-        if self.fine.flank.order < 4:
-            return share
-        return share * max(self.patch / _NEIGHBOUR_WIDTH, 1.0) ** _NEIGHBOUR_POWER
+        return self._for_width(_NEIGHBOUR_SHARE[self.fine.flank.order], _NEIGHBOUR_POWER)
+
+    def _for_width(self, share: float, power: float) -> float:
+        """A share, more of fourth order where pressures are wide."""
+        return share if self.fine.flank.order < 4 else share * max(self.patch / _NEIGHBOUR_WIDTH, 1.0) ** power
 
     def _neighbour_at_samples(self, k: int) -> Array:
         if k not in self._neighbours:
@@ -228,7 +235,10 @@ class Estimate:
 
     def _neighbour_estimate(self, k: int, difference: Array) -> Array:
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        return np.asarray(np.maximum(difference, _USUAL_NEIGHBOUR * usual)) + self.common_errors[1]
+        least = _MOST_USUAL_NEIGHBOUR
+        if self.fine.flank.order == 4:
+            least = min(self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), least)
+        return np.asarray(np.maximum(difference, least * usual)) + self.common_errors[1]
 
     def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         value, place = self.fine.largest_root_stress(k, side, radius, half_width)

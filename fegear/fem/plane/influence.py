@@ -151,29 +151,31 @@ class Influence:
             arc = np.maximum(arc, low + width)
         return arc
 
-    def remote(self, radius: ArrayLike, patch: float) -> Array:
+    def remote(self, radius: ArrayLike, patch: float, share: float = 1.0) -> Array:
         """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution.
 
-        The last ones are kept: both neighbours are asked for at the same radii.
+        The last ones are kept: both neighbours are asked for at the same radii. With a share their pressures are so
+        much narrower, beside the flank's ends as well.
         """
-        key = np.asarray(radius, dtype=float).tobytes(), patch
+        key = np.asarray(radius, dtype=float).tobytes(), patch, share
         kept: tuple[object, Array] | None = self._last.get("remote")
         if kept is not None and kept[0] == key:
             return kept[1]
-        found = self._remote_at(np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float))), patch)
+        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
+        found = self._remote_at(arc, patch, share)
         found.flags.writeable = False
         self._last["remote"] = key, found
         return found
 
-    def _remote_at(self, arc: Array, patch: float) -> Array:
+    def _remote_at(self, arc: Array, patch: float, share: float = 1.0) -> Array:
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
         # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
-        wide = np.maximum(np.minimum(patch, room), POINT)
+        wide = np.maximum(share * np.minimum(patch, room), POINT)
         narrow = np.maximum(_NARROWER * wide, 0.5 * POINT)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
-        share = -(narrow**2) / (wide**2 - narrow**2)
-        return np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
+        part = -(narrow**2) / (wide**2 - narrow**2)
+        return np.asarray(part * loads[:, : arc.size] + (1.0 - part) * loads[:, arc.size :])
 
     def fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
@@ -341,12 +343,13 @@ class Influence:
         loads = self.flank.patches(arc, width)
         return np.asarray(np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)) + 0.25 * self.log_slope
 
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float, share: float = 1.0) -> Array:
         """c_k(p, q): deflection at p of tooth k under a unit line load at q of tooth 0, shape (P, Q) [1/E].
 
-        Weighted with the pressure of a contact at p, so that c_k(p, q) = c_-k(q, p) to round-off.
+        Weighted with the pressure of a contact at p, so that c_k(p, q) = c_-k(q, p) to round-off. With a share by
+        pressures so much narrower.
         """
-        return self.remote(radius_p, patch).T @ self.compliance[k] @ self.remote(radius_q, patch)
+        return self.remote(radius_p, patch, share).T @ self.compliance[k] @ self.remote(radius_q, patch, share)
 
     def fillet_stress(
         self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
