@@ -61,6 +61,10 @@ def sized(asked: dict, *, cache: SolutionCache | None = None, executor: Executor
     return results, tables
 
 
+def all_notes(results):
+    return [note for outcome in results.outcomes.values() for note in outcome.remarks]
+
+
 def by_plain_loops(asked: dict) -> tuple[int, dict[tuple, tuple[float, ...]]]:
     """All variants one by one, through the case of each: how many there are, and the costs of those that live."""
     limits, enumerated, feasible = SizingLimits(), 0, {}
@@ -208,6 +212,9 @@ def test_a_present_design_that_interferes_is_placed_with_its_reasons():
     results, tables = sized(asked)
     (said,) = [sentence for sentence in results.answer.sentences if "Present design (23/58 teeth" in sentence]
     assert "breaks interference" in said
+    (said,) = [str(note) for note in all_notes(results) if "in place of 112 mm" in note]
+    assert said.startswith("Present design: centre distance 112.00")
+    assert 112e-3 < tables["present_design"]["centre_distance"][0] < 112.01e-3
     placed = tables["placed_design"]
     assert list(placed["criterion"]) == asked["criteria"]
     assert (placed["better"] > 0).any()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming
 from fegear.case.built.rated_pair import pair_to_rate
 from fegear.case.reading import build_scene
 from fegear.design.sizing.limits import SizingLimits
@@ -27,6 +28,7 @@ from fegear.results.sizing.variant_case import GEARS, OF_GEARS, OF_PAIR, PAIR, c
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.base.notes import Note
     from fegear.case.reading import Scene
     from fegear.case.sizing import PresentPart, SizingPart
 
@@ -126,6 +128,21 @@ def _of_sizing(key: str) -> str:
     return key
 
 
+def said_of_present(part: SizingPart) -> tuple[Note, ...]:
+    """Where the profile shifts of the present design want more room than the centre distance of the requirement."""
+    if part.present is None or part.distances is None or part.distances[0] < part.distances[1]:
+        return ()
+    wanted, distance = float(present_pair(part, part.present).centre_distance[0]), part.distances[0]
+    if wanted <= distance * (1.0 + 1e-9):
+        return ()
+    return (
+        assuming(
+            f"Present design: centre distance {wanted * 1e3:.7g} mm in place of {distance * 1e3:.7g} mm, without "
+            "backlash at its profile shifts."
+        ),
+    )
+
+
 def present_pair(part: SizingPart, present: PresentPart) -> ManyGearPairs:
     """The present design as an array of one."""
     alpha, beta, z = present.pressure_angle, present.helix_angle, present.teeth
@@ -133,11 +150,10 @@ def present_pair(part: SizingPart, present: PresentPart) -> ManyGearPairs:
     pitch = 0.5 * present.normal_module * sum(z) / math.cos(beta)
     total = sum(present.profile_shift)
     space = space_of(part)
-    if space.fixed and space.distances is not None:
-        distance = space.distances[0]
-    else:
-        value = float(inv(transverse)) + 2.0 * total * math.tan(alpha) / sum(z)
-        distance = pitch * math.cos(transverse) / math.cos(float(pressure_angle_of_inv(max(value, 1e-12))))
+    value = float(inv(transverse)) + 2.0 * total * math.tan(alpha) / sum(z)
+    distance = pitch * math.cos(transverse) / math.cos(float(pressure_angle_of_inv(max(value, 1e-12))))
+    if space.fixed and space.distances is not None:  # shifts that were rounded up leave no backlash there
+        distance = max(space.distances[0], distance)
     moved = np.full((2, 1), min((distance - pitch) / present.normal_module - total, 0.0) if part.shorten_tips else 0.0)
     if present.tip_diameter is not None:
         for i, tip in enumerate(present.tip_diameter):

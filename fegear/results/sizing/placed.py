@@ -18,10 +18,13 @@ from fegear.results.sizing.sizing_data import Placed, PresentPlaced, SizedVarian
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.design.sizing.funnel import Lives
+    from fegear.design.sizing.limits import SizingLimits
     from fegear.results.sizing.sizing_inputs import SizingInputs
 
 #: Significant digits in which criteria differ when variants are put in order: ties are decided by the rule.
 _DIGITS_OF_TE, _DIGITS = 2, 3
+#: By how much the centre distance of a present design may miss its range.
+_ROUNDED = 2e-4
 #: Units in which criteria are read, and their size in SI.
 _MICROMETRES, _MILLIMETRES = ("um", 1e-6), ("mm", 1e-3)
 UNITS = {
@@ -58,6 +61,14 @@ def with_shown(known: Array, chosen: Sequence[SizedVariant], lives: Lives) -> Ar
     return filled
 
 
+def _of_rounded_shifts(limits: SizingLimits) -> SizingLimits:
+    """Limits for a design whose profile shifts are those of a drawing, rounded: its centre distance may be as well."""
+    if limits.distances is None:
+        return limits
+    low, high = limits.distances
+    return replace(limits, distances=(low * (1.0 - _ROUNDED), high * (1.0 + _ROUNDED)))
+
+
 def placed_present(
     asked: SizingInputs, own: SizedVariant, chosen: Sequence[SizedVariant], lives: Lives, known: Array
 ) -> PresentPlaced:
@@ -72,7 +83,7 @@ def placed_present(
     pairs = present_pair(asked.part, asked.part.present)  # type: ignore[arg-type]
     with np.errstate(invalid="ignore", divide="ignore"):
         rating, margin = reasons_of_rating(pairs, asked.duty)
-        found = (*broken(pairs, asked.limits), *rating)
+        found = (*broken(pairs, _of_rounded_shifts(asked.limits)), *rating)
         by_formulas = costs_of(asked.by_formulas, pairs, margin, asked.duty.material.density)[0]
     off = abs(own.teeth_2 / own.teeth_1 / asked.part.ratio - 1.0) > asked.part.ratio_tolerance + 1e-9
     reasons = (*(("ratio",) if off else ()), *(words for words, mask in found if mask[0]))

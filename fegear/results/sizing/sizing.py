@@ -26,7 +26,15 @@ from fegear.design.sizing.space import variant_of
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.sizing.basis import duty_of, limits_of, present_pair, requirement_of, sizing_of, space_of
+from fegear.results.sizing.basis import (
+    duty_of,
+    limits_of,
+    present_pair,
+    requirement_of,
+    said_of_present,
+    sizing_of,
+    space_of,
+)
 from fegear.results.sizing.by_fe import FromFE, by_finite_elements
 from fegear.results.sizing.estimated import Estimated, estimated, of_one, shown_rows
 from fegear.results.sizing.placed import in_order, placed_present, with_shown
@@ -56,6 +64,7 @@ def _inputs(scene: Scene, _subject: str) -> SizingInputs:
     asked = requirement_of(part)
     duty, said = duty_of(part, asked, scene.folder)
     limits, space = limits_of(part, duty.material.density), space_of(part)
+    said = (*said_of_present(part), *said)
     if BY_FE & set(part.criteria) and absent("motion") and may_hold(space, duty.material.poisson_ratio):
         said = (neglecting("Sizing: atlas of solved gears not used (pip install 'fegear[motion]')."), *said)
     return SizingInputs(

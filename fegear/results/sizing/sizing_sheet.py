@@ -149,7 +149,9 @@ def _failed(seen: Seen) -> tuple[Note, ...]:
     if not failed:
         return ()
     number, reason = failed[0]
-    return (failing(f"{len(failed)} variants have no transmission error by FE, the first is {number}: {reason}"),)
+    first = f"variant {number}" if number else "present design"
+    more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
+    return (failing(f"No transmission error by FE for {first}{more}: {reason}"),)
 
 
 def _unseen(seen: Seen) -> tuple[Note, ...]:
