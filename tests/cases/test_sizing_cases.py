@@ -379,11 +379,18 @@ def test_relief_is_refused_where_no_atlas_contains_a_variant():
 
 
 @pytest.mark.long
-def test_two_processes_find_the_same_table():
-    asked = {**FIXED, "criteria": ["transmission-error", "mass"], "screened": 4, "verified": 1}
-    tables = [sized(asked, executor=one)[1]["sizing"] for one in (Executor(here=True), Executor(workers=2))]
-    for name, column in tables[0].items():
-        assert np.array_equal(column, tables[1][name], equal_nan=column.dtype.kind == "f")
+def test_workers_here_in_processes_and_on_a_cluster_find_the_same_table(monkeypatch, scheduler):
+    import fegear.results.sizing.by_atlas as by_atlas
+
+    monkeypatch.setattr(by_atlas, "_PART", 2)
+    monkeypatch.setattr(by_atlas, "_RELIEVED", 1)
+    executors = (Executor(here=True), Executor(workers=1), Executor(workers=2), Executor(scheduler))
+    first, *others = [sized({**RELIEVED, "verified": 2}, executor=one)[1] for one in executors]
+    for other in others:
+        assert other.keys() == first.keys()
+        for table, columns in first.items():
+            for name, column in columns.items():
+                assert np.array_equal(column, other[table][name], equal_nan=column.dtype.kind == "f")
 
 
 def test_ratings_of_variants_are_those_of_their_cases_under_a_spectrum_and_on_a_shaft():
