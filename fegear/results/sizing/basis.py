@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.sizing import PresentPart, SizingPart
 
+#: By how much flanks without backlash may overlap, as a share of the centre distance.
+_NO_ROOM = 1e-6
 #: The pair that stands for all variants: teeth of its pinion, module, width [m].
 _TEETH, _MODULE, _WIDTH = 25, 3e-3, 30e-3
 
@@ -133,7 +135,7 @@ def said_of_present(part: SizingPart) -> tuple[Note, ...]:
     if part.present is None or part.distances is None or part.distances[0] < part.distances[1]:
         return ()
     wanted, distance = float(present_pair(part, part.present).centre_distance[0]), part.distances[0]
-    if wanted <= distance * (1.0 + 1e-9):
+    if wanted <= distance:
         return ()
     return (
         assuming(
@@ -152,8 +154,8 @@ def present_pair(part: SizingPart, present: PresentPart) -> ManyGearPairs:
     space = space_of(part)
     value = float(inv(transverse)) + 2.0 * total * math.tan(alpha) / sum(z)
     distance = pitch * math.cos(transverse) / math.cos(float(pressure_angle_of_inv(max(value, 1e-12))))
-    if space.fixed and space.distances is not None:  # shifts that were rounded up leave no backlash there
-        distance = max(space.distances[0], distance)
+    if space.fixed and space.distances is not None and distance <= space.distances[0] * (1.0 + _NO_ROOM):
+        distance = space.distances[0]  # else shifts that were rounded up leave no backlash there
     moved = np.full((2, 1), min((distance - pitch) / present.normal_module - total, 0.0) if part.shorten_tips else 0.0)
     if present.tip_diameter is not None:
         for i, tip in enumerate(present.tip_diameter):

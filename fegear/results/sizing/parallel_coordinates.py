@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 
 #: Lines of a group that are drawn at most, evenly chosen.
 _MOST = 60
-#: Criteria and what makes a variant: attribute, words (in lines), unit, size of the unit in SI.
+#: Criteria and what makes a variant: attribute, words, unit, size of the unit in SI.
 _CRITERIA = {
-    "transmission-error": ("te", "transm.\nerror", "µm", 1e-6),
-    "relieved-transmission-error": ("te_relieved", "transm. error,\nrelieved", "µm", 1e-6),
-    "root-stress": ("root_stress", "root\nstress", "MPa", 1e6),
+    "transmission-error": ("te", "TE", "µm", 1e-6),
+    "relieved-transmission-error": ("te_relieved", "TE relieved", "µm", 1e-6),
+    "root-stress": ("root_stress", "root stress", "MPa", 1e6),
     "mass": ("mass", "mass", "kg", 1.0),
-    "safety": ("margin", "load\nmargin", "", 1.0),
-    "loss": ("loss_factor", "loss\nfactor", "", 1.0),
-    "sliding": ("sliding", "specific\nsliding", "", 1.0),
-    "contact-ratio": ("contact_ratio", "contact\nratio", "", 1.0),
-    "centre-distance": ("centre_distance", "centre\ndistance", "mm", 1e-3),
+    "safety": ("margin", "load margin", "", 1.0),
+    "loss": ("loss_factor", "loss factor", "", 1.0),
+    "sliding": ("sliding", "sliding", "", 1.0),
+    "contact-ratio": ("contact_ratio", "contact ratio", "", 1.0),
+    "centre-distance": ("centre_distance", "distance", "mm", 1e-3),
 }
 _SIZES = (
     ("module", "module", "mm", 1e-3),
     ("teeth_1", "z_1", "", 1.0),
-    ("helix_angle", "helix\nangle", "°", np.pi / 180.0),
+    ("helix_angle", "helix", "°", np.pi / 180.0),
     ("shift_1", "x_1", "", 1.0),
-    ("face_width", "face\nwidth", "mm", 1e-3),
+    ("face_width", "width", "mm", 1e-3),
 )
 
 
@@ -87,12 +87,13 @@ def parallel_coordinates(seen: Seen) -> Iterator[Figure]:
             )
     items.sort(key=lambda item: ("compared", "Pareto front", "present design", "best").index(item.name))
     ticks = tuple(
-        (float(k), f"{words}\n{figures(low)} to\n{figures(high)} {unit}".rstrip())
+        (float(k), f"{words}{unit and ', '}{unit}\n{figures(low)} to\n{figures(high)}")
         for k, (_, words, unit, _, low, high) in enumerate(axes)
     )
     yield Figure(
         "sizing_parallel", "Variants over their criteria and sizes",
-        f"Every line is a variant; each quantity from its minimum (0) to its maximum (1). At most {_MOST} lines of "
-        "each kind, evenly chosen. In the report, hover over a line for the variant.",
+        "Every line is a variant; each quantity from its minimum (0) to its maximum (1); TE is the peak-to-peak "
+        f"transmission error. At most {_MOST} lines of each kind, evenly chosen. In the report, hover over a line for "
+        "the variant.",
         (Panel(Axis(ticks=ticks), Axis("share of the range", limits=(-0.03, 1.03)), tuple(items)),),
     )  # fmt: skip
