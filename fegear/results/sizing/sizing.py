@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.atlas.shipped import SHIPPED
 from fegear.base.errors import InputError
 from fegear.base.extras import absent
 from fegear.base.notes import neglecting
@@ -89,7 +90,7 @@ def _check(scene: Scene, _subject: str) -> None:
     if RELIEVED in part.criteria and (any(part.chosen_helix_angles) or _inputs(scene, "").atlas is None):
         raise InputError(
             "sizing.criteria", f'"{RELIEVED}"',
-            "requires spur gears of steel by a rack with an atlas (20 deg, tip radius 0.38 or 0.25), and numba",
+            f"requires spur gears of steel, 20 deg, by a rack with an atlas (ISO 53 {', '.join(SHIPPED)}), and numba",
             f'set criteria = ["{BARE}", ...] and design the relief of a variant by fegear apply --variant',
         )  # fmt: skip
 
