@@ -24,7 +24,7 @@ from fegear.design.flanks.trials import FlankTrials
 from fegear.design.flanks.valleys import deepest_valleys, keeps
 
 #: Candidates loaded exactly, at least and at most; those from which descents start; coarse panels over the face.
-_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 24, 5
+_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 60, 5
 
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05

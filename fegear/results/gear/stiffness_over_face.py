@@ -21,6 +21,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure, SolidMeshField
 from fegear.engine.figure.items import HeatMap, Skin
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
@@ -360,6 +361,12 @@ _SHEET = Sheet(
         ),
         _missed,
         lambda seen: seen.asked.assumed,
+    ),
+    answer=Answer(
+        "Gear {name}, force on one band of the flank: self-compliance {v[smallest_band_c_self]} to "
+        "{v[largest_band_c_self]}.",
+        "Gear {name}: root stress, tension side, at most {v[largest_band_root_tension]} of force on one band.",
+        figure="flank_{name}",
     ),
 )  # fmt: skip
 

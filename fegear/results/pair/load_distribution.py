@@ -16,6 +16,7 @@ from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.loaded_teeth import LoadHistory
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import LOADS, Chart, Family, Line, Map, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -296,6 +297,14 @@ _SHEET = Sheet(
     figures=(*_FIGURES, _in_space),
     remarks=(_remarks,),
     settings={"equilibrium": "equilibrium"},
+    answer=Answer(
+        "Pair {name}: K_Hβ {v[K_Hbeta]}, maximum line load {v[largest_line_load]}.",
+        "Pair {name}: maximum Hertzian pressure {v[largest_hertz_pressure]}.",
+        "Pair {name}: transmission error {v[te_peak_to_peak]} peak to peak, mean {v[te_mean]}.",
+        figure="load_over_face_{name}",
+        rank=lambda seen: -seen.data.pair.stated.face_load_factor[seen.nominal],
+        among="the largest of {count} pairs",
+    ),
 )
 
 
