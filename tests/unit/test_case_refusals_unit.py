@@ -118,12 +118,12 @@ def test_torque_becomes_a_load_along_the_line_of_action():
         (
             'gear.a.fillet={kind="points",x=["1 mm","2 mm"],y=["3 mm","4 mm"]}',
             "gear.a.fillet.x",
-            "must have at least [3-9] entries",
+            "at least [3-9] entries",
         ),
         (
             'gear.a.fillet={kind="arcs",radii=["1 mm","2 mm","3 mm"]}',
             "gear.a.fillet.radii",
-            "must have at most 2 entries",
+            "at most 2 entries",
         ),
     ],
 )
