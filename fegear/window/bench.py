@@ -14,13 +14,13 @@ from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError
 from fegear.case.changed_text import literal, with_value, with_values
 from fegear.case.drafts.answers import Answers
-from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
+from fegear.window.beginnings import gallery
 from fegear.window.computing import whole
 from fegear.window.document import Desk
-from fegear.window.drag_handles import moved_relief, own_name, without_relief
+from fegear.window.drag_handles import drawn_at_once, moved_relief, own_name, without_relief
 from fegear.window.glance import keep_view, read_view
-from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said
+from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said, Stop
 from fegear.window.on_gears import UNASKED
 
 if TYPE_CHECKING:
@@ -43,16 +43,6 @@ _AGAIN = 3.0
 _TIMES, _PAUSE = 2.0, 0.5
 #: Figures and values of so many tasks are kept for pages that open later.
 _Content = dict[str, Any]
-
-
-def gallery() -> dict[str, Path]:
-    """The cases that come with the source tree, by name; none where fegear is installed without it."""
-    folder = Path(__file__).parents[2] / "cases"
-    return (
-        {path.stem: path for path in sorted(folder.glob("*.toml"))}
-        if (folder.parent / "pyproject.toml").is_file()
-        else {}
-    )
 
 
 class Bench:
@@ -98,7 +88,7 @@ class Bench:
         self._more: bool | None = None  # what has changed since: whether all of it moves
         self._to_judge: tuple[Desk, str, Callable[[], Verdict]] | None = None
         self._is_judging = False
-        self._number = self._first = self._laid = self._comparing = 0
+        self._number = self._first = self._laid = self._comparing = self._stopped = 0
         self._busy = False
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
@@ -114,12 +104,18 @@ class Bench:
             self.desk.patient = True
         if self._computing is not None:
             self._computing.hear = self._from_process
+        self._draw()
         self.compute()
 
     def end(self) -> None:
         """Keep what has been changed: the window is closed."""
         if self.desk is not None:
             self.desk.keep_up()
+
+    def _draw(self) -> None:
+        """Keep the gears as they are drawn, so that a page has them while the process that computes still loads."""
+        if self.desk is not None and not self.desk.heavy:
+            self._last |= drawn_at_once(self.desk)
 
     # ---- pages ---------------------------------------------------------------------------------------------------
 
@@ -164,7 +160,9 @@ class Bench:
         told += [
             ("meshed", content) for key, content in self._meshed.items() if key[1] in UNASKED or key in self._shows
         ]
-        told += [(what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last]
+        told += [
+            (what, self._last[what]) for what in ("done", "designed", "compared", "outdated") if what in self._last
+        ]
         return [*told, ("asked", {"number": self._number, "moving": False})] if self._busy else told
 
     # ---- the case ------------------------------------------------------------------------------------------------
@@ -184,6 +182,7 @@ class Bench:
             desk.patient = self._loop is not None
         self._first = next(self._numbers)
         self._judge_aside()
+        self._draw()
         self.tell("laid")
         self.compute()
 
@@ -299,14 +298,31 @@ class Bench:
         if self.desk.pending:
             return
         if not self.desk.may_be_asked() if moving else self.desk.refusal is not None:
+            self._outdate(stopped=False)
             return
         self._number, self._busy = next(self._numbers), True
+        self._last.pop("outdated", None)
         self.tell("asked", {"number": self._number, "moving": moving})
         asked = self.asked()._replace(
             moving=moving, sight=self._sight, shows=self._shows, laid=self._laid,
             pictures=self.view.pictures, field=self.view.measure != "none",
         )  # fmt: skip
         self._computing.ask(Compute(self._number, asked))
+
+    def _outdate(self, *, stopped: bool) -> None:
+        """Say that what pages show is not of the case as it is."""
+        self._last["outdated"] = {"stopped": stopped}
+        self.tell("outdated", self._last["outdated"])
+
+    def stop(self) -> None:
+        """Give up what is being computed, written or designed; the next change computes again."""
+        if self._computing is None or self.desk is None:
+            return
+        self._number, self._busy = next(self._numbers), False
+        self._stopped = self._number
+        self._asides.clear()
+        self._computing.ask(Stop(self._number))
+        self._outdate(stopped=True)
 
     def export(self, what: str, target: str) -> None:
         """Write the report or the drawings of the case as it is, at its own tolerance.
@@ -417,27 +433,9 @@ class Bench:
 
     def _hear(self, said: Said) -> None:
         what, content = said.what, {**said.content, "number": said.number}
-        if said.number in self._asides and what in ("refused", "designed", "exported", "compared"):
-            self._asides.discard(said.number)
-            if what == "refused":
-                self.tell("failed", content)
-                return
-            if what != "exported" and said.number < self._first:  # for the case that lay here before
-                return
-        if what == "designed":
-            self._last["designed"] = content
-            self.tell(what, content)
-            self._take_reliefs(content["reliefs"])
+        if self._heard_beside(what, content, said.number):
             return
-        if what == "compared":
-            if said.number == self._comparing:  # else with an A that is pinned no longer, or of an earlier B
-                self._last[what] = content
-                self.tell(what, content)
-            return
-        if what == "exported":
-            self.tell(what, content)
-            return
-        if said.number < self._first:  # of the case that lay here before
+        if said.number < self._first or what == "stopped":  # of the case that lay here before; pages know of the stop
             return
         # While a value is being moved, the answer to an earlier place of it is what there is; it ends nothing.
         if what in ("refused", "done") and said.number != self._number:
@@ -448,6 +446,32 @@ class Bench:
         self.tell(what, content)
         if what == "done":
             self._done(moving=content["moving"])
+            if "outdated" in self._last:  # refused meanwhile: these are of the case before
+                self.tell("outdated", self._last["outdated"])
+
+    def _heard_beside(self, what: str, content: _Content, number: int) -> bool:
+        """Take what is said of a job beside the case; False if it is about the case itself."""
+        if number in self._asides and what in ("refused", "designed", "exported", "compared"):
+            self._asides.discard(number)
+            if what == "refused":
+                self.tell("failed", content)
+                return True
+            if what != "exported" and number < self._first:  # for the case that lay here before
+                return True
+        if what == "designed":
+            if number > self._stopped:
+                self._last["designed"] = content
+                self.tell(what, content)
+                self._take_reliefs(content["reliefs"])
+        elif what == "compared":
+            if number == self._comparing:  # else with an A that is pinned no longer, or of an earlier B
+                self._last[what] = content
+                self.tell(what, content)
+        elif what == "exported":
+            self.tell(what, content)
+        else:
+            return False
+        return True
 
     def _done(self, *, moving: bool) -> None:
         """Compare what was found with A, or keep it as A's own."""
@@ -479,7 +503,3 @@ class Bench:
             self._found[content["task"]]["pictures"][content["key"]] = content
         if what in ("plan", "hands", "assemblies", "harris", "done"):
             self._last[what] = self._with_gears(content) if what == "hands" else content
-
-
-#: What a template is for, by the name of its kind.
-TEMPLATES = {name: kind.about for name, kind in KINDS.items()}

@@ -12,7 +12,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from fegear.engine.processes import start_process
-from fegear.window.job_queue import Compute, Said
+from fegear.window.job_queue import Compute, Newer, Said, Stop
 from fegear.window.journal import Scratch
 
 if TYPE_CHECKING:
@@ -81,10 +81,10 @@ class Computing:
         with self._lock:
             if self._closed:
                 return
-            if isinstance(job, Compute):
+            if isinstance(job, Newer):
                 now = time.monotonic()
                 for number, one in self._open.items():
-                    if isinstance(one, Compute):
+                    if isinstance(one, Compute) or isinstance(job, Stop):
                         self._unwanted.setdefault(number, now)
                 self._be_patient()
             self._open[job.number] = job
@@ -129,7 +129,7 @@ class Computing:
                 break
             if process is self._process:
                 self._loaded = True
-            if said.what in ("done", "refused", "dropped", "exported", "compared", "designed"):
+            if said.what in ("done", "refused", "dropped", "stopped", "exported", "compared", "designed"):
                 with self._lock:
                     self._open.pop(said.number, None)
                     self._unwanted.pop(said.number, None)

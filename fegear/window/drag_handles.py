@@ -6,14 +6,17 @@ Changes of a case's text by the hands on its reliefs: parts that move, gears tha
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.effects import RELIEF
-from fegear.base.errors import InputError
+from fegear.base.errors import FegearError, InputError
+from fegear.base.units import unit_size
 from fegear.case.changed_text import literal, value_at, with_value, with_values
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
+from fegear.window.assemblies import assemblies_of
 from fegear.window.on_gears import gears_in_mesh
 
 if TYPE_CHECKING:
@@ -40,9 +43,22 @@ def hands_of(scene: Scene) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name in scene.pairs:
         found[name] = {
-            "mesh": gears_in_mesh(scene, name), "reliefs": _reliefs(scene, name), "load": _load(scene.document, name),
+            "mesh": gears_in_mesh(scene, name), "reliefs": _reliefs(scene, name), "load": _load(scene, name),
             "designs": name in scene.plane_pairs,
         }  # fmt: skip
+    return found
+
+
+def drawn_at_once(desk: Desk) -> dict[str, Any]:
+    """What a page draws of a case before anything is computed, by what is said with it; empty where it is refused."""
+    found: dict[str, Any] = {}
+    if desk.scene is None or desk.refusal is not None:
+        return found
+    try:
+        found["hands"] = {"pairs": hands_of(desk.scene)}
+        found["assemblies"] = assemblies_of(desk.scene)
+    except FegearError:  # the computing process says so
+        return {}
     return found
 
 
@@ -65,15 +81,33 @@ def _reliefs(scene: Scene, name: str) -> list[dict[str, Any]]:
     return made
 
 
-def _load(document: Mapping[str, Any], name: str) -> dict[str, str] | None:
-    """The key of a pair's load that the case gives, and what it has."""
-    for key in ("torque", "load"):
-        given = value_at(document, ("pair", name, key))
+def _load(scene: Scene, name: str) -> dict[str, Any] | None:
+    """The key of a pair's load that the case gives, what it has, and the range of several that it runs under."""
+    part = scene.case.pair[name]
+    several, key, unit = (
+        (part.torques.in_order.tolist(), "torque", "N*m") if part.torques is not None
+        else (list(part.loads or ()), "load", "N")
+    )  # fmt: skip
+    for own in ("torque", "load"):
+        given = value_at(scene.document, ("pair", name, own))
         if isinstance(given, str):
-            return {"key": key, "text": given}
-    return None
+            if own != key or len(set(several)) < 2:
+                return {"key": own, "text": given}
+            return {"key": own, "text": given, "range": _ascending(several, _UNIT.sub("", given), own)}
+    if not several or part.power is not None:
+        return None
+    found: dict[str, Any] = {"key": key, "text": f"{max(several):.6g} {unit}"}
+    return found | ({"range": _ascending(several, unit, key)} if len(set(several)) > 1 else {})
 
 
+def _ascending(values: list[float], unit: str, key: str) -> list[float]:
+    """Each once, in a unit of forces or torques."""
+    size = unit_size(unit, "force" if key == "load" else key)
+    return [float(f"{one / size:.10g}") for one in sorted(set(values))]
+
+
+#: The number before a unit.
+_UNIT = re.compile(r"^\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*")
 _MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 
 

@@ -148,6 +148,41 @@ def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
     return tuple(found)
 
 
+def beside(sections: Sequence[Section], document: Mapping[str, Any]) -> tuple[tuple[Section, ...], ...]:
+    """Sections as they stand below each other; those of the two gears of a pair, of which each is in it only, beside.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+    document : mapping
+        The case as plain tables, as far as it goes.
+    """
+    gears = {one.path[1]: one for one in sections if len(one.path) == 2 and one.path[0] == "gear"}
+    pairs = document.get("pair")
+    mate: dict[str, str] = {}
+    for pair in pairs.values() if isinstance(pairs, dict) else ():
+        two = [pair.get(key) for key in ("driver", "driven")] if isinstance(pair, dict) else []
+        known = len(two) == 2 and two[0] != two[1] and all(isinstance(one, str) and one in gears for one in two)
+        if known and not mate.keys() & set(two):
+            mate |= {two[0]: two[1], two[1]: ""}
+    rows: list[tuple[Section, ...]] = []
+    for one in sections:
+        name = one.path[1] if len(one.path) == 2 and one.path[0] == "gear" else None
+        if name is None or name not in mate:
+            rows.append((one,))
+        elif mate[name]:
+            rows.append((one, gears[mate[name]]))
+    return tuple(rows)
+
+
+def in_rows(two: tuple[Section, Section]) -> tuple[tuple[Field, Field], ...]:
+    """Fields of two sections of one kind, key by key, that either of them gives; in the order of the model."""
+    given = [{field.path[-1]: field for field in one.fields} for one in two]
+    wanted = {field.path[-1] for one in two for field in one.given}
+    order = list(_nodes().table(_nodes().meant(_nodes().top[two[0].path[0]])["additionalProperties"])["properties"])
+    return tuple((given[0][key], given[1][key]) for key in order if key in wanted and all(key in one for one in given))
+
+
 #: Tables of one kind that a form shows: the fields of 3000 gears are built in a minute, and nobody scrolls to them.
 _TABLES = 40
 

@@ -83,7 +83,7 @@ const fegearGears = (() => {
       for (const [letter, x] of data.points) {
         svg("circle", { cx: x * 1e3 * c, cy: x * 1e3 * s, r: 0.07 * m, class: "point" }, up);
         beside = Math.max(x * 1e3 * c + 0.12 * m, beside + 0.36 * m);
-        const word = svg("text", { x: beside, y: -x * 1e3 * s - 0.12 * m, "font-size": 0.36 * m }, picture);
+        const word = svg("text", { x: beside, y: -x * 1e3 * s - 0.26 * m, "font-size": 0.36 * m }, picture);
         word.textContent = letter.replace(/_\{(.*)\}/, "$1");
       }
       kept.arrows = svg("g", {}, up);

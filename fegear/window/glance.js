@@ -89,13 +89,13 @@ const fegearGlance = (() => {
     const top = ({ y }) => numbersOf(y).reduce((most, one) => Math.max(most, Number.isFinite(one) ? one : most), -Infinity);
     return curves.sort((one, other) => top(other) - top(one));
   }
-  /** Says what the curves of a small picture are, where there are several; what has no room is on pointing at it. */
-  function name(legend, traces, darker) {
+  /** Says what the curves of a small picture are, where there are several, and which is A's. */
+  function name(legend, traces, darker, withA) {
     const named = [...new Map(traces.filter(({ name: words, showlegend }) => words && showlegend !== false).map((one) => [one.name, one])).values()];
-    const said = JSON.stringify([fegearFigure.theme(), named.map(({ name: words, line }) => [words, line?.color])]);
+    const said = JSON.stringify([fegearFigure.theme(), withA, named.map(({ name: words, line }) => [words, line?.color])]);
     if (legend.dataset.said === said) return;
     legend.dataset.said = said;
-    legend.hidden = named.length < 2;
+    legend.hidden = named.length < 2 && !withA;
     legend.title = named.map((one) => plain(one.name)).join(", ");
     legend.replaceChildren(...inOrder(named).map((one) => {
       const entry = made("span"), key = made("i"), colour = one.line?.color ?? one.marker?.color;
@@ -103,6 +103,11 @@ const fegearGlance = (() => {
       entry.append(key, plain(one.name));
       return entry;
     }));
+    if (!withA) return;
+    const entry = made("span"), key = made("i");
+    key.style.borderTop = "1.4px dashed var(--soft)";
+    entry.append(key, "A, pinned");
+    legend.append(entry);
   }
   function drawAll() {
     due = 0;
@@ -119,7 +124,7 @@ const fegearGlance = (() => {
       Object.assign(kept, { shown: spec, theme: fegearFigure.theme(), at: kept.size, against: pinned });
       const unit = /\[[^\]]*\]\s*$/.exec(plain(y))?.[0] ?? "", words = `${told.pictures[kept.name].words} ${unit}`;
       if (kept.title.textContent !== words) kept.title.textContent = words;
-      name(kept.legend, ofPanel(spec, kept.panel), darker);
+      name(kept.legend, ofPanel(spec, kept.panel), darker, !!pinned?.specs.get(kept.key));
       kept.figure.dataset.count = Number(kept.figure.dataset.count ?? 0) + 1; // how often it was drawn
     }
     strip();
@@ -140,6 +145,7 @@ const fegearGlance = (() => {
     const share = 100 * off / Math.abs(before.value), sign = off > 0 ? "+" : "−";
     return `${sign}${Math.abs(share) < 1000 && before.value ? `${Number(Math.abs(share).toPrecision(2))} %` : Number(Math.abs(off).toPrecision(3))}`;
   }
+  const previews = new Map(); // task -> what its first answer was found with
   const cells = new Map(); // name -> elements of the strip
   function strip() {
     const host = $("strip");
@@ -147,7 +153,7 @@ const fegearGlance = (() => {
     const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
     const ratios = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
     const several = kind === "set" || Object.keys(pairs).length > 1; // then it is said whose numbers and pictures these are
-    const all = [...wanted, ...ratios], laid = JSON.stringify([kind, pair, several, all.map((one) => one.name)]);
+    const all = [...wanted, ...ratios], [preview] = previews.values(), laid = JSON.stringify([kind, pair, several, preview, all.map((one) => one.name)]);
     if (host.dataset.laid !== laid) {
       host.dataset.laid = laid;
       cells.clear();
@@ -161,6 +167,12 @@ const fegearGlance = (() => {
       if (several) {
         const cell = made("div", "cell subject");
         cell.append(made("span", "label", "shown"), made("b", "", `${kind} ${pair}`));
+        host.prepend(cell);
+      }
+      if (preview) { // not the last word
+        const cell = made("div", "cell preview");
+        cell.title = preview;
+        cell.append(made("span", "label", "follows: full accuracy"), made("b", "", "preview"));
         host.prepend(cell);
       }
     }
@@ -177,6 +189,17 @@ const fegearGlance = (() => {
     for (const spec of figures) if (!spec.same) into.specs.set(spec.key, { spec, darker });
     for (const [name, one] of Object.entries(values ?? {})) into.numbers.set(name, one);
   }
+
+  // ---- what is older than the case is dimmed, if it takes a while to be new -----------------------------------------
+  const AWHILE = 250; // ms
+  let dimming = 0, dimmed = false;
+  let awaited = { figures: new Set(), numbers: new Set() }; // keys of figures and names of numbers that are to come
+  function dim() {
+    for (const kept of plots.values()) kept.figure.classList.toggle("stale", dimmed && awaited.figures.has(kept.key));
+    for (const [name, parts] of cells) parts[0].parentElement.classList.toggle("stale", dimmed && awaited.numbers.has(`${pair}.${name}`));
+    $("answer")?.classList.toggle("stale", dimmed);
+    document.getElementById("maps")?.classList.toggle("stale", dimmed && !fegear.isMoving()); // the map is made anew when all is at rest
+  }
   return {
     begin(content) {
       told = content;
@@ -189,9 +212,19 @@ const fegearGlance = (() => {
     },
     view: () => view,
     keep,
-    found(content) { gather(content, { specs, numbers }); soon(); },
+    found(content) {
+      gather(content, { specs, numbers });
+      if (content.draft) previews.set(content.task, content.draft); else previews.delete(content.task);
+      for (const { key } of content.figures) awaited.figures.delete(key);
+      for (const name of Object.keys(content.numbers ?? {})) awaited.numbers.delete(name);
+      soon();
+      dim();
+    },
     plan(tasks, owners) { // what is computed no longer is shown no longer
       for (const key of [...specs.keys()]) if (owners.has(key) && !tasks.includes(owners.get(key))) specs.delete(key);
+      awaited = { figures: new Set(specs.keys()), numbers: new Set(numbers.keys()) };
+      clearTimeout(dimming);
+      dimming = setTimeout(() => { dimmed = true; dim(); }, AWHILE);
     },
     hands(content) {
       const before = Object.keys(pairs).length;
@@ -218,7 +251,15 @@ const fegearGlance = (() => {
       for (const kept of plots.values()) kept.mark?.(place.marks[kept.name] ?? []);
     },
     soon,
-    settle() { for (const kept of plots.values()) kept.shown = null; soon(); },
+    settle() {
+      clearTimeout(dimming);
+      dimmed = false;
+      awaited = { figures: new Set(), numbers: new Set() };
+      previews.clear();
+      dim();
+      for (const kept of plots.values()) kept.shown = null;
+      soon();
+    },
     reporting: () => document.body.classList.contains("reporting"),
   };
 })();

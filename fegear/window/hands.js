@@ -125,10 +125,12 @@ const fegearHands = (() => {
   const sendLoad = throttled((content) => emitEvent("load", content));
   function loadOf(pair, host) {
     const label = document.createElement("label"), slider = Object.assign(document.createElement("input"), { type: "range", min: 2, max: 200, value: 100 });
-    const words = document.createElement("span"), value = document.createElement("b");
+    const words = document.createElement("span"), value = document.createElement("b"), marks = document.createElement("datalist");
     label.className = "load-slider";
     slider.dataset.slider = pair;
-    label.append(words, slider, value);
+    marks.id = `marks-${Math.random().toString(36).slice(2)}`;
+    slider.setAttribute("list", marks.id);
+    label.append(words, slider, value, marks);
     host.append(label);
     const kept = { base: null, unit: "", key: "" };
     const text = () => `${Number((kept.base * slider.value / 100).toPrecision(4))}${kept.unit}`;
@@ -140,8 +142,12 @@ const fegearHands = (() => {
       label.hidden = !found;
       if (!found || held === slider) return;
       const number = Number(found[1]);
-      if (kept.key !== load.key || kept.unit !== found[2] || number > 2 * kept.base || number < 0.02 * kept.base) kept.base = number;
-      Object.assign(kept, { key: load.key, unit: found[2] });
+      const range = load.range, low = range && Math.min(...range, number), high = range && Math.max(...range, number);
+      if (range) kept.base = high; // it goes from the least to the largest that the case gives, each a mark
+      else if (kept.key !== load.key || kept.unit !== found[2] || kept.ranged || number > 2 * kept.base || number < 0.02 * kept.base) kept.base = number;
+      Object.assign(slider, range ? { min: 100 * low / high, max: 100, step: "any" } : { min: 2, max: 200, step: 1 });
+      marks.replaceChildren(...(range ?? []).map((one) => Object.assign(document.createElement("option"), { value: 100 * one / high })));
+      Object.assign(kept, { key: load.key, unit: found[2], ranged: !!range });
       words.textContent = load.key;
       slider.setAttribute("aria-label", `${load.key} of pair ${pair}`);
       slider.value = 100 * number / kept.base;

@@ -17,7 +17,7 @@ from nicegui import ui
 
 from fegear.base.errors import InputError
 from fegear.window.document import LARGEST, check_text
-from fegear.window.form import Field, Section, fields, fields_told, form, shortened, tables_to_add
+from fegear.window.form import Field, Section, beside, fields, fields_told, form, in_rows, shortened, tables_to_add
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,8 +86,11 @@ class Inputs:
         self._elements, self._places, self._held = {}, {}, {}
         sections, left = self._sections()
         with self._form:
-            for section in sections:
-                self._section(section)
+            for row in beside(sections, self._desk.document):
+                if len(row) == 2:
+                    self._beside((row[0], row[1]))
+                else:
+                    self._section(row[0])
             if left:
                 ui.label(f"{left} more tables in the text only.").classes("about")
             more = tables_to_add(self._desk.document)
@@ -126,26 +129,46 @@ class Inputs:
                     ui.html(section.about, tag="p", sanitize=_escaped).classes("about")
             for field in section.given:
                 self._field(field)
-            for inner in section.sections:
-                self._section(inner)
-            left = section.left_out
-            if left:
-                with ui.expansion(f"{len(left)} further keys (defaults)").props("dense dense-toggle") as more:
-                    opened: list[bool] = []
+            self._rest(section, section.left_out)
 
-                    def fill(event: Any, more: Any = more, left: Any = left, opened: Any = opened) -> None:
-                        if event.value and not opened:  # not before somebody looks: most of a case is left out
-                            opened.append(True)
-                            with more:
-                                for field in left:
-                                    self._field(field)
+    def _beside(self, two: tuple[Section, Section]) -> None:
+        """The gears of a pair beside each other, key by key; what one of them has besides stands below."""
+        rows = in_rows(two)
+        shown = {field.path for row in rows for field in row}
+        with ui.element("div").classes("two"):
+            for section in two:
+                ui.html(section.title, tag="h3", sanitize=_escaped)
+            for row in rows:
+                for field in row:
+                    self._field(field)
+            for section in two:
+                with ui.element("div"):
+                    for field in section.given:
+                        if field.path not in shown:
+                            self._field(field)
+                    self._rest(section, tuple(field for field in section.left_out if field.path not in shown))
 
-                    more.on_value_change(fill)
-                for field in left:
-                    self._places[field.path] = more
-                    self._held[field.path] = field
-                if marked := [field.label for field in left if field.path in self._warned]:
-                    more.props["caption"] = f"assumed or not specified: {', '.join(marked)}"
+    def _rest(self, section: Section, left: tuple[Field, ...]) -> None:
+        """Tables in a section, and what it leaves out, folded."""
+        for inner in section.sections:
+            self._section(inner)
+        if left:
+            with ui.expansion(f"{len(left)} further keys (defaults)").props("dense dense-toggle") as more:
+                opened: list[bool] = []
+
+                def fill(event: Any, more: Any = more, left: Any = left, opened: Any = opened) -> None:
+                    if event.value and not opened:  # not before somebody looks: most of a case is left out
+                        opened.append(True)
+                        with more:
+                            for field in left:
+                                self._field(field)
+
+                more.on_value_change(fill)
+            for field in left:
+                self._places[field.path] = more
+                self._held[field.path] = field
+            if marked := [field.label for field in left if field.path in self._warned]:
+                more.props["caption"] = f"assumed or not specified: {', '.join(marked)}"
 
     def _field(self, field: Field) -> None:
         commit = partial(self._typed, field)

@@ -61,7 +61,7 @@ class Inbox:
         self._jobs: deque[Job] = deque()
         self._news, self._mouth = threading.Condition(), threading.Lock()
         self._ended = False
-        self._unwanted: Callable[[Compute], bool] | None = None
+        self._unwanted: Callable[[Newer], bool] | None = None
         self._within: CodeType | None = None
         self.given_up = False
 
@@ -91,7 +91,8 @@ class Inbox:
     def put(self, job: Job) -> None:
         """Lay a job to the others; cases that wait are no longer wanted if it is one."""
         with self._news:
-            old = [one for one in self._jobs if isinstance(one, Compute)] if isinstance(job, Compute) else []
+            replaced = Job if isinstance(job, Stop) else Newer
+            old = [one for one in self._jobs if isinstance(one, replaced)] if isinstance(job, Newer) else []
             for one in old:
                 self._jobs.remove(one)
             self._jobs.append(job)
@@ -131,11 +132,11 @@ class Inbox:
         return not self._jobs
 
     @property
-    def newest(self) -> Compute | None:
-        """The case that waits to be computed."""
-        return next((one for one in list(self._jobs) if isinstance(one, Compute)), None)
+    def newest(self) -> Newer | None:
+        """The case that waits to be computed, or the wish that none be."""
+        return next((one for one in list(self._jobs) if isinstance(one, Newer)), None)
 
-    def watch(self, unwanted: Callable[[Compute], bool] | None, within: CodeType | None = None) -> None:
+    def watch(self, unwanted: Callable[[Newer], bool] | None, within: CodeType | None = None) -> None:
         """Say who decides whether what is being done gives way to another case; None where it never does.
 
         `within` is the function that does it: outside of it, where its end is dealt with, nobody is interrupted.
@@ -218,6 +219,13 @@ class Compute:
 
 
 @dataclass(frozen=True, slots=True)
+class Stop:
+    """Give up what is being done, whatever it is, and compute nothing."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class Export:
     """Write into a folder what a command writes.
 
@@ -253,7 +261,9 @@ class Design:
     how: Literal["exact", "ground"] = "exact"
 
 
-Job = Compute | Export | Compare | Design
+Job = Compute | Stop | Export | Compare | Design
+#: Of these the last one counts.
+Newer = Compute | Stop
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,8 +276,9 @@ class Said:
         The job's.
     what : str
         ``plan`` (tasks, in order), ``hands`` (gears in mesh, reliefs and loads that are changed by hand), ``begin`` (a
-        task), ``found`` (a task's results), ``meshed`` (what is shown on the gears in mesh), ``picture``, ``done``,
-        ``refused``, ``exported``, ``compared``, ``designed`` or ``dropped`` (another is wanted).
+        task), ``advance`` (how far it is), ``found`` (a task's results), ``meshed`` (what is shown on the gears in
+        mesh), ``picture``, ``done``, ``refused``, ``exported``, ``compared``, ``designed``, ``dropped`` (another is
+        wanted) or ``stopped``.
     content : dict
         Plain data for the page.
     """

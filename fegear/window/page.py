@@ -1,7 +1,4 @@
-"""The page: what is changed on the left, what follows from it on the right.
-
-What a case may begin with: templates, and the cases of the gallery.
-"""
+"""The page: what is changed on the left, what follows from it on the right."""
 
 from __future__ import annotations
 
@@ -15,22 +12,19 @@ from typing import TYPE_CHECKING, Any
 from nicegui import app, ui
 
 from fegear.base.errors import FegearError
-from fegear.case.text_file import named_path
 from fegear.output.draw_plotly.layout import template
 from fegear.output.report.page import plotly_file
 from fegear.window.bar import Bar
-from fegear.window.bench import TEMPLATES, gallery
 from fegear.window.document import LARGEST
 from fegear.window.glance import told_of_view
 from fegear.window.inputs import Inputs
-from fegear.window.journal import left_behind
 from fegear.window.messages import PIECE, TOO_LONG, Messages, checked, refuse
+from fegear.window.start_page import start_page
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.window.bench import Bench
-    from fegear.window.journal import Left
 
 
 #: What bar and form hear; each change of theirs has the browser go through the whole form.
@@ -111,6 +105,8 @@ class Page:
             ui.on(kind, partial(self._said, kind, do))
         ui.on("untaken", self._too_long)
         ui.on("unwritten", lambda: refuse(self._client, TOO_LONG))
+        ui.on("stop", bench.stop)
+        ui.on("compute", lambda: bench.compute())
         ui.on("save", lambda: self._bar.save() if self._bar is not None else None)
         ui.on("view", lambda event: bench.see_otherwise(event.args if isinstance(event.args, dict) else {}))
         parts = json.dumps({"piece": PIECE, "most": LARGEST})
@@ -217,57 +213,3 @@ def show(bench: Bench) -> None:
     for name in ("figure", *_SCRIPTS):
         ui.add_head_html(f'<script src="{_AT}/{name}.js"></script>')
     Page(bench)
-
-
-def _offer(name: str, about: str, chosen: Callable[[], None]) -> None:
-    with ui.element("button").classes("offer").props("type=button").on("click", chosen):
-        ui.html(name, tag="b")
-        ui.html(about, tag="span")
-
-
-def start_page(bench: Bench) -> None:
-    """Offer templates, cases of the gallery, a file, and what was left behind unsaved."""
-
-    def open_file() -> None:
-        try:
-            bench.from_file(named_path(path.value.strip(), "case", home=True))
-        except FegearError as error:
-            path.props["error"] = True
-            path.props["error-message"] = str(error)
-            path.update()
-
-    def lay_left(left: Left) -> None:
-        try:
-            bench.from_left(left)
-        except FegearError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
-
-    with ui.element("div").classes("start"):
-        ui.html("fegear", tag="h1")
-        unsaved = left_behind(None)
-        if unsaved:
-            ui.html("Unsaved cases", tag="h2")
-            with ui.element("div").classes("offers"):
-                for left in unsaved:
-                    about = f"unsaved, last changed {left.kept.when}"
-                    _offer(left.kept.name, about, lambda left=left: lay_left(left))  # type: ignore[misc]
-        ui.html("New case from template", tag="h2")
-        with ui.element("div").classes("offers"):
-            for kind, about in TEMPLATES.items():
-                _offer(kind, about, lambda kind=kind: bench.from_template(kind))  # type: ignore[misc]
-        cases = gallery()
-        if cases:
-            ui.html("Copy of an example case", tag="h2")
-            with ui.element("div").classes("offers"):
-                for name, file in cases.items():
-                    title = str(tomllib.loads(file.read_text("utf-8")).get("title", ""))
-                    _offer(name, title, lambda name=name: bench.from_gallery(name))  # type: ignore[misc]
-        ui.html("Open a case file", tag="h2")
-        with ui.row().classes("items-start w-full"):
-            path = (
-                ui.input("Path of a case file (TOML)")
-                .props("outlined dense hide-bottom-space")
-                .style("min-width: 26rem")
-            )
-            path.on("keydown.enter", open_file)
-            ui.button("Open", on_click=open_file).props("outline no-caps")

@@ -150,11 +150,11 @@ const fegearPlots = (() => {
       kept.box = { x0: ROOM.left, x1: width - ROOM.right, y0: height - ROOM.bottom, y1: ROOM.top };
       shade = fegearFigure.theme() === "dark" ? (colour) => (typeof colour === "string" && darker[colour.slice(0, 7)] ? darker[colour.slice(0, 7)] + colour.slice(7) : colour) : (colour) => colour;
       kept.ranges = rangesOf(spec, panel, held && kept.ranges);
-      if (held === "fixed" && kept.fixed) kept.ranges = kept.fixed; else kept.fixed = kept.ranges;
-      if (pinned && !held) {
-        const other = rangesOf(pinned, panel, null), own = spec.layout[`yaxis${anchor(panel)}`]?.range;
-        if (!own) kept.ranges.y = [Math.min(kept.ranges.y[0], other.y[0]), Math.max(kept.ranges.y[1], other.y[1])];
+      if (pinned) { // A never leaves the axes, whatever the figure says of its own
+        const other = rangesOf(pinned, panel, null);
+        for (const way of ["x", "y"]) kept.ranges[way] = [Math.min(kept.ranges[way][0], other[way][0]), Math.max(kept.ranges[way][1], other[way][1])];
       }
+      if (held === "fixed" && kept.fixed) kept.ranges = kept.fixed; else kept.fixed = kept.ranges;
       const { x0, x1, y0, y1 } = kept.box, within = { x: x0, y: y1, width: x1 - x0, height: y0 - y1 };
       if (!kept.group) {
         const id = `clip-${Math.random().toString(36).slice(2)}`, group = node("g", {});

@@ -146,6 +146,21 @@ const fegear = (() => {
   let following = null;
   let moving = false; // whether a value is being moved
   let ended = ""; // what the last computation came to
+  let step = ""; // the task that is at work
+  /** So many seconds in words that do not pretend to know them. */
+  function leftWords(seconds) {
+    if (!(seconds >= 2)) return "";
+    const round = (value) => (value < 10 ? Math.round(value) : 5 * Math.round(value / 5));
+    return `, about ${seconds < 100 ? `${round(seconds)} s` : `${Math.round(seconds / 60)} min`} left`;
+  }
+  // What has been going on for a while can be stopped, and taken up again.
+  let offering = 0;
+  function offer(words) {
+    clearTimeout(offering);
+    const show = () => { const one = $("stop"); if (one) Object.assign(one, { hidden: !words, textContent: words, onclick: () => emitEvent(words === "Stop" ? "stop" : "compute") }); };
+    if (words === "Stop") offering = setTimeout(show, LONG); else show();
+  }
+  const LONG = 700; // ms
   const say = (words) => { if ($("state") && $("state").textContent !== words) Object.assign($("state"), { textContent: words, title: words }); };
   const heard = {
     hands(content) { return fegearHands.show(content, { made, sections }); },
@@ -167,9 +182,21 @@ const fegear = (() => {
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");
+      if (!moving) offer("Stop");
       say("computing ...");
     },
-    begin({ step, count, title }) { say(`${step} of ${count}: ${title} ...`); },
+    begin({ step: number, count, title, left }) {
+      if (!$("stop")?.textContent && !moving) offer("Stop"); // an export has begun
+      step = `${number} of ${count}: ${title}`;
+      say(`${step} ...${leftWords(left)}`);
+    },
+    advance({ fraction, left }) { say(`${step}, ${Math.round(100 * fraction)} %${leftWords(left)}`); },
+    outdated({ stopped }) { // the case is refused, or nobody computes it
+      document.body.classList.remove("computing");
+      document.body.classList.add("outdated");
+      offer(stopped ? "Compute" : "");
+      say(stopped ? "stopped; results are of an earlier case" : "case refused; results are of an earlier case");
+    },
     plan({ tasks }) {
       fegearGears.plan(tasks);
       fegearGlance.plan(tasks, owner);
@@ -215,6 +242,8 @@ const fegear = (() => {
       ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`;
       $("answer").replaceChildren(...answer.map((one) => made("li", "", one)));
       if (goesOn) return; // remarks and errors come when it stands still
+      document.body.classList.remove("outdated");
+      offer("");
       say(ended);
       for (const kept of sections.values()) {
         answered(kept);
@@ -242,9 +271,9 @@ const fegear = (() => {
       }
       $("remarks").replaceChildren(...rows);
     },
-    refused({ sentence }) { document.body.classList.remove("computing"); say(sentence); },
-    exported() { say(ended); },
-    failed() { document.body.classList.remove("computing"); say(ended); }, // the bar has the sentence
+    refused({ sentence }) { document.body.classList.remove("computing"); offer(""); say(sentence); },
+    exported() { if (!document.body.classList.contains("computing")) offer(""); say(ended); },
+    failed() { document.body.classList.remove("computing"); offer(""); say(ended); }, // the bar has the sentence
     async compared({ sections: parts, figures, darker }) {
       say(ended);
       const host = $("compared");
@@ -262,6 +291,7 @@ const fegear = (() => {
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
     async designed({ pair, told, figures, darker }) {
+      offer("");
       say(ended);
       const key = `hand design ${pair}`;
       if (!sections.get(key)?.element.isConnected) {

@@ -22,9 +22,10 @@ from fegear.window.computing import SAME, Sent
 from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, with_previews
 from fegear.window.drag_handles import hands_of
 from fegear.window.glance import field_tasks, glance_tasks, keys_of, numbers_of, plan_with
-from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Said, Unwanted
+from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Newer, Said, Stop, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
+from fegear.window.time_left import TimeLeft
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,6 +47,8 @@ _STILL = 0.2
 _AT_REST = 1.0
 #: After so many answers to a value being moved what is kept is bounded again.
 _STROKES = 8
+#: Between two reports of progress inside a task is so much time [s].
+_OFTEN = 0.3
 #: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
 #: back from the folder of solved teeth.
 _MOST = 120_000_000
@@ -69,6 +72,8 @@ class Worker:
         self._number, self._begun, self._wait_before = 0, 0.0, 0
         self._asked: Asked | None = None
         self._later: list[tuple[str, Callable[[], None]]] = []
+        self._left = TimeLeft(())
+        self._reported, self._reports = 0.0, False
         self._begin_anew()
 
     def _begin_anew(self) -> None:
@@ -103,7 +108,9 @@ class Worker:
         self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
         self._asked, self._later = (job.asked if isinstance(job, Compute) else None), []
         moving = self._asked is not None and self._asked.moving
-        self._inbox.watch(self._gives_way if isinstance(job, Compute) else None, Worker._do.__code__)
+        self._left = TimeLeft(())
+        self._reports = isinstance(job, Compute | Export | Design) and not moving  # who moves a value sees the results
+        self._inbox.watch(self._gives_way if isinstance(job, Compute) else _is_stop, Worker._do.__code__)
         try:
             self._do(job)
         except Unwanted:
@@ -141,6 +148,8 @@ class Worker:
         """In here, and nowhere else, a computation that is unwanted is given up."""
         if isinstance(job, Compute):
             self._compute(job.asked)
+        elif isinstance(job, Stop):
+            self._say("stopped")
         elif isinstance(job, Export):
             self._export(job)
         elif isinstance(job, Design):
@@ -155,19 +164,27 @@ class Worker:
         if number == self._wait_before:
             self._pause()
         self._inbox.look()
-        if self._asked is not None and not self._asked.moving:  # who moves a value looks at the results
-            self._say("begin", title=title, step=number, count=count)
+        self._left.begin(number)
+        if self._reports:
+            self._reported = time.monotonic()
+            self._say("begin", title=title, step=number, count=count, left=self._left.left())
 
-    def advance(self, _fraction: float) -> None:
+    def advance(self, fraction: float) -> None:
+        """Look whether another case is wanted, and tell now and then how far the task is."""
+        self._inbox.look()
+        if self._reports and time.monotonic() - self._reported > _OFTEN:
+            self._reported = time.monotonic()
+            self._say("advance", fraction=round(fraction, 3), left=self._left.left(fraction))
+
+    def end(self, seconds: float) -> None:
         """Look whether another case is wanted."""
         self._inbox.look()
+        self._left.end(seconds)
 
-    def end(self, _seconds: float) -> None:
-        """Look whether another case is wanted."""
-        self._inbox.look()
-
-    def _gives_way(self, to: Compute) -> bool:
-        """Whether what is being computed is given up for another case."""
+    def _gives_way(self, to: Newer) -> bool:
+        """Whether what is being computed is given up for another case, or for none."""
+        if isinstance(to, Stop):
+            return True
         # While a value is being moved every answer is soon followed by another question: what is dragged for is
         # finished first.
         dragged = self._asked is not None and self._asked.moving and to.asked.moving and self._wait_before >= 0
@@ -176,6 +193,7 @@ class Worker:
     # ---- jobs ----------------------------------------------------------------------------------------------------
 
     def _results(self, asked: Asked, *, told: bool = False) -> Results:
+        from fegear.engine.plan_in_words import forecast_seconds
         from fegear.engine.run import run_plan
 
         scene = scene_of(asked)
@@ -206,6 +224,7 @@ class Worker:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
             self._draft(asked, scene, plan, planned)
+        self._left = TimeLeft(forecast_seconds(scene, plan) if self._reports else ())
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
@@ -390,6 +409,11 @@ class Worker:
     def _design(self, job: Design) -> None:
         results = self._results(design_asked(job.asked, job.pair, job.how))
         self._say("designed", **designed(results, job.pair, job.how))
+
+
+def _is_stop(to: Newer) -> bool:
+    """What is asked for beside the case is finished before another case, and given up for none."""
+    return isinstance(to, Stop)
 
 
 def _told(results: Results) -> list[tuple[str, str, str, str]]:

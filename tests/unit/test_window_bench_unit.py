@@ -7,10 +7,11 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.window import bench as benches
-from fegear.window.bench import LEVELS, Bench, gallery
+from fegear.window.beginnings import gallery
+from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
 from fegear.window.glance import View
-from fegear.window.job_queue import Compute, Design, Export, Said
+from fegear.window.job_queue import Compute, Design, Export, Said, Stop
 
 CASE = """
 results = ["load-sharing"]
@@ -109,6 +110,10 @@ def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp
     bench.desk.change(CASE.replace("900 N", "-1 N"))
     bench.changed()
     assert len(bench.asked_for) == count
+    assert bench.heard[-1] == ("outdated", {"stopped": False})  # what pages show is of an earlier case
+    assert bench.shown_now()[-2][0] == "outdated"
+    bench._hear(Said(bench.asked_for[-1].number, "done", {"moving": False}))  # of the case before
+    assert [what for what, _ in bench.heard][-2:] == ["done", "outdated"]
     bench.pin()
     bench.lay(Desk(CASE, "d", tmp_path))
     assert (bench.pinned, bench._shows, bench._sight) == (None, (), ())
@@ -121,13 +126,38 @@ def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp
             act()
 
 
+def test_what_is_computed_is_stopped_and_taken_up_again(bench):
+    bench.design("I")
+    design, count = bench.asked_for[-1].number, len(bench.asked_for)
+    bench.stop()
+    assert bench.asked_for[-1] == Stop(design + 1)
+    assert bench.heard[-1] == ("outdated", {"stopped": True})
+    assert bench.shown_now()[-1] == ("outdated", {"stopped": True})  # and nothing is asked for
+    # What comes late of what was given up changes no case.
+    bench._hear(Said(design, "designed", {"reliefs": {"a": None}, "told": "late"}))
+    assert bench.desk.text == CASE
+    bench._hear(Said(design + 1, "stopped", {}))
+    assert (len(bench.asked_for), bench.heard[-1][0]) == (count + 1, "outdated")
+    bench.compute()
+    assert isinstance(bench.asked_for[-1], Compute)
+    assert bench.shown_now()[-1][0] == "asked"
+    assert "outdated" not in dict(bench.shown_now())
+    bench.lay(None)
+    bench.stop()  # nothing is there to be stopped
+    assert isinstance(bench.asked_for[-1], Compute)
+
+
 def test_what_a_page_that_opens_now_is_told_comes_in_order(bench):
     number = bench.asked_for[-1].number
 
     def say(what, **content):
         bench._hear(Said(number, what, content))
 
-    assert bench.shown_now() == [("asked", {"number": number, "moving": False})]
+    drawn = dict(bench.shown_now())
+    assert list(drawn) == ["hands", "assemblies", "asked"]  # the gears stand before anything is computed
+    assert drawn["asked"] == {"number": number, "moving": False}
+    assert len(drawn["hands"]["pairs"]["I"]["mesh"]["driver"]) == 2
+    assert drawn["hands"]["pairs"]["I"]["load"] == {"key": "load", "text": "900 N"}
     say("plan", tasks=["one", "two"])
     say("found", task="one", values="v", figures=[])
     say("found", task="two", values="w", figures=[])
@@ -136,9 +166,11 @@ def test_what_a_page_that_opens_now_is_told_comes_in_order(bench):
     say("meshed", pair="I", kind="pressure", task="two")
     say("done", moving=False)
     told = bench.shown_now()
-    assert [what for what, _ in told] == ["plan", "found", "picture", "found", "meshed", "done"]
-    assert "pictures" not in told[1][1]
-    assert told[4][1]["kind"] == "pressure"  # what is not switched on is not shown
+    assert [what for what, _ in told] == [
+        "plan", "hands", "assemblies", "found", "picture", "found", "meshed", "done",
+    ]  # fmt: skip
+    assert "pictures" not in told[3][1]
+    assert told[6][1]["kind"] == "pressure"  # what is not switched on is not shown
     bench.show("I", "stress", on=True)
     assert [content["kind"] for what, content in bench.shown_now() if what == "meshed"] == ["stress", "pressure"]
     # Tasks that are gone are forgotten, with what they showed by themselves.

@@ -20,7 +20,8 @@ from fegear.base.errors import InputError
 from fegear.output.formats import formats
 from fegear.window import messages
 from fegear.window.bar import Bar, exports
-from fegear.window.bench import LEVELS, TEMPLATES, Bench
+from fegear.window.beginnings import JOBS, examples
+from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
 from fegear.window.inputs import Inputs, stepped
 from fegear.window.messages import Messages, _moved, checked
@@ -520,14 +521,14 @@ def test_a_page_without_a_case_offers_what_to_begin_with(client, tmp_path):
     page = core.loop.run_until_complete(begun())
     assert page._bar is None
     offers = [one for one in client.elements.values() if "offer" in one.classes]
-    assert len(offers) >= len(TEMPLATES)
+    assert len(offers) == sum(len(job.templates) for job in JOBS.values()) + sum(map(len, examples().values()))
 
     async def chosen():
         press(offers[0])
 
     core.loop.run_until_complete(chosen())
     assert bench.desk is not None
-    assert bench.desk.name == next(iter(TEMPLATES)) or bench.desk.text
+    assert bench.desk.name == "pair"
 
 
 # ---- messages --------------------------------------------------------------------------------------------------------

@@ -278,4 +278,5 @@ def test_progress_counts_the_tasks_of_the_case_and_not_the_changes_before_it(wor
     assert [one["step"] for one in steps] == list(range(1, steps[0]["count"] + 1))
     assert {one["number"] for one in steps} == {9}
     words = (resources.files("fegear.window") / "window.js").read_text("utf-8")
-    assert "begin({ step, count, title }) { say(`${step} of ${count}" in words
+    assert "step = `${number} of ${count}: ${title}`" in words
+    assert "begin({ step: number, count, title, left })" in words

@@ -10,7 +10,8 @@ from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.window import glance, worker
 from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
-from fegear.window.job_queue import Asked, Compute, Export, Unwanted
+from fegear.window.job_queue import Asked, Compute, Export, Inbox, Stop, Unwanted
+from fegear.window.time_left import TimeLeft
 from fegear.window.worker import Worker, scene_of
 
 TEXT = """
@@ -130,11 +131,27 @@ def test_what_comes_behind_an_answer_is_told_once_and_by_kind(working):
     assert told == ["load_now", "hands", "hands"]
 
 
-def test_progress_is_told_to_who_waits_and_not_to_who_moves(working):
-    working._number, working._asked = 3, asked()
+def test_progress_is_told_to_who_waits_and_not_to_who_moves(working, monkeypatch):
+    clock = SimpleNamespace(now=50.0)
+    monkeypatch.setattr(worker.time, "monotonic", lambda: clock.now)
+    working._number, working._asked, working._reports = 3, asked(), True
+    working._left = TimeLeft([1.0, 4.0, None, 2.0, 1.0])
     working.begin("Gear a", 2, 5)
-    assert working.said == [(3, "begin", {"title": "Gear a", "step": 2, "count": 5})]
-    working._asked = asked(moving=True)
+    assert working.said == [(3, "begin", {"title": "Gear a", "step": 2, "count": 5, "left": None})]
+    working._left = TimeLeft([1.0, 4.0, 2.0])
+    working.begin("Gear a", 2, 3)
+    assert working.said.pop() == (3, "begin", {"title": "Gear a", "step": 2, "count": 3, "left": 6.0})
+    clock.now += 0.2
+    working.advance(0.1)  # too soon after the last report
+    assert len(working.said) == 1
+    clock.now += 0.8
+    working.advance(0.25)
+    assert working.said.pop() == (
+        3,
+        "advance",
+        {"fraction": 0.25, "left": 5.0},
+    )  # 3 s by its own pace, and the last step
+    working._asked, working._reports = asked(moving=True), False
     working.begin("Gear a", 2, 5)
     assert len(working.said) == 1
     working._wait_before = 4
@@ -156,6 +173,48 @@ def test_a_figure_waits_while_a_value_moves_where_nobody_sees_it(working):
     for seen in (asked(moving=True), asked(pictures=("te",)), asked(moving=True, pictures=("te",), sight=(str(task),))):
         working._asked = seen
         assert not working._waits(task, "other")
+
+
+def test_time_left_follows_the_pace_of_this_machine_and_no_step_that_was_recalled(monkeypatch):
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(worker.time, "monotonic", lambda: clock.now)
+    left = TimeLeft([6.0, 4.0, 0.1])
+    left.begin(1)
+    assert left.left() == pytest.approx(10.1)
+    clock.now = 14.0
+    left.end(14.0)  # twice as slow as predicted: with the 2 s of a guess (2 + 14) / (2 + 6)
+    left.begin(2)
+    assert left.left() == pytest.approx(2.0 * 4.1)
+    left.end(0.001)
+    left.begin(3)
+    assert left.left() == pytest.approx(2.0 * 0.1)
+    assert TimeLeft([]).left() is None
+    assert TimeLeft([float("nan"), 1.0]).left() is None
+
+
+def test_a_stop_gives_up_whatever_is_done_and_another_case_only_a_case(working):
+    assert worker._is_stop(Stop(2))
+    assert not worker._is_stop(Compute(2, asked()))
+    working._asked = asked(moving=True)
+    assert working._gives_way(Stop(2))  # of what is dragged as well, within its second and a half
+    working.answer(Stop(9))
+    assert working.said == [(9, "stopped", {})]
+
+
+def test_a_stop_takes_everything_that_waits_and_a_case_only_cases():
+    said = []
+    inbox = Inbox(SimpleNamespace(send=said.append))
+    inbox.put(Export(1, asked(), "report", "x"))
+    inbox.put(Compute(2, asked()))
+    inbox.put(Compute(3, asked()))
+    assert [(one.number, one.what) for one in said] == [(2, "dropped")]
+    inbox.put(Stop(4))
+    assert [(one.number, one.what) for one in said[1:]] == [(1, "dropped"), (3, "dropped")]
+    assert inbox.newest == Stop(4)
+    inbox.watch(worker._is_stop)
+    with pytest.raises(Unwanted):
+        inbox.look()
+    assert inbox.take() == Stop(4)
 
 
 # ---- at a glance -----------------------------------------------------------------------------------------------------
