@@ -161,9 +161,9 @@ def beside(sections: Sequence[Section], document: Mapping[str, Any]) -> tuple[tu
     pairs = document.get("pair")
     mate: dict[str, str] = {}
     for pair in pairs.values() if isinstance(pairs, dict) else ():
-        two = [pair.get(key) for key in ("driver", "driven")] if isinstance(pair, dict) else []
-        known = len(two) == 2 and two[0] != two[1] and all(isinstance(one, str) and one in gears for one in two)
-        if known and not mate.keys() & set(two):
+        named = [pair.get(key) for key in ("driver", "driven")] if isinstance(pair, dict) else []
+        two = [one for one in named if isinstance(one, str) and one in gears and one not in mate]
+        if len(set(two)) == 2:
             mate |= {two[0]: two[1], two[1]: ""}
     rows: list[tuple[Section, ...]] = []
     for one in sections:
@@ -179,7 +179,8 @@ def in_rows(two: tuple[Section, Section]) -> tuple[tuple[Field, Field], ...]:
     """Fields of two sections of one kind, key by key, that either of them gives; in the order of the model."""
     given = [{field.path[-1]: field for field in one.fields} for one in two]
     wanted = {field.path[-1] for one in two for field in one.given}
-    order = list(_nodes().table(_nodes().meant(_nodes().top[two[0].path[0]])["additionalProperties"])["properties"])
+    table = _nodes().table(_nodes().meant(_nodes().top[two[0].path[0]])["additionalProperties"]) or {}
+    order = list(table.get("properties", ()))
     return tuple((given[0][key], given[1][key]) for key in order if key in wanted and all(key in one for one in given))
 
 
