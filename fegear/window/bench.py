@@ -16,7 +16,7 @@ from fegear.case.changed_text import literal, with_value, with_values
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
 from fegear.window.beginnings import gallery
-from fegear.window.computing import whole
+from fegear.window.computing import whole, with_gears
 from fegear.window.document import Desk
 from fegear.window.drag_handles import drawn_at_once, moved_relief, own_name, without_relief
 from fegear.window.glance import keep_view, read_view
@@ -369,15 +369,6 @@ class Bench:
         self._last.pop("pinned", None)
         self.tell("unpinned")
 
-    def _with_gears(self, content: _Content) -> _Content:
-        """What changes by hand, with the gears in mesh where they were not sent again."""
-        before = self._last.get("hands", {}).get("pairs", {})
-        pairs = {
-            name: {**one, "mesh": one["mesh"] or before.get(name, {}).get("mesh")}
-            for name, one in content["pairs"].items()
-        }
-        return {**content, "pairs": pairs}
-
     def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool, index: int = 0) -> None:
         """Have a part of a relief start at a roll angle [deg] with an amount [um]; the others stay.
 
@@ -502,4 +493,4 @@ class Bench:
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
         if what in ("plan", "hands", "assemblies", "harris", "done"):
-            self._last[what] = self._with_gears(content) if what == "hands" else content
+            self._last[what] = with_gears(content, self._last.get(what)) if what == "hands" else content

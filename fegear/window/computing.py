@@ -218,3 +218,12 @@ def whole(content: _Content, before: _Content | None) -> _Content:
     known = {one["key"]: one for one in (before or {}).get("figures", ())}
     figures = [known[one["key"]] if one.get("same") else one for one in content["figures"]]
     return {**content, "figures": figures}
+
+
+def with_gears(content: _Content, before: _Content | None) -> _Content:
+    """What changes by hand, with the gears in mesh where they were not sent again."""
+    known = (before or {}).get("pairs", {})
+    pairs = {
+        name: {**one, "mesh": one["mesh"] or known.get(name, {}).get("mesh")} for name, one in content["pairs"].items()
+    }
+    return {**content, "pairs": pairs}

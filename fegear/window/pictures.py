@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +16,14 @@ if TYPE_CHECKING:
 
 #: Room of a picture, and margins of a diagram in it [px].
 _WIDE, _HIGH, _ROOM = 240.0, 110.0, 10.0
-#: Pair that is drawn: teeth, and modules that are seen to either side of the pitch point.
-_TEETH, _SEEN = (21, 34), 5.2
+#: Modules of height that are seen, and the pair that is drawn.
+_SEEN = 5.2
+_DRAWN = """
+results = ["geometry"]
+gear.a = { teeth = 21, module = "1 mm" }
+gear.b = { teeth = 34, module = "1 mm" }
+pair.I = { driver = "a", driven = "b" }
+"""
 
 
 def _svg(*parts: str) -> str:
@@ -44,15 +51,12 @@ def _axes() -> str:
 
 @cache
 def _in_mesh() -> tuple[Array, Array]:
-    """Both gears about the pitch point, in modules."""
-    from fegear.geometry.external_tooth import Tooth
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair
-    from fegear.geometry.rack import BasicRack
+    """Both gears about the pitch point [mm], which is in modules."""
+    from fegear.case.reading import build_scene, parse_document
     from fegear.results.gear.drawing import moving_pair
 
-    gears = [Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25)), 1e-3, 0.25e-3 * z, 10e-3) for z in _TEETH]
-    drawn = moving_pair(GearPair(gears[0], gears[1]))
+    scene = build_scene(parse_document(_DRAWN, "picture"), "picture", Path())
+    drawn = moving_pair(scene.pairs["I"])
     return 1e3 * drawn.driver, 1e3 * drawn.driven
 
 
