@@ -180,7 +180,7 @@ _STAGES = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
 
 
 #: Kinds that are shown whenever they are computed: on flanks, of planets, of shafts.
-UNASKED = ("pressure", "loads", "bent")
+UNASKED = ("pressure", "loads", "bent", "field")
 
 
 #: Why deformed teeth are not shown of gears with a width.

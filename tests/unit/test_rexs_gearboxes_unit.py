@@ -371,3 +371,22 @@ def test_a_distance_that_no_teeth_reach_is_refused_where_a_shift_follows_from_it
         tree = put(tree, number, normal_module=(4.0, "mm"))
     with pytest.raises(InputError, match="center_distance = 84 mm: is too small for the teeth of cylindrical_stage 22"):
         case(tree)
+
+
+def test_external_pairs_are_3d_gears_with_a_tolerance_for_their_load_over_the_face() -> None:
+    found = case(two_stages())
+    assert {pair["width"] for pair in found["pair"].values()} == {"solid"}
+    assert found["accuracy"] == {"tolerance": 0.05}
+    assert found["load_distribution"] == {"panels": 24}
+    assert "coupled slices" not in text_of(two_stages())
+
+
+def test_one_face_of_more_than_forty_modules_makes_all_pairs_slices_and_is_said_once() -> None:
+    tree = two_stages()
+    gears = [one for one in tree["components"] if one["type"] == "cylindrical_gear"]
+    module = next(a["float"] for a in gears[0]["attributes"] if a["id"] == "normal_module")
+    wide = put(tree, gears[0]["id"], face_width=(40.5 * module, "mm"))
+    assert {pair["width"] for pair in case(wide)["pair"].values()} == {"slices"}
+    assert text_of(wide).count("external pairs are coupled slices") == 1
+    just = put(tree, gears[0]["id"], face_width=(40.0 * module, "mm"))
+    assert {pair["width"] for pair in case(just)["pair"].values()} == {"solid"}

@@ -166,7 +166,7 @@ def test_oil_and_application_factor_reach_the_pairs_of_a_set():
 def test_a_ring_stage_is_rated_and_its_load_over_the_face_computed():
     found = case(ring_stage())
     assert {"rating", "load-distribution"} <= set(found["results"])
-    assert "width" not in found["pair"]["I"]  # slices are for external gears
+    assert "width" not in found["pair"]["I"]  # of internal spur pairs the plane section is taken
     assert found["pair"]["I"]["centre_distance"] == "40 mm"  # written with either sign
     assert {"lubricant", "operation"} <= found["pair"]["I"].keys()
 

@@ -164,15 +164,20 @@ def test_what_a_page_that_opens_now_is_told_comes_in_order(bench):
     say("picture", task="one", key="p-0")
     say("meshed", pair="I", kind="stress", task="three")
     say("meshed", pair="I", kind="pressure", task="two")
+    say("meshed", pair="I", kind="field", task="two")
     say("done", moving=False)
     told = bench.shown_now()
     assert [what for what, _ in told] == [
-        "plan", "hands", "assemblies", "found", "picture", "found", "meshed", "done",
+        "plan", "hands", "assemblies", "found", "picture", "found", "meshed", "meshed", "done",
     ]  # fmt: skip
     assert "pictures" not in told[3][1]
-    assert told[6][1]["kind"] == "pressure"  # what is not switched on is not shown
+    assert [one["kind"] for _, one in told[6:8]] == ["pressure", "field"]  # what is not switched on is not shown
     bench.show("I", "stress", on=True)
-    assert [content["kind"] for what, content in bench.shown_now() if what == "meshed"] == ["stress", "pressure"]
+    assert [content["kind"] for what, content in bench.shown_now() if what == "meshed"] == [
+        "stress",
+        "pressure",
+        "field",
+    ]
     # Tasks that are gone are forgotten, with what they showed by themselves.
     bench._hear(Said(bench.asked_for[-1].number, "plan", {"tasks": ["one"]}))
     assert [content.get("task") for what, content in bench.shown_now() if what in ("found", "meshed")] == [

@@ -63,6 +63,11 @@ _RESULTS = (
 )
 #: Rim below which a gear is no body of its own on its shaft [modules].
 _LEAST_RIM = 2.7
+#: Relative error and panels over the face with which load distributions of a gearbox are computed.
+_TOLERANCE, _PANELS = 0.05, 24
+#: Faces above it are loaded as coupled slices [modules]: solid gears take minutes each there.
+_WIDEST_SOLID = 40.0
+_WIDTHS = {"solid": "3D gears", "slices": "coupled slices"}
 #: Digits of what was solved: those behind them mean nothing.
 _SOLVED = 12
 #: A torque of so much of the largest is none.
@@ -140,9 +145,10 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         keys = gear_keys(said, gear, rest[n], bore, _far_end(said, gear, stages, flow))
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
+    width = _width(said, [stages[n] for n in loaded])
     heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
     tables += [
-        _pair(said, stage, names, flow, n, heights if bent else {}, bins)
+        _pair(said, stage, names, flow, n, heights if bent else {}, bins, width)
         for n, stage in enumerate(stages)
         if n in loaded
     ]
@@ -151,6 +157,11 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         tables += set_tables(said, planetary, names, n, flow, everything, of_mesh)
     tables += _shafts(said, shafts, places, stages, names, on, middles, flow) if bent else []
     tables.append(_effects(bent=bent, relieved=relieved))
+    if any(not stages[n].internal for n in loaded):
+        tables += [
+            Table("load_distribution", (Key("panels", str(_PANELS), "over the face width: K_Hbeta within 1 %"),)),
+            Table("accuracy", (Key("tolerance", f"{_TOLERANCE:g}", "K_Hbeta within 5 % with 3D gears"),)),
+        ]
     about = f"Imported from {source}" if source else "Imported"
     head = (
         f"{about}: REXS {model.version}, written by {model.program or 'an unnamed program'}"
@@ -310,7 +321,7 @@ def _height(place: Place, middle: float) -> float:
 
 def _pair(
     said: Said, stage: Stage, names: dict[int, str], flow: Flow, n: int, heights: dict[int, float],
-    spectrum: Spectrum,
+    spectrum: Spectrum, width: str,
 ) -> Table:  # fmt: skip
     """``[pair.NAME]``: who drives, distance, torque and speed."""
     first, second = stage.gears
@@ -333,10 +344,29 @@ def _pair(
     keys.append(Key("torque", quantity(on_driver, "N*m", _SOLVED), where))
     where = assumed if n in flow.assumed_speed else "calculated through the gearbox from rotational_speed"
     keys.append(Key("speed", quantity(abs(speed), "rpm", _SOLVED), where))
-    if not stage.internal:  # slices are for external gears
-        keys.append(Key("width", text("slices"), "faster than 3D gears"))
+    if not stage.internal:  # of internal spur pairs the plane section is taken
+        keys.append(Key("width", text(width), "load over the face from " + _WIDTHS[width]))
     keys += _surface_keys(said, stage, bins=spectrum.bins[n], life=spectrum.life)
     return Table(f"pair.{_roman(n + 1)}", tuple(keys), f"{stage.component.said} {stage.component.name}".strip())
+
+
+def _width(said: Said, stages: list[Stage]) -> str:
+    """How external gears are loaded over their faces: as solids, all of them, for a gear may be in several pairs."""
+    wide = [
+        gear
+        for stage in stages
+        if not stage.internal
+        for gear in stage.gears
+        if (said.number(gear, "length", "face_width") or 0.0) > _WIDEST_SOLID * module_of(said, gear)
+    ]
+    if wide and not any(stage.internal for stage in stages):
+        gears = ", ".join(dict.fromkeys(gear.said for gear in wide))
+        said.notes.append(
+            f"{gears}: faces of more than {_WIDEST_SOLID:g} modules; external pairs are coupled slices, whose "
+            'K_Hbeta may be off by more than 5 %. Set width = "solid" for 3D gears, which take minutes each.'
+        )
+        return "slices"
+    return "solid"
 
 
 def _surface_keys(said: Said, stage: Stage, *, bins: Bins, life: float | None) -> tuple[Key, ...]:
