@@ -197,9 +197,7 @@ def _can_be_sliced(scene: Scene, name: str) -> bool:
     return scene.width_of(name) == "solid" and not any(one.tooth.internal or one.body for one in gears)
 
 
-def _coarse_draft(
-    scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[Scene], Plan]
-) -> Draft | None:
+def _coarse_draft(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[Scene], Plan]) -> Draft | None:
     """Plane pairs with those gears that are solved anew from an atlas, or from coarser meshes."""
     own = scene.case.accuracy.tolerance
     if own > _COARSEST or not any(step.task.stage in ANSWERS for step in plan.steps):

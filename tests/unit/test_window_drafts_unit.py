@@ -51,7 +51,7 @@ def plan_of(scene):
 def test_a_pair_with_a_width_has_a_preview_by_coupled_slices_until_its_gears_are_known():
     scene, cache = scene_of(WIDE), SolutionCache()
     plan = plan_of(scene)
-    draft = draft_of(scene, plan, cache)
+    draft = draft_of(scene, plan, cache, plan_of)
     assert draft is not None
     assert "coupled slices" in draft.told
     assert draft.scene.width_of("I") == "slices"
@@ -61,18 +61,18 @@ def test_a_pair_with_a_width_has_a_preview_by_coupled_slices_until_its_gears_are
     assert scene.width_of("I") == "solid"
     solved = [step for step in plan.steps if step.task.stage == "solid-solution"]
     known = {key_without_needs(scene, step) for step in solved}
-    assert draft_of(scene, plan, known) is None
+    assert draft_of(scene, plan, known, plan_of) is None
 
 
 @pytest.mark.dear
 def test_a_preview_has_the_numbers_of_the_glance_and_solves_no_solid():
     scene, cache = scene_of(WIDE), SolutionCache()
     plan = plan_of(scene)
-    draft = draft_of(scene, plan, cache)
+    draft = draft_of(scene, plan, cache, plan_of)
     found = run_plan(draft.scene, draft.plan, cache=cache).values
     assert 1.0 < found["I.K_Hbeta"].si < 1.3
     assert {"I.te_peak_to_peak", "I.driver.largest_root_tension"} <= {one.name for one in found}
-    assert draft_of(scene, plan, cache) is not None
+    assert draft_of(scene, plan, cache, plan_of) is not None
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_a_preview_has_the_numbers_of_the_glance_and_solves_no_solid():
 )
 def test_what_slices_do_not_know_or_are_has_no_preview_by_them(old, new):
     scene = scene_of(WIDE.replace(old, new))
-    assert draft_of(scene, plan_of(scene), SolutionCache()) is None
+    assert draft_of(scene, plan_of(scene), SolutionCache(), plan_of) is None
 
 
 def test_every_kind_of_draft_and_every_case_of_the_gallery_is_offered_once():
