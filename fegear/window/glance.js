@@ -224,7 +224,7 @@ const fegearGlance = (() => {
       for (const key of [...specs.keys()]) if (owners.has(key) && !tasks.includes(owners.get(key))) specs.delete(key);
       awaited = { figures: new Set(specs.keys()), numbers: new Set(numbers.keys()) };
       clearTimeout(dimming);
-      dimming = setTimeout(() => { dimmed = true; dim(); }, AWHILE);
+      if (!fegear.isMoving()) dimming = setTimeout(() => { dimmed = true; dim(); }, AWHILE); // what moves would flicker
     },
     hands(content) {
       const before = Object.keys(pairs).length;
