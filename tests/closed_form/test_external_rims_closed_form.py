@@ -9,15 +9,18 @@ import math
 import numpy as np
 import pytest
 
+from fegear.base.printed import percent
+from fegear.case.built.tooth_influence import rollers_that_pull
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.odd_gear import solve_cracked_gear
 from fegear.fem.plane.scikit_fem_alone import solve_alone
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import influence_of_shape, solve_gear
-from fegear.fem.plane.tooth_on_pins import tooth_on_pins
+from fegear.fem.plane.tooth_on_pins import pulled_share, tooth_on_pins
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.rim_support import RimSupport
 
 NU, COARSE = 0.3, settings_at(-4)
@@ -110,3 +113,29 @@ def test_thinner_rims_close_a_crack_the_more_under_the_next_tooth(backup, ratio)
     found = solve_cracked_gear(ordinary, {0: crack})
     own, beside = (found.stress_intensity(0, j, [14.5])[0][0, 0] for j in (0, 1))
     assert beside / own == pytest.approx(ratio, rel=0.15)
+
+
+@pytest.mark.parametrize("count", [3, 12])
+def test_rollers_that_pull_are_said_with_their_size(count):
+    """Three rollers balance a load on one tooth by forces of both senses; pins and a held bore have no such note."""
+    tooth = Tooth(25, BasicRack(1.0, 1.25, 0.25))
+    bore = tooth.root_radius - 0.5
+    found = {}
+    for rollers in (True, False):
+        support = RimSupport(pins=count, width=0.2, rollers=rollers)
+        gear = Gear(tooth, 1.0, bore, 10.0, Material(1.0), support=support)
+        found[rollers] = solve_gear(gear, settings_at(-5), reach=1, estimate_error=False)
+    known = found[True].fine
+    share = pulled_share(known)
+    assert pulled_share(found[False].fine) == 0.0
+    assert 0.1 < share <= 1.0
+    said = rollers_that_pull("g", found[True])
+    assert len(said) == 1
+    assert percent(share) in said[0]
+    pins, load = known.pins, known.remote(np.array([tooth.pitch_radius]), 0.1)[:, 0]
+    moved = pins.by_tooth[pins.reach]
+    forces = (pins.inverse @ (moved[:, : load.size] @ load))[:count]
+    angle = 2.0 * math.pi * np.arange(count) / count
+    # a unit load: what the rollers carry across the axis balances it
+    assert np.hypot(forces @ np.sin(angle), forces @ np.cos(angle)) == pytest.approx(1.0, rel=1e-3)
+    assert min(-forces.min(), forces.max()) / np.abs(forces).max() <= share + 0.01  # of another place of the load

@@ -211,7 +211,22 @@ def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:
     each = influence.over_the_teeth([0.5 * (low + high)], [influence.reference_half_width])
     c, tension = each["c_self"][:, 0], each["root_tension"][:, 0]
     what = "rollers" if support.rollers else "pins"
-    return teeth_on_pins_differ(name, support.pins, "at half tooth height", c, tension, what), *apart
+    pulled = rollers_that_pull(name, influence) if support.rollers else ()
+    return teeth_on_pins_differ(name, support.pins, "at half tooth height", c, tension, what), *pulled, *apart
+
+
+def rollers_that_pull(name: str, influence: GearInfluence) -> tuple[str, ...]:
+    """That rollers hold a rim both ways, and how strongly."""
+    from fegear.fem.plane.tooth_on_pins import pulled_share
+
+    share = pulled_share(influence.fine)
+    if share < _PULLS:
+        return ()
+    said = neglecting(
+        f"Gear {name}: rollers are assumed to carry tension as well, up to {percent(share)} of the largest force for a "
+        "load on one tooth. A rim that lifts off its rollers is less stiff."
+    )
+    return (said,)
 
 
 def always_above_the_arc(name: str, teeth: int) -> str:
@@ -288,6 +303,8 @@ def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
 
 #: Largest values of a smooth fillet's curvature between its ends.
 _SWINGS = 3
+#: Share of the largest force of a roller beyond which others that pull are mentioned.
+_PULLS = 0.01
 #: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge
 #: length and with the order: one core of a server, 20 to 200 teeth, edges of 4 to 1 times the default.
 _SECONDS, _GROWTH, _ORDER_GROWTH = 0.55, 1.3, 2.2

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import SIDES, Influence, Side
 
 if TYPE_CHECKING:
@@ -31,6 +32,24 @@ def tooth_on_pins(influence: Influence, tooth: int) -> Influence:
         for (k, side), s in influence.stress.items()
     }
     return replace(influence, compliance=compliance, stress=stress, lower=None, pins=None)
+
+
+def pulled_share(influence: Influence) -> float:
+    """Largest forces of rollers of either sense, the smaller by the larger one, of loads amid the flank of any tooth.
+
+    Rollers that press and others that pull, which none does: zero where all are of one sense.
+    """
+    pins = influence.pins
+    if pins is None or influence.support is None or not influence.support.rollers:
+        return 0.0
+    radius = 0.5 * (influence.flank.lowest_radius + influence.flank.highest_radius)
+    load = influence.remote(np.array([radius]), REFERENCE_HALF_WIDTH)[:, 0]
+    count, worst = influence.support.pins, 0.0
+    for moved in pins.by_tooth[pins.reach : pins.reach + pins.teeth]:
+        force = (pins.inverse @ (moved[:, : load.size] @ load))[:count]
+        of_both = np.sort([float(force.max(initial=0.0)), float(-force.min(initial=0.0))])
+        worst = max(worst, float(of_both[0] / of_both[1]))
+    return worst
 
 
 def over_the_teeth(influence: Influence, radius: ArrayLike, patch: float, half_width: ArrayLike) -> dict[str, Array]:
