@@ -1,0 +1,236 @@
+"""The fillet with the least root stress of one gear of a pair: proof, gain, and what is lost where it is not met."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import ConvergenceError, GeometryError
+from fegear.contact.loaded_teeth import silent
+from fegear.contact.pair_spec import PairSpec
+from fegear.contact.plane.base_pitch import roll_positions
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.loaded_pair import LoadedPair
+from fegear.contact.plane.maker import load_plane
+from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
+from fegear.design.fillet.bench import FilletBench, Limits, Objective
+from fegear.design.fillet.families import Basis, MovedEllipses
+from fegear.design.fillet.search import Found, search
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.solution import solve_to_tolerance
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.fillet_shapes import PointsFillet
+from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.rack import BasicRack
+
+#: Searches: basis, how many waves or bumps, where the flank begins at first (share of the way to the base circle), and
+#: height of the first wave or bump. The first is the design, the others are its proof.
+SEARCHES: dict[str, tuple[Basis, int, float, float]] = {
+    "waves": ("waves", 7, 0.0, 0.0),
+    "waves, other start": ("waves", 7, 0.4, 0.02),
+    "bumps": ("bumps", 6, 0.3, 0.0),
+}
+#: Starts that are tried in turn where an ellipse cannot be: nearer to the base circle, and higher.
+_STARTS = ((0.0, 0.0), (0.2, 0.0), (0.4, 0.0), (0.7, 0.0), (0.2, 0.05), (0.5, 0.05), (0.9, 0.1))
+#: Roll positions of the final numbers; how far off a fillet is tried, halfway up [modules].
+_POSITIONS, OFF = 48, 0.01
+
+
+@dataclass(frozen=True)
+class Stressed:
+    """A tooth and its largest stress by the objective in the pair, loaded with it [Pa]; its error is estimated."""
+
+    name: str
+    tooth: InvoluteTooth
+    stress: float
+    error: float
+
+
+@dataclass(frozen=True)
+class FilletDesign:
+    """The best fillet of one gear.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    present, best : Stressed
+    full : Stressed or None
+        With the full fillet of a rack as deep as the present one; None of gears that no rack generates.
+    found : mapping of str to Found
+        By search, see `SEARCHES`.
+    off : (float, float)
+        Stress over the best where half of the fillet's length is `OFF` modules deeper, and higher.
+    seconds : float
+    """
+
+    member: Member
+    present: Stressed
+    best: Stressed
+    full: Stressed | None
+    found: dict[str, Found]
+    off: tuple[float, float]
+
+    @property
+    def shape(self) -> PointsFillet:
+        """The fillet."""
+        return self.found[self.first].shape
+
+    @property
+    def first(self) -> str:
+        """The search that found it."""
+        return min(self.found, key=lambda name: self.found[name].stress)
+
+    @property
+    def spread(self) -> float:
+        """How far the worst search ended above the best, relative."""
+        stress = [one.stress for one in self.found.values()]
+        return max(stress) / min(stress) - 1.0
+
+    def gain(self, over: Stressed) -> tuple[float, float]:
+        """By how much the best is below another fillet, relative, and its estimated error."""
+        ratio = self.best.stress / over.stress
+        return 1.0 - ratio, ratio * (self.best.error / self.best.stress + over.error / over.stress)
+
+
+def design_fillet(
+    loaded: LoadedPair,
+    spec: PairSpec,
+    solved: tuple[GearInfluence, GearInfluence],
+    member: Member,
+    limits: Limits,
+    objective: Objective = "tension",
+    tolerance: float = 1e-2,
+    progress: Callable[[float], None] = silent,
+) -> FilletDesign:
+    """Find the fillet of one gear of a pair of external plane gears with the least root stress.
+
+    Parameters
+    ----------
+    loaded : LoadedPair
+        The present pair.
+    spec : PairSpec
+        Of it.
+    solved : (GearInfluence, GearInfluence)
+        Driver and driven gear.
+    member : {"driver", "driven"}
+    limits : Limits
+        What the fillet must keep.
+    objective : {"tension", "alternating"}
+    tolerance : float
+        Of the final numbers.
+    progress : callable, optional
+
+    Raises
+    ------
+    GeometryError
+        If no ellipse across the tooth space touches root circle and flank, from which the search could begin.
+    """
+    bench = FilletBench(loaded.engagement, loaded.nominal, member, limits, objective)
+    tooth = bench.gear.symmetric_tooth
+    present = bench.largest(tooth)
+    flank = bench.flank(tooth.root_radius)
+    found = {}
+    for n, (name, (basis, count, share, height)) in enumerate(SEARCHES.items()):
+        family = MovedEllipses(flank, bench.active_roll, basis, count)
+        start = _start(bench, family, share, height)
+        if start is not None:
+            found[name] = search(bench, family, present, start)
+        progress((n + 1) / (len(SEARCHES) + 2))
+    if not found:
+        raise GeometryError(
+            "fillet_design", "(start)", "has no ellipse tangent to root circle and flank to start from",
+            "reduce smallest_radius or clearance, or choose another root circle",
+        )  # fmt: skip
+    best = min(found.values(), key=lambda one: one.stress)
+    finally_ = _Final(loaded, spec, solved, member, objective, tolerance)
+    full = full_rounded(tooth)
+    rows = [
+        None if one is None else finally_.stressed(name, one)
+        for name, one in (("present", tooth), ("optimum", bench.tooth(best.shape)), ("full fillet of a rack", full))
+    ]
+    progress(1.0)
+    if rows[0] is None or rows[1] is None:
+        raise ConvergenceError("fillet design: the present or the best fillet could not be solved")
+    return FilletDesign(member, rows[0], rows[1], rows[2], found, _off(bench, best.shape, flank.side))
+
+
+def _start(bench: FilletBench, family: MovedEllipses, share: float, height: float) -> Array | None:
+    """Numbers of the first start that is a fillet within reach."""
+    for one, up in ((share, height), *_STARTS):
+        numbers = np.zeros(family.count + 1)
+        numbers[:2] = one, up
+        try:
+            bench.tooth(family.shape(numbers))
+        except GeometryError:
+            continue
+        return numbers
+    return None
+
+
+def full_rounded(tooth: InvoluteTooth) -> Tooth | None:
+    """The tooth that a rack with a full fillet of the same depth makes; None where there is none."""
+    made = getattr(tooth, "generated", tooth)
+    if not isinstance(made, Tooth) or made.rack.residual_undercut:
+        return None
+    rack = made.rack
+    try:
+        full = BasicRack.full_fillet(rack.addendum, rack.dedendum, rack.pressure_angle)
+        return replace(made, rack=full, tip_radius=made.tip_radius)
+    except GeometryError:
+        return None
+
+
+def moved(shape: PointsFillet, by: float) -> PointsFillet:
+    """A fillet whose middle lies farther out of the material by so many modules."""
+    points = np.array(shape.points).T
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points)))])
+    s = along / along[-1]
+    step = np.gradient(points, along, axis=1)
+    outward = np.stack([step[1], -step[0]]) / np.hypot(*step)
+    moved_points = points + outward * (16.0 * by * s**2 * (1.0 - s) ** 2)
+    return replace(shape, points=tuple(map(tuple, moved_points.T.tolist())))
+
+
+def _off(bench: FilletBench, shape: PointsFillet, side: int) -> tuple[float, float]:
+    here = bench.largest(bench.tooth(shape))
+    found = []
+    for by in (-OFF, OFF):
+        try:
+            found.append(bench.largest(bench.tooth(moved(shape, side * by))) / here - 1.0)
+        except GeometryError:
+            found.append(math.nan)
+    return found[0], found[1]
+
+
+@dataclass(frozen=True)
+class _Final:
+    """Largest stress with a fillet in the pair that is loaded with it."""
+
+    loaded: LoadedPair
+    spec: PairSpec
+    solved: tuple[GearInfluence, GearInfluence]
+    member: Member
+    objective: Objective
+    tolerance: float
+
+    def stressed(self, name: str, tooth: InvoluteTooth) -> Stressed:
+        """Of a tooth, with its estimated error."""
+        i = 0 if self.member == "driver" else 1
+        gears = [self.loaded.pair.driver, self.loaded.pair.driven]
+        gears[i] = replace(gears[i], tooth=tooth)
+        solved = list(self.solved)
+        solved[i] = solve_to_tolerance(gears[i], self.tolerance, reach=self.solved[i].reach)
+        pair = GearPair(gears[0], gears[1], self.loaded.pair.centre_distance, self.loaded.pair.axial_offset)
+        e = load_plane(replace(self.spec, pair=pair), solved, estimates=False).engagement
+        states = loaded_states(e, (), (self.loaded.nominal,), roll_positions(e, _POSITIONS))
+        found = tooth_stress(e, states, self.member, finite_element_compliance(solved[i]))
+        most, error = float(found.largest_tension[0]), found.error(0) or 0.0
+        if self.objective == "tension" or found.largest_compression is None:
+            return Stressed(name, tooth, most, error)
+        bench = FilletBench(e, self.loaded.nominal, self.member, objective=self.objective, settings=solved[i].settings)
+        return Stressed(name, tooth, bench.largest(tooth), 0.5 * (error + (found.compression_off(0) or 0.0)))

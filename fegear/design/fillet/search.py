@@ -1,0 +1,128 @@
+"""The least largest stress of a family of fillets within its limits, by linear programmes in regions of trust.
+
+At the least many points of the fillet are stressed alike, so that the largest stress has a kink there, and what slopes
+of one point promise the next one takes away. Each step lets the largest of all points fall as their slopes say, within
+the slopes of the limits, and is kept where the truth follows (R. Fletcher, Practical Methods of Optimization, 14.5).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.errors import GeometryError
+from fegear.design.fillet.bench import FilletBench, Judged
+from fegear.design.fillet.families import MovedEllipses
+from fegear.geometry.fillet_shapes import FilletShape
+
+#: First and last region of trust, of the family's spread; how slopes are taken; rounds; promised gain that ends it.
+_TRUST, _NO_TRUST, _SLOPE, _ROUNDS, _ENDED = 0.5, 2e-3, 0.02, 30, 1e-4
+#: Weight of a broken limit against the relative stress.
+_BROKEN = 10.0
+
+
+@dataclass(frozen=True)
+class Found:
+    """The best fillet of a family from a start.
+
+    Parameters
+    ----------
+    numbers : ndarray
+    shape : FilletShape
+    stress : float
+        On the search's mesh, under the present loads [Pa].
+    tried : int
+        Fillets that were solved.
+    """
+
+    numbers: Array
+    shape: FilletShape
+    stress: float
+    tried: int
+
+
+def search(bench: FilletBench, family: MovedEllipses, present: float, start: Array) -> Found:
+    """Lead a fillet to the least nearby.
+
+    Parameters
+    ----------
+    bench : FilletBench
+    family : MovedEllipses
+    present : float
+        Stress that others are measured by [Pa].
+    start : ndarray
+        Numbers of a fillet that can be.
+    """
+    begun, spread, trust = bench.tried, family.spread, _TRUST
+    numbers = np.asarray(start, dtype=float)
+    at = _judged(bench, family, numbers)
+    if at is None:
+        raise GeometryError("fillet_design", "the start", "is no fillet of this gear")
+    for _ in range(_ROUNDS):
+        slopes = _slopes(bench, family, numbers, at)
+        while trust > _NO_TRUST:
+            step, promised = _programme(at, slopes, present, numbers, spread, trust)
+            if promised < _ENDED:
+                return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun)
+            there = _judged(bench, family, numbers + step * spread)
+            gained = -math.inf if there is None else _merit(at, present) - _merit(there, present)
+            if there is not None and gained > 0.1 * promised:
+                numbers, at = numbers + step * spread, there
+                trust *= 1.6 if gained > 0.6 * promised else 1.0
+                break
+            trust *= 0.3
+        else:
+            break
+    return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun)
+
+
+def _judged(bench: FilletBench, family: MovedEllipses, numbers: Array) -> Judged | None:
+    try:
+        return bench.judged(bench.tooth(family.shape(numbers)))
+    except GeometryError:
+        return None
+
+
+def _merit(one: Judged, present: float) -> float:
+    return float(one.stress.max()) / present + _BROKEN * max(0.0, -float(one.room.min()))
+
+
+def _slopes(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judged) -> tuple[Array, Array]:
+    """Change of stress and room by each number, over its spread."""
+    stress, room = [], []
+    for n in range(numbers.size):
+        found, step = None, 0.0
+        for step in (_SLOPE, -_SLOPE, 0.1 * _SLOPE, -0.1 * _SLOPE):
+            off = numbers.copy()
+            off[n] += step * family.spread[n]
+            if n == 0 and not 0.0 <= off[0] <= 1.0:
+                continue
+            if (found := _judged(bench, family, off)) is not None:
+                break
+        stress.append(np.zeros(at.stress.size) if found is None else (found.stress - at.stress) / step)
+        room.append(np.zeros(at.room.size) if found is None else (found.room - at.room) / step)
+    return np.array(stress).T, np.array(room).T
+
+
+def _programme(
+    at: Judged, slopes: tuple[Array, Array], present: float, numbers: Array, spread: Array, trust: float
+) -> tuple[Array, float]:
+    """Step of the spread that the slopes say is best, and the merit that it promises to gain."""
+    from scipy.optimize import linprog
+
+    n = numbers.size
+    # unknowns: step, largest stress over the present one, largest broken limit
+    stress = np.hstack([slopes[0] / present, -np.ones((at.stress.size, 1)), np.zeros((at.stress.size, 1))])
+    room = np.hstack([-slopes[1], np.zeros((at.room.size, 1)), -np.ones((at.room.size, 1))])
+    share = ((0.0 - numbers[0]) / spread[0], (1.0 - numbers[0]) / spread[0])
+    bounds = [(max(-trust, share[0]), min(trust, share[1])), *[(-trust, trust)] * (n - 1), (0.0, None), (0.0, None)]
+    found = linprog(
+        np.concatenate([np.zeros(n), [1.0, _BROKEN]]), np.vstack([stress, room]),
+        np.concatenate([-at.stress / present, at.room]), bounds=bounds, method="highs",
+    )  # fmt: skip
+    if found.x is None:
+        return np.zeros(n), 0.0
+    return np.asarray(found.x[:n]), _merit(at, present) - float(found.fun)
