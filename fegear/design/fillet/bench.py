@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.pair import Member
 from fegear.geometry.shaped_tooth import ShapedTooth, with_fillet
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.root_stress import FilletCurve
 
 #: What is to be small: the largest tension, or half the range from it to the largest compression of the other fillet,
 #: as teeth have it that are loaded on both flanks (idlers, planets).
@@ -117,7 +120,8 @@ class FilletBench:
     @property
     def active_roll(self) -> float:
         """Roll angle at which the mating tip touches the flank [rad]: there it must have begun."""
-        pair, other = self.engagement.pair, "driven" if self.member == "driver" else "driver"
+        pair = self.engagement.pair
+        other: Member = "driven" if self.member == "driver" else "driver"
         x = pair.x_of_radius(pair.gear(other).involute_tip_radius, other)
         return float(pair.roll_angle(x, self.member))
 
@@ -153,7 +157,7 @@ class FilletBench:
 
     def _extreme(self, source: FiniteElementCompliance, side: Side) -> Array:
         """Stress at all positions of a tooth in the mesh, shape (positions, S) [Pa]."""
-        curve, state = source.fillet_curve(0, side), self.states.rows[0]
+        curve, state = cast("FilletCurve", source.fillet_curve(0, side)), self.states.rows[0]
         touched = touching_radius(state, self.member, 1)
         found = [
             curve.along(stress[:, 0].T, SHARES, radius[:, 0]).T

@@ -16,7 +16,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.design.fillet.bench import FilletBench, Judged
 from fegear.design.fillet.families import MovedEllipses
-from fegear.geometry.fillet_shapes import FilletShape
+from fegear.geometry.fillet_shapes import PointsFillet
 
 #: First and last region of trust, of the family's spread; how slopes are taken; rounds; promised gain that ends it.
 _TRUST, _NO_TRUST, _SLOPE, _ROUNDS, _ENDED = 0.5, 2e-3, 0.02, 30, 1e-4
@@ -31,7 +31,7 @@ class Found:
     Parameters
     ----------
     numbers : ndarray
-    shape : FilletShape
+    shape : PointsFillet
     stress : float
         On the search's mesh, under the present loads [Pa].
     tried : int
@@ -39,7 +39,7 @@ class Found:
     """
 
     numbers: Array
-    shape: FilletShape
+    shape: PointsFillet
     stress: float
     tried: int
 
