@@ -17,6 +17,7 @@ from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.compliance import Side
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
+from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
 from fegear.fem.plane.settings import MeshSettings, settings_at
@@ -157,7 +158,8 @@ class FilletBench:
 
     def _extreme(self, source: FiniteElementCompliance, side: Side) -> Array:
         """Stress at all positions of a tooth in the mesh, shape (positions, S) [Pa]."""
-        curve, state = cast("FilletCurve", source.fillet_curve(0, side)), self.states.rows[0]
+        roots, state = RootStress.of(self.engagement.compliance, self.member, side, source), self.states.rows[0]
+        curve = cast("FilletCurve", roots.curve(0))
         touched = touching_radius(state, self.member, 1)
         found = [
             curve.along(stress[:, 0].T, SHARES, radius[:, 0]).T

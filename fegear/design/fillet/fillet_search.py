@@ -15,7 +15,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.design.fillet.bench import FilletBench, Judged
-from fegear.design.fillet.families import MovedEllipses
+from fegear.design.fillet.moved_ellipses import MovedEllipses
 from fegear.geometry.fillet_shapes import PointsFillet
 
 #: First and last region of trust, of the family's spread; how slopes are taken; rounds; promised gain that ends it.
