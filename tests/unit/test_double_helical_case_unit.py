@@ -372,3 +372,15 @@ def test_rexs_gets_one_half_with_its_torque_and_says_so():
     assert f"Pair I: {said}" in remarks
     torque = 3000.0 * scene.pairs["I"].driver.base_radius
     assert f"{torque:.6g}"[:6] in text
+
+
+def test_harmonics_have_the_frequency_of_the_mesh_and_its_axial_acceleration():
+    _, ran = values(case({"floating": "driver", "stagger": 0.5}, speed="600 rpm"))
+    (table,) = (t for o in ran.outcomes.values() for t in o.tables if t.name == "double_helical_harmonics_I")
+    n, frequency, motion, acceleration = (
+        next(c.values for c in table.columns if c.name == name)
+        for name in ("n", "frequency", "axial_motion", "axial_acceleration")
+    )
+    np.testing.assert_allclose(frequency, n * 200.0)
+    np.testing.assert_allclose(acceleration, (2.0 * np.pi * frequency) ** 2 * motion * 1e-6, rtol=1e-9)
+    assert motion[0] > 0.0
