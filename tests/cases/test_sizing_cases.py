@@ -222,6 +222,31 @@ def test_a_present_design_that_interferes_is_placed_with_its_reasons():
     assert own["S_H"][0] == pytest.approx(1.73, abs=0.15)
 
 
+def test_a_present_design_that_cannot_be_rated_is_behind_every_variant_that_is_no_heavier():
+    present = {
+        "teeth": [11, 41], "normal_module": "2.5 mm", "helix_angle": "14 deg", "profile_shift": [0.3, -1.0506],
+        "face_width": "25 mm",
+    }  # fmt: skip
+    asked = {
+        **FIXED, "power": "1 kW", "centre_distance": "65 mm",
+        "ratio": 3.7273, "ratio_tolerance": 0.03, "face_width": "25 mm",
+        "pinion_teeth": [16, 24], "normal_modules": ["1.5 mm"], "criteria": ["safety", "mass"],
+        "helix_angles": ["14 deg"], "pinion_shifts": {"start": -0.2, "stop": 0.6, "count": 9},
+        "present": present,
+    }  # fmt: skip
+    results, tables = sized(asked)
+    (said,) = [sentence for sentence in results.answer.sentences if "Present design (11/41 teeth" in sentence]
+    assert "breaks undercut, interference" in said
+    assert said.endswith("not rated.")
+    assert any("is better by all criteria" in sentence for sentence in results.answer.sentences)
+    better = dict(zip(tables["placed_design"]["criterion"], tables["placed_design"]["better"], strict=True))
+    assert better["safety"] == results_of(results)["sizing.variants_feasible"]
+
+
+def results_of(results):
+    return {value.name: value.si for value in results.values}
+
+
 def test_reasons_name_what_a_requirement_without_a_design_breaks():
     results, tables = sized({**FIXED, "power": "2900 kW"})
     assert results.answer.sentences[0].startswith("None of ")

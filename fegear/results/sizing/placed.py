@@ -88,6 +88,7 @@ def placed_present(
     off = abs(own.teeth_2 / own.teeth_1 / asked.part.ratio - 1.0) > asked.part.ratio_tolerance + 1e-9
     reasons = (*(("ratio",) if off else ()), *(words for words, mask in found if mask[0]))
     costs = np.array(own.costs)
+    by_formulas, worst = np.nan_to_num(by_formulas, nan=np.inf), np.nan_to_num(costs, nan=np.inf)
     by_all = bool(np.isfinite(known).all() and np.isfinite(costs).all())
     others, cost = (known, costs) if by_all else (lives.criteria, by_formulas)
     worse = (others <= cost).all(axis=1) & (others < cost).any(axis=1)
@@ -99,5 +100,6 @@ def placed_present(
         best = sign * float(compared.min()) / size if compared.size else math.nan
         better = int((compared < costs[k]).sum()) if math.isfinite(costs[k]) else compared.size
         placed.append(Placed(name, sign * own.costs[k] / size, best, better, compared.size, unit))
-    dominates = (one for one in chosen if (np.array(one.costs) <= costs).all() and (np.array(one.costs) < costs).any())
+    shown = ((one, np.array(one.costs)) for one in chosen)
+    dominates = (one for one, cost in shown if (cost <= worst).all() and (cost < worst).any())
     return PresentPlaced(own, reasons, tuple(placed), int(worse.sum()), by_all, next(dominates, None))

@@ -97,7 +97,8 @@ def _said_of(one: SizedVariant) -> str:
     if one.relief is not None and one.relief.amount > 0.0 and math.isfinite(one.te_relieved):
         kind = "verified" if math.isfinite(one.te_relieved_verified) else "estimated"
         found.append(f"{_um(one.te_relieved)} with {one.relief.kind} tip relief of {_um(one.relief.amount)} ({kind})")
-    return ", ".join([*found, f"mass {figures(one.mass)} kg", f"load margin {figures(one.margin)}"])
+    margin = f"load margin {figures(one.margin)}" if math.isfinite(one.margin) else "not rated"
+    return ", ".join([*found, f"mass {figures(one.mass)} kg", margin])
 
 
 def _answers(seen: Seen) -> Iterator[str]:
