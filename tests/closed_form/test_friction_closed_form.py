@@ -11,7 +11,8 @@ from fegear.dynamics.motion.motion_model import MotionModel, friction_loss_torqu
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.charts import FourInertia
 from fegear.dynamics.train.excitation import MeshExcitation
-from fegear.dynamics.train.friction import benedict_kelley, buckingham, friction_over_path, with_friction
+from fegear.dynamics.train.friction import friction_over_path, with_friction
+from fegear.dynamics.train.friction_law import benedict_kelley, buckingham
 from fegear.dynamics.train.gear_train import TrainMesh, a_drives
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Mesh

@@ -15,7 +15,7 @@ import fegear
 from fegear.base.errors import InputError
 from fegear.case.built.train import motion_spec
 from fegear.dynamics.motion.motion import simulate
-from fegear.dynamics.motion.motion_spec import motion_model
+from fegear.dynamics.motion.moving_train import motion_model
 from fegear.engine.stage import Task
 
 SPEED = 8000.0 * math.pi / 30.0

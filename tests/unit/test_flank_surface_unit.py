@@ -8,7 +8,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.contact.tooth_loss import moved_at_most
-from fegear.dynamics.train.friction import buckingham
+from fegear.dynamics.train.friction_law import buckingham
 from fegear.formulas.flank_speeds import flank_speeds
 from fegear.formulas.friction import ohlendorf
 from fegear.formulas.hertz import contact_modulus

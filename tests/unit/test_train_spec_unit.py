@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.dynamics.motion.motion_spec import MotionSpec, motion_model, steady_motions
+from fegear.dynamics.motion.motion_spec import MotionSpec
+from fegear.dynamics.motion.moving_train import motion_model, steady_motions
 from fegear.dynamics.train.excitation import MeshExcitation
-from fegear.dynamics.train.friction import FrictionLaw, benedict_kelley, buckingham
+from fegear.dynamics.train.friction_law import FrictionLaw, benedict_kelley, buckingham
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Torque, mesh_damping
 from fegear.dynamics.train.train_spec import MeshSpec, ShaftSpec, TrainSpec, assemble, build_train

@@ -61,7 +61,7 @@ def _loaded(data: GearTrain) -> list[int]:
 
 def _changes(asked: MotionSpec, data: GearTrain, state: SteadyState) -> list[FactorChange]:
     """One motion with one effect more, at the speed of a state without it."""
-    from fegear.dynamics.motion.motion_spec import motion_model, steady_motion
+    from fegear.dynamics.motion.moving_train import motion_model, steady_motion
 
     speed = state.model.speed
     other = steady_motion(asked, motion_model(asked, data, speed), asked.start, max(asked.tolerance, 1e-3))

@@ -94,7 +94,7 @@ class PairFriction:
         load : float
             F_bt, with the factors that count [N].
         """
-        from fegear.dynamics.train.friction import benedict_kelley, buckingham
+        from fegear.dynamics.train.friction_law import benedict_kelley, buckingham
         from fegear.formulas.flank_speeds import flank_speeds
         from fegear.formulas.friction import MEAN_LAWS, law_load, mean_friction
 

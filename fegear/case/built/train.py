@@ -12,7 +12,7 @@ from fegear.case.built.odd_teeth import odd_gears_of
 from fegear.case.built.torque_ripple import torque_ripples
 from fegear.case.halves import double_gears
 from fegear.dynamics.motion.motion_spec import MotionSpec
-from fegear.dynamics.train.friction import FrictionLaw
+from fegear.dynamics.train.friction_law import FrictionLaw
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.train import Body, Damper, Torque, shaft_stiffness
 from fegear.dynamics.train.train_spec import MeshSpec, ShaftSpec, TrainSpec, build_train

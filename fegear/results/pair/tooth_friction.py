@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
-    from fegear.dynamics.train.friction import FrictionLaw, FrictionOverPath
+    from fegear.dynamics.train.friction import FrictionOverPath
+    from fegear.dynamics.train.friction_law import FrictionLaw
     from fegear.dynamics.train.gear_train import TrainMesh
 
 #: Each speed [s].

@@ -17,7 +17,8 @@ from fegear.case.dynamics import DesignChartPart
 from fegear.case.reading import Scene
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement
-from fegear.dynamics.motion.motion_spec import MotionSpec, steady_motions
+from fegear.dynamics.motion.motion_spec import MotionSpec
+from fegear.dynamics.motion.moving_train import steady_motions
 from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.train_spec import TrainSpec, assemble

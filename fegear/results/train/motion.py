@@ -15,7 +15,8 @@ from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, moti
 from fegear.case.built.train import motion_spec, train_inputs
 from fegear.case.part import at
 from fegear.dynamics.motion.motion_model import MotionModel
-from fegear.dynamics.motion.motion_spec import MotionSpec, steady_motions
+from fegear.dynamics.motion.motion_spec import MotionSpec
+from fegear.dynamics.motion.moving_train import steady_motions
 from fegear.dynamics.train.torque_ripple import LONGEST, common_period
 from fegear.dynamics.train.train_spec import build_train, speed_ratio
 from fegear.engine.citation import Citation

@@ -59,7 +59,7 @@ def _inputs(scene: Scene, name: str) -> VibrationInputs:
 
 def _compute(asked: VibrationInputs, upstream: Upstream, work: Work) -> MotionOverRevolution:
     from fegear.dynamics.motion.motion_over_revolution import motion_over_revolution
-    from fegear.dynamics.motion.motion_spec import steady_motions
+    from fegear.dynamics.motion.moving_train import steady_motions
 
     data = gear_train(upstream)
     i = data.train.mesh_index(asked.mesh)

@@ -22,7 +22,7 @@ from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.table_compliance import table_sources
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
-from fegear.dynamics.motion.motion_spec import motion_model, steady_motion
+from fegear.dynamics.motion.moving_train import motion_model, steady_motion
 from fegear.dynamics.train.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
