@@ -108,7 +108,7 @@ def test_a_steady_motion_is_found_by_the_method_that_the_case_names(method, monk
     told = []
     for name in ("averaged_motion", "steady_state"):
         monkeypatch.setattr(
-            f"fegear.dynamics.motion.motion_spec.{name}",
+            f"fegear.dynamics.motion.moving_train.{name}",
             lambda model, name=name, **how: (told.append((name, how)), name)[1],
         )
     found = steady_motion(SimpleNamespace(method=method), "model", "static", 1e-3, None)
