@@ -134,6 +134,13 @@ def test_a_refusal_names_key_and_rule(override, key, words):
     assert "\n" not in str(refusal.value)
 
 
+def test_a_rim_is_given_once():
+    gear = {"teeth": 28, "module": "3 mm", "face_width": "10 mm", "bore_radius": "20 mm", "rim_thickness": "6 mm"}
+    gear["body"] = {"rim_thickness": "3 mm", "web_thickness": "3 mm"}
+    with pytest.raises(InputError, match=r"gear\.a\.rim_thickness = 6 mm: contradicts body\.rim_thickness;"):
+        build_scene({"gear": {"a": gear}, "results": ["geometry"]}, "case", Path())
+
+
 @pytest.mark.parametrize(
     "override",
     ["design.load_factors=[0.1, 0,25]", "design.robustness.load_factors=[0.7, 1,3]", "study.profile_shift=[0,1, 0.5]"],
