@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fegear.base.errors import GeometryError
-from fegear.case.gear import RackPart
+from fegear.case.gear_tool import RackPart
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.formulas.iso6336 import part3_root_stress as iso
