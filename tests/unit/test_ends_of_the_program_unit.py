@@ -80,21 +80,21 @@ def test_ctrl_c_in_a_command_is_130_and_leaves_no_folder(monkeypatch, capsys, ca
     ],
 )  # fmt: skip
 def test_what_ends_the_program_is_one_sentence_with_its_code(monkeypatch, capsys, error, code, words):
-    monkeypatch.setattr(fegear.cli, "app", raising(error))
+    monkeypatch.setattr(fegear.cli, "program", raising(error))
     monkeypatch.setattr(fegear.cli, "give_up", lambda _stream: None)
     assert ended(monkeypatch, capsys) == (code, f"fegear: {words}\n")
 
 
 @pytest.mark.parametrize("error", [ImportError("no module"), OSError(errno.EINVAL, "Invalid argument"), ValueError()])
 def test_what_nobody_foresaw_is_not_hidden(monkeypatch, error):
-    monkeypatch.setattr(fegear.cli, "app", raising(error))
+    monkeypatch.setattr(fegear.cli, "program", raising(error))
     monkeypatch.setattr(fegear.cli, "give_up", lambda _stream: None)
     with pytest.raises(type(error)):
         fegear.cli.main()
 
 
 def test_a_folder_that_is_gone_is_said(monkeypatch, capsys):
-    monkeypatch.setattr(fegear.cli, "app", raising(FileNotFoundError(errno.ENOENT, "No such file or directory")))
+    monkeypatch.setattr(fegear.cli, "program", raising(FileNotFoundError(errno.ENOENT, "No such file or directory")))
     monkeypatch.setattr(fegear.cli, "give_up", lambda _stream: None)
     monkeypatch.setattr(fegear.cli, "_nowhere", lambda: True)
     sentence = "fegear: the current folder no longer exists; change to another one.\n"

@@ -186,7 +186,7 @@ def test_an_address_that_no_result_of_a_run_can_use_is_no_use_said_aloud():
 
 def test_results_that_have_points_for_a_cluster_are_marked_as_such():
     folder = Path(fegear.__file__).parent / "results"
-    called = {"by_fe": "sizing"}  # from which module, where another has the stage
+    called = {"by_fe": "sizing", "by_atlas": "sizing"}  # from which module, where another has the stage
     found = (path.stem for path in folder.rglob("*.py") if "map_points(" in path.read_text("utf-8"))
     spreading = {called.get(stem, stem) for stem in found}
     assert {stage.compute.__module__.rpartition(".")[2] for stage in STAGES if stage.in_points} == spreading

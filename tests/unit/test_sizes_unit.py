@@ -78,9 +78,9 @@ def test_many_positions_take_memory_by_the_block(monkeypatch):
     known = solve_gear(gear, MeshSettings().scaled(2.0))
     radii, sizes, neighbour = np.linspace(9.8e-3, 10.8e-3, 1500), [], Influence.neighbour
 
-    def spied(self, k, p, q, patch):
+    def spied(self, k, p, q, patch, *more):
         sizes.append(np.size(p))
-        return neighbour(self, k, p, q, patch)
+        return neighbour(self, k, p, q, patch, *more)
 
     monkeypatch.setattr(Influence, "neighbour", spied)
     table = stiffness_table(gear, radii, 2e-5, influence=known)
