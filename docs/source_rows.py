@@ -281,7 +281,7 @@ def _is_there(name: str) -> bool:
 
 def _is_command(command: str) -> bool:
     program, name, *rest = shlex.split(command)
-    known = {one.__name__ for one, _ in COMMANDS}
+    known = {name for name, _, _ in COMMANDS}
     files = [word for word in rest if word.endswith(".toml")]
     return program == "fegear" and name in known and all((ROOT / file).is_file() for file in files)
 
