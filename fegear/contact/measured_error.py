@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 
 #: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
 FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
+#: Part of a tooth pitch over which a trace may have no sample, or run back (an encoder that trembles).
+_GAP = 0.25
+#: Turns from which on an angle is one that goes on, and is taken as it is.
+_GOES_ON = 1.1
 #: Part of a turn that a trace may lack of a whole one: the last of evenly spaced samples.
 _SLACK = 1e-3
 #: Harmonics of the mesh that are compared at most.
@@ -41,6 +45,10 @@ class ShortTraceError(ValueError):
     def __init__(self, pitches: float, samples: float) -> None:
         super().__init__(f"{pitches:.3g} tooth pitches, {samples:.3g} samples on each")
         self.pitches, self.samples = pitches, samples
+
+
+class UnevenTraceError(ValueError):
+    """A trace runs back, or has a stretch without samples; the text is a rule on the trace."""
 
 
 @dataclass(frozen=True)
@@ -152,16 +160,25 @@ def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
     Raises
     ------
     ShortTraceError
+    UnevenTraceError
     """
     from scipy.interpolate import CubicSpline
 
-    turned, order = np.unique(np.unwrap(angle), return_index=True)
-    te = te[order]
-    pitch, length = _TURN / teeth, float(turned[-1] - turned[0])
+    pitch = _TURN / teeth
+    going = angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
+    turned, te = _one_way(going, te, _GAP * pitch)
+    length = float(turned[-1] - turned[0])
     samples = turned.size * pitch / length if length else 0.0
     step = length / max(turned.size - 1, 1)  # the last sample stands for as much as each
     if samples < FEWEST_A_TOOTH or length + step < FEWEST_PITCHES * pitch * (1.0 - _SLACK):
         raise ShortTraceError(length / pitch, samples)
+    wide = np.diff(turned)
+    if wide.max() > _GAP * pitch:
+        k = int(wide.argmax())
+        raise UnevenTraceError(
+            f"has no sample over {math.degrees(wide[k]):.3g} deg after {math.degrees(turned[k]):.5g} deg (limit "
+            f"{math.degrees(_GAP * pitch):.3g} deg, {_GAP:g} tooth pitches)"
+        )
     turns = math.floor((length + step) / _TURN + _SLACK)
     cycles = teeth * turns if turns else math.floor((length + step) / pitch + _SLACK)
     places = min(round(samples), _MOST_A_TOOTH)
@@ -179,6 +196,33 @@ def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
         teeth, spectrum, np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size], spectrum.amplitude[at],
         spectrum.phase[at],
     )  # fmt: skip
+
+
+def _one_way(angle: Array, te: Array, back: float) -> tuple[Array, Array]:
+    """A trace by ascending angle; samples nearer than half of the mean step are averaged, lest noise be a slope."""
+    run = angle if angle[-1] >= angle[0] else -angle
+    behind = np.maximum.accumulate(run) - run
+    if behind.max() > back:
+        k = int(behind.argmax())
+        raise UnevenTraceError(
+            f"runs back by {math.degrees(behind[k]):.3g} deg to an angle of {math.degrees(angle[k]):.5g} deg (limit "
+            f"{math.degrees(back):.3g} deg, {_GAP:g} tooth pitches)"
+        )
+    order = np.argsort(angle, kind="stable")
+    turned, te = angle[order], te[order]
+    cell = 0.5 * float(turned[-1] - turned[0]) / max(turned.size - 1, 1)
+    if not cell > 0.0:
+        return turned[:1], te[:1]
+    turned, te = _averaged(turned, te, np.floor((turned - turned[0]) / cell))
+    # Of three cells in a row the outer two are a cell apart: what is nearer is a pair on both sides of a border.
+    return _averaged(turned, te, np.cumsum(np.append(True, np.diff(turned) >= 0.5 * cell)))
+
+
+def _averaged(turned: Array, te: Array, group: Array) -> tuple[Array, Array]:
+    """Mean angle and transmission error of samples of one group, ascending."""
+    first = np.flatnonzero(np.append(True, np.diff(group) > 0))
+    count = np.diff(np.append(first, group.size))
+    return np.add.reduceat(turned, first) / count, np.add.reduceat(te, first) / count
 
 
 def _spectrum(values: Array, turns: float, start: float) -> OrderSpectrum:

@@ -150,7 +150,7 @@ def planned(*changes):
         ("tooth = 0, crack = { depth_ratio = 1.2 }", "depth_ratio = 1.2"),
         ("tooth = 0, crack = { depth = '1 mm', angle = '200 deg' }", "angle = 200 deg: must be between 0 and 135"),
         ("tooth = 0, crack = { depth = '9 mm' }", "depth = 9 mm: leads the crack out of its tooth"),
-        ("tooth = 0, crack = { depth = '1 um' }", "depth = 0.001 mm: of every straight piece must be at least 0.01 mm"),
+        ("tooth = 0, crack = { depth = '1 um' }", "piece of 0.001 mm; each must be at least 0.01 mm"),
         ("tooth = 0, crack = { depth_ratio = 0.99, angle = '90 deg' }", r"depth_ratio = 0.99: \(length .* mm\) leads"),
         ("tooth = 0, crack = { depth = '1 mm', radius = '30 mm' }", "radius = 30 mm: must be a radius on the fillet"),
         ("tooth = 0, crack = { depth = '1 mm', diameter = '60 mm' }", "diameter = 60 mm: must be a diameter on the"),

@@ -4,6 +4,7 @@ import copy
 import math
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
+from fegear.results.helical.double_helical_data import DoubleHelicalData, ShownDouble
 
 HERE = Path(__file__).parent
 CACHE = SolutionCache()
@@ -119,6 +121,20 @@ def test_an_apex_offset_moves_load_by_the_axial_stiffness():
     (answer,) = (outcome.answer for outcome in found.outcomes.values() if outcome.answer)
     assert "carries" in answer.sentences[0]
     assert "an axial force of" in answer.sentences[1]
+
+
+def test_an_axial_force_that_is_only_round_off_is_zero():
+    """As it was on halves of 3D gears with the same load: 1.7e-12 N, with a note on its error."""
+    seat = SimpleNamespace(span=-0.6)
+    pair = SimpleNamespace(
+        axial_force=np.array([[1e-12], [-7e-13], [2e-13]]), load=np.array([6000.0]), spec=SimpleNamespace(seat=seat),
+        mean=lambda values: values.mean(axis=0),
+    )  # fmt: skip
+    shown = ShownDouble(DoubleHelicalData(pair, 0, ()), math.nan)
+    assert shown.axial_force_mean == shown.axial_force_peak_to_peak == 0.0
+    pair.axial_force = np.array([[1e-2], [-7e-3], [3e-3]])
+    assert shown.axial_force_mean == pytest.approx(2e-3)
+    assert shown.axial_force_peak_to_peak == pytest.approx(0.017)
 
 
 def test_a_floating_member_takes_the_offset_up_until_its_play_ends():

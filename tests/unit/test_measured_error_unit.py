@@ -74,6 +74,19 @@ def test_short_and_sparse_traces_are_refused(turns, a_tooth):
         measured_error(*trace(turns, a_tooth), TEETH)
 
 
+def test_an_encoder_that_trembles_and_repeats_its_angle_gives_the_same_curve():
+    angle, te = trace(2.0, start=0.0, noise=0.02e-6)
+    step = angle[1]
+    seen = 0.002 * step * np.rint((angle / step + np.random.default_rng(2).uniform(-1.2, 1.2, angle.size)) / 0.002)
+    assert (np.diff(seen) < 0.0).any()
+    assert np.unique(seen).size < seen.size
+    exact = curve(seen * TEETH * PITCH / TURN) + 8e-6 * np.cos(seen - 0.7) + 2e-6 * np.cos(2.0 * seen - 2.0)
+    found = measured_error(seen, exact + te - trace(2.0, start=0.0)[1], TEETH)
+    expected = curve(found.angle * TEETH * PITCH / TURN)
+    np.testing.assert_allclose(found.te - found.te.mean(), expected - expected.mean(), atol=3e-8)
+    assert found.spread < 0.1e-6
+
+
 @pytest.mark.parametrize("fit", [("offset", "scale", "shift"), ("offset", "shift"), ("scale", "offset"), ("offset",)])
 def test_offset_scale_and_shift_are_recovered_within_their_errors(fit):
     true = {
@@ -203,7 +216,10 @@ def test_wrong_keys_are_one_sentence(encoders, rule, tmp_path):
 @pytest.mark.parametrize(
     ("lines", "rule"),
     [
-        (range(30), "fewer than 3"), (range(0, 400, 9), "samples per tooth pitch"), ([5] * 400, "has only one angle"),
+        (range(30), "fewer than 3"), (range(0, 400, 9), "samples per tooth pitch"),
+        ([5] * 400, "has the same angle in every line"),
+        ([0.5 * k for k in range(1600) if not 400 < k < 800], "has no sample over 200 deg after 200 deg"),
+        ([0.5 * k for k in (*range(900), *range(800, 0, -1))], "runs back by 449 deg"),
     ],
 )  # fmt: skip
 def test_traces_that_say_too_little_are_refused(lines, rule, tmp_path):

@@ -130,5 +130,5 @@ def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str
         )
     for what, values in (("angle", angle), ("transmission error", te)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
-            raise InputError(key, f'"{file}"', f"has only one {what}", "check the columns")
+            raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
     return (-angle if part.reverse else angle), (-te if part.positive == "lead" else te)

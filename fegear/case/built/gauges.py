@@ -195,5 +195,5 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
         )  # fmt: skip
     for what, values in (("angle", angle), ("strain", strain)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
-            raise InputError(key, f'"{part.file}"', f"has only one {what}", "check the columns")
+            raise InputError(key, f'"{part.file}"', f"has the same {what} in every line", "check the columns")
     return MeasuredStrain(-angle if part.reverse else angle, strain, tuple(part.fit), part.file)

@@ -89,7 +89,10 @@ def _closed(seen: Seen) -> Iterator[str]:
                     "(frictionless contact)."
                 )
             else:
-                yield f'{who} open its crack over the full length; crack_faces = "open" gives the same results.'
+                yield (
+                    f'{who} open its crack over the full length; crack_faces = "open" gives the same deflection under '
+                    "them, and a negative K_I where loads on neighbouring teeth close it."
+                )
             continue
         shut = found.stress_intensity(number, number, radii)[0][0] < 0.0
         if shut.mean() > _MOSTLY:

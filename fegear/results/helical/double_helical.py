@@ -97,7 +97,8 @@ def _remarks(seen: Seen) -> Iterator[str]:
             f"Pair {name}: the {shown.floating} touches a stop of its axial play: axial forces do not balance."
         )
     for end in shown.idle:
-        yield failing(f"Pair {name}: the half at end {end} carries no load at some mesh positions.")
+        where = " at some mesh positions" if shown.halves[end].share_max else ""
+        yield failing(f"Pair {name}: the half at end {end} carries no load{where}.")
     if shown.back:
         yield failing(
             f"Pair {name}: the non-working flanks of the unloaded half touch (backlash closed), which is not included; "

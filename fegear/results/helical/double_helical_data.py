@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fegear.contact.double_helical.double_stress import LargestTension
     from fegear.contact.double_helical.loaded_double import DoubleError, LoadedDoublePair
 
-#: A displacement of a smaller share of the transmission error is none.
+#: A displacement of a smaller share of the transmission error, or a force of one of the load's, is none.
 _ROUND_OFF = 1e-9
 #: Both ends.
 ENDS = ("I", "II")
@@ -266,7 +266,9 @@ class ShownDouble:
     @shows("um", "mean axial displacement of the floating member towards end II")
     def axial_motion_mean(self) -> float | None:
         """[m]; None of located members."""
-        return float(self.pair.mean(self.pair.axial_motion)[self.at]) if self.floating else None
+        if not self.floating:
+            return None
+        return _or_zero(float(self.pair.mean(self.pair.axial_motion)[self.at]), self.te_mean)
 
     @property
     @shows("um", "axial displacement of the floating member, peak-to-peak")
@@ -274,8 +276,7 @@ class ShownDouble:
         """[m]; None of located members."""
         if self.floating is None:
             return None
-        motion = float(np.ptp(self.pair.axial_motion[:, self.at]))
-        return motion if motion > _ROUND_OFF * self.te_mean else 0.0
+        return _or_zero(float(np.ptp(self.pair.axial_motion[:, self.at])), self.te_mean)
 
     @property
     @shows("um", "mean axial distance of the apexes under load, driver from driven, towards end II")
@@ -287,13 +288,18 @@ class ShownDouble:
     @shows("N", "mean axial mesh force on the driver towards end II")
     def axial_force_mean(self) -> float:
         """[N]."""
-        return float(self.pair.mean(self.pair.axial_force)[self.at])
+        return _or_zero(float(self.pair.mean(self.pair.axial_force)[self.at]), self._largest_force)
 
     @property
     @shows("N", "axial mesh force on the driver, peak-to-peak")
     def axial_force_peak_to_peak(self) -> float:
         """[N]."""
-        return float(np.ptp(self.pair.axial_force[:, self.at]))
+        return _or_zero(float(np.ptp(self.pair.axial_force[:, self.at])), self._largest_force)
+
+    @property
+    def _largest_force(self) -> float:
+        """Axial force of one half that carries the whole load [N]."""
+        return abs(self.pair.spec.seat.span) * float(self.pair.load[self.at])
 
     @property
     @shows("N/um", "axial stiffness of the mesh at constant torque")
@@ -324,7 +330,7 @@ class ShownDouble:
     def force_error(self) -> float | None:
         """Of the mean axial force [N]."""
         error = self.share_error
-        return None if error is None else error * abs(self.pair.spec.seat.span) * float(self.pair.load[self.at])
+        return None if error is None else _or_zero(error * self._largest_force, self._largest_force)
 
     @property
     def force_swing_error(self) -> float | None:
@@ -333,7 +339,7 @@ class ShownDouble:
             return None
         worst = float(self.error.share[:, self.at].max())
         force = self.pair.axial_force[:, self.at]
-        return 2.0 * worst * abs(self.pair.spec.seat.span) * float(self.pair.load[self.at]) + _missed(force)
+        return _or_zero(2.0 * worst * self._largest_force + _missed(force), self._largest_force)
 
     @property
     def at_stop(self) -> bool:
@@ -355,6 +361,11 @@ def _amplitudes(pair: LoadedDoublePair, values: Array, least: float) -> Array:
     """Of the harmonics of what is known at the mesh positions; smaller ones are none."""
     found = series_over_pitch(pair.points, values).amplitude
     return np.where(found > least, found, 0.0)
+
+
+def _or_zero(value: float, scale: float) -> float:
+    """A value, zero where it is only round-off of its scale."""
+    return value if abs(value) > _ROUND_OFF * abs(scale) else 0.0
 
 
 def _missed(values: Array) -> float:

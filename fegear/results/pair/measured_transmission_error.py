@@ -35,10 +35,20 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 
 def _measured(trace: ErrorTrace, teeth: int) -> MeasuredError:
-    from fegear.contact.measured_error import FEWEST_A_TOOTH, FEWEST_PITCHES, ShortTraceError, measured_error
+    from fegear.contact.measured_error import (
+        FEWEST_A_TOOTH,
+        FEWEST_PITCHES,
+        ShortTraceError,
+        UnevenTraceError,
+        measured_error,
+    )
 
     try:
         return measured_error(trace.angle, trace.te, teeth)
+    except UnevenTraceError as uneven:
+        raise InputError(
+            f"{trace.key}.file", f'"{trace.file}"', str(uneven), "specify a trace in one direction without gaps"
+        ) from None
     except ShortTraceError as short:
         if short.pitches < FEWEST_PITCHES:
             rule = f"covers {short.pitches:.3g} tooth pitches, fewer than {FEWEST_PITCHES}"

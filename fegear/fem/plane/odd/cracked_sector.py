@@ -19,6 +19,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
+from fegear.base.printed import percent
 from fegear.fem.plane.boundary import Chain, fillet_chain, front_sizes, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
@@ -147,10 +148,11 @@ def _checked(tooth: InvoluteTooth, crack: Crack, outline: Array) -> tuple[Array,
     path = crack.path(tooth)
     pieces = np.hypot(*np.diff(path))
     length = float(pieces.sum())
-    if not (math.isfinite(length) and float(pieces.min()) >= SHORTEST):
+    if not (math.isfinite(length) and float(pieces.min()) >= (1.0 - 1e-9) * SHORTEST):
         raise InputError(
-            "depth", f"{length:.6g} modules", f"of every straight piece must be at least {SHORTEST:g} modules"
-        )
+            "depth", f"{length:.6g} modules",
+            f"has a straight piece of {pieces.min():.6g} modules; each must be at least {SHORTEST:g} modules",
+        )  # fmt: skip
     closed = np.column_stack([outline, outline[:, 0]])
     mouth, tip = path[:, 0], path[:, -1]
     # The outline's own edges at the mouth are no limit: what counts there is that the crack runs into the material.
@@ -159,7 +161,7 @@ def _checked(tooth: InvoluteTooth, crack: Crack, outline: Array) -> tuple[Array,
     if not _inside(tip, closed) or _crosses(path, closed, away) or near.min() < _CLEAR * length or _folds(path):
         raise InputError(
             "depth", f"{length:.6g} modules",
-            f"leads the crack out of its tooth or within {_CLEAR:.0%} of its length of a surface",
+            f"leads the crack out of its tooth or within {percent(_CLEAR, whole=True)} of its length of a surface",
             "reduce it, or change the crack's angle",
         )  # fmt: skip
     return path, min(float(near[-1]), float(pieces[-1]))
