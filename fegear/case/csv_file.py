@@ -108,7 +108,9 @@ def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
 def _entry(text: str, path: Path, key: str, where: str) -> float:
     value = plain_number(text)
     if value is None:
-        raise InputError(key, f'"{path.name}"', f"contains {shown(text)} in {where}: not a number")
+        comma = plain_number(text.replace(",", ".", 1)) is not None
+        remedy = "use decimal points, not commas" if comma else "correct or remove the line"
+        raise InputError(key, f'"{path.name}"', f"contains {shown(text)} in {where}: not a number", remedy)
     if not math.isfinite(value):
         raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
     return value

@@ -346,10 +346,14 @@ class EllipseOnSpace:
         end = math.acos(max(min(1.0 - up / along, 1.0), -1.0)) if along > 0.0 else math.nan
         beside = x / math.sin(end) if along > 0.0 and math.sin(end) > 0.0 else math.nan
         if not (x > 0.0 and along > 0.0 and up < 2.0 * along and beside > 0.0):
+            highest = 0.5 * float(x) * steep
+            rule, remedy = "has no ellipse that is tangent to flank and root circle", "choose another form diameter"
+            if 0.0 < highest <= up:
+                side, limit = "above" if flank.side > 0 else "below", 2.0 * (float(y) - flank.side * highest)
+                rule += f" of {2.0 * root:.6g} modules: the root diameter must be {side} {limit:.6g} modules"
+                remedy = "reduce the fillet's depth"
             raise GeometryError(
-                "fillet.form_diameter", f"{2.0 * math.hypot(x, y):.6g} modules",
-                "has no ellipse that is tangent to flank and root circle",
-                "choose a larger distance from form to root circle, or a smaller one for a wide tooth space",
+                "fillet.form_diameter", f"{2.0 * math.hypot(x, y):.6g} modules", rule, remedy,
             )  # fmt: skip
         curve = EllipseFillet(flank.half_pitch, root, float(beside), float(along), end, flank.side)
         return Foot(curve, roll, root, 0.0)

@@ -112,6 +112,21 @@ def test_what_cannot_be_is_said_with_its_key(document, said):
     assert said in refused(document)
 
 
+@pytest.mark.parametrize("gear", [GEAR, RING])
+def test_an_ellipse_says_where_the_root_circle_may_be(gear):
+    def made(**fillet):
+        document = {"gear": {"g": {**gear, "fillet": {"kind": "ellipse", **fillet}}}, "results": ["geometry"]}
+        return built(document).gears["g"].tooth
+
+    away = -1.0 if gear is GEAR else 1.0
+    with pytest.raises(InputError, match="no ellipse .* must be (above|below) .* mm; reduce") as refused:
+        made(root_diameter=f"{4.0 * made().root_radius + away * 18.0} mm")
+    limit = float(str(refused.value).split(" mm; reduce")[0].split()[-1])
+    assert made(root_diameter=f"{limit - away * 0.01} mm").root_radius > 0.0
+    with pytest.raises(InputError):
+        made(root_diameter=f"{limit + away * 0.01} mm")
+
+
 def test_the_geometry_of_fillets_that_foul_can_still_be_drawn():
     assert planned(case({"kind": "ellipse", "form_diameter": "40.3 mm"})).steps
 

@@ -27,6 +27,14 @@ def test_frequencies_with_one_factor_and_gaps_are_found_again():
     assert "a stiffness 5.9 % lower" in found.verdict
 
 
+def test_frequencies_without_a_common_factor_name_no_stiffness():
+    found = beside_modes(np.array([180.0, 2410.0]), np.array([82.0, 5180.0]))
+    assert found.scatter > 0.5
+    assert "no common factor; check which modes they are" in found.verdict
+    assert "stiffness" not in found.verdict
+    assert "a stiffness" in beside_modes(np.array([84.0, 5100.0]), np.array([82.0, 5180.0])).verdict
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_the_assignment_is_that_of_trying_all(seed):
     rng = np.random.default_rng(seed)

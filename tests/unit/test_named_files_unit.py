@@ -89,7 +89,7 @@ def test_tables_are_parted_by_what_parts_their_heads(folder):
         ("radius [mm],relief [um],relief [mm]\n31,1,2\n33,2,3\n", "two columns relief"),
         ("radius [mm],relief [um]\n31,1,5\n33,2\n", "3 entries in line 2 but 2 column heads; use decimal points"),
         ("radius [mm],relief [um]\n31\n33,2\n", "1 entries in line 2"),
-        ("radius [mm];relief [um]\n31,5;1\n", r'contains "31,5" in line 2, radius: not a number'),
+        ("radius [mm];relief [um]\n31,5;1\n", r'contains "31,5" in line 2, radius: not a number; use decimal points'),
         ("radius [mm],relief [um]\n31,1_0\n", ": not a number"),
         ("radius [mm],relief [um]\n31,٣\n", ": not a number"),
         ("radius [mm],relief [um]\n31,0x10\n", ": not a number"),

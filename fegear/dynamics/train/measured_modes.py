@@ -52,12 +52,16 @@ class MeasuredModes(ReadOnlyArrays):
         one = self.measured.size == 1
         said = (
             f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed "
-            f"{'one' if one else 'ones on average'} ({where}{'' if one else ' is farthest off'}), as a stiffness "
-            f"{percent(abs(stiff))} {'higher' if stiff >= 0.0 else 'lower'} would make it"
+            f"{'one' if one else 'ones on average'} ({where}{'' if one else ' is farthest off'})"
         )
+        if self.scatter > max(abs(off), _ONE_FACTOR):
+            return f"{said}, with a scatter of ±{percent(self.scatter)}: no common factor; check which modes they are"
+        said += f", as a stiffness {percent(abs(stiff))} {'higher' if stiff >= 0.0 else 'lower'} would make it"
         return said if one else f"{said}; scatter about that ±{percent(self.scatter)}"
 
 
+#: Scatter of ratios up to which they are taken for one factor, however small that is.
+_ONE_FACTOR = 0.05
 #: Rounds after which modes are taken as they are.
 _ROUNDS = 20
 
