@@ -60,7 +60,9 @@ class EncodersPart(Part):
         if len(set(self.fit)) < len(self.fit):
             raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
         if self.angle_column == self.te_column:
-            raise refuse("is the column of the angle", "specify another column", key="te_column")
+            key = "te_column" if "te_column" in self.model_fields_set else "angle_column"
+            other = "angle" if key == "te_column" else "transmission error"
+            raise refuse(f"is the column of the {other}", "specify another column", key=key)
         torques = [trace.torque for trace in self.traces]
         if len(set(torques)) < len(torques):
             raise refuse("contains one torque twice", "specify one trace for each torque", key="traces")

@@ -119,7 +119,7 @@ def test_an_ellipse_says_where_the_root_circle_may_be(gear):
         return built(document).gears["g"].tooth
 
     away = -1.0 if gear is GEAR else 1.0
-    with pytest.raises(InputError, match="no ellipse .* must be (above|below) .* mm; reduce") as refused:
+    with pytest.raises(InputError, match=r"no ellipse .* must be (above|below) .* mm; reduce") as refused:
         made(root_diameter=f"{4.0 * made().root_radius + away * 18.0} mm")
     limit = float(str(refused.value).split(" mm; reduce")[0].split()[-1])
     assert made(root_diameter=f"{limit - away * 0.01} mm").root_radius > 0.0

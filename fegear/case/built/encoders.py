@@ -105,9 +105,14 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
         angle, te = _trace(scene, part, placed, one.file, f"{key}.file")
         traces.append(ErrorTrace(angle, te, known[0] if known else 0.0, key, one.file))
     traces.sort(key=lambda one: one.load)
-    same = [first for first, second in pairwise(traces) if first.load == second.load]
+    same = [two for two in pairwise(traces) if two[0].load == two[1].load]
     if same:
-        raise InputError(f"{same[0].key}.torque", "(not given)", "is that of another trace", "specify the torque")
+        given = {f"encoders.{name}.traces[{i}]": one.torque for i, one in enumerate(part.traces)}
+        again = next((one.key for one in same[0] if given[one.key] is None), same[0][1].key)
+        said = "(not given)" if given[again] is None else f"{given[again]:.6g} N*m"
+        raise InputError(
+            f"{again}.torque", said, "is that of another trace", "specify the torque at which it was measured"
+        )
     return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), name)
 
 
