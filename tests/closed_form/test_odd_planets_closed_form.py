@@ -107,6 +107,20 @@ def test_teeth_that_differ_by_nothing_change_nothing():
     assert found["Pplanet-revolution"].te_residual_max < 1e-9 * usual.te_mean
 
 
+@pytest.mark.dear
+def test_four_planets_about_a_floating_sun_make_no_lines_at_the_ring():
+    """A sun without a bearing has equal forces of opposite planets, whatever their teeth."""
+    scene = scene_of({"s": [pit("4 um", 2)], "p": [pit("6 um", 1)]}, odd_planet=2, planets=4, floating=["sun"])
+    outcomes = run_plan(scene, make_plan(scene, STAGES), cache=CACHE).outcomes
+    (found,) = (outcome for task, outcome in outcomes.items() if task.stage == "planet-revolution")
+    force = found.data.loads.mesh_force
+    assert np.ptp(force[1], axis=1).min() > 0.0
+    assert force[:, :2] == pytest.approx(force[:, 2:], rel=1e-9)
+    assert not any("lines" in table.name for table in found.tables)
+    assert not any("lines" in figure.name for figure in found.figures)
+    assert any("no lines at the ring" in remark for remark in found.remarks)
+
+
 def own_loads(found, part, s):
     """Forces of rigidly held planets at a place, by teeth counted here and forces by interpolation and bisection."""
     z_s, z_p, z_r, odd, count = 16, 20, 56, 1, 3

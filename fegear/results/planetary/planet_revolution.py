@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.set_cycle import MeshTeeth
-    from fegear.dynamics.planetary.set_revolution import SetRevolution
+    from fegear.dynamics.planetary.set_revolution import RingLines, SetRevolution
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
@@ -158,6 +158,12 @@ class ShownRevolution:
         return self.found.loads
 
     @property
+    def at_ring(self) -> RingLines | None:
+        """Lines at the ring; None where the planets' forces cancel, as four about a floating sun do."""
+        lines = self.found.at_ring
+        return lines if lines.order.size else None
+
+    @property
     def odd_number(self) -> int:
         """Number of the planet with odd teeth, from 1."""
         return self.found.odd_planet + 1
@@ -205,7 +211,7 @@ _SHEET = Sheet(
         ),
         Rows(
             "planet_revolution_lines_{name}", "Lines at the ring of set {name} as planets pass",
-            ("order", "frequency", "force_order", "passing", "force"), of="found.at_ring",
+            ("order", "frequency", "force_order", "passing", "force"), of="at_ring",
         ),
     ),
     values=(
@@ -249,11 +255,16 @@ _SHEET = Sheet(
             "Set {name}: amplitudes of the ring mesh forces, seen at the ring as planets pass, over the order of the "
             "tooth-mesh frequency.",
             (Over("order", (Line("force", kind="stems"),)),),
-            of="found.at_ring",
+            of="at_ring",
         ),
     ),
     answer=Answer(_answer, figure="planet_revolution_{name}"),
     remarks=(
+        Remark(
+            "Set {name}: ring mesh forces of the planets cancel as they pass (opposite planets have equal forces); no "
+            "lines at the ring.",
+            when=lambda seen: seen.data.found.base_pitches > 1 and seen.data.at_ring is None,
+        ),
         Remark(
             "Set {name}: all teeth are identical and all base pitches equal; describe [[gear.NAME.odd_tooth]] and set "
             "odd_teeth = true under [effects] for teeth that differ.",
