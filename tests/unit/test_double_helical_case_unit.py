@@ -260,6 +260,7 @@ REFUSED = {
     "spur": ({"floating": "none"}, 'pair.I.driver = "p": is a spur gear: double_helical requires helical gears'),
     "play": ({"floating": "none", "axial_play": "1 mm"}, "axial_play = 1 mm: requires a floating member; set floating"),
     "force": ({"floating": "none", "axial_force": "10 N"}, "axial_force = 10 N: requires a floating member"),
+    "far": ({"floating": "none", "apex_offset": "1 m"}, "apex_offset = 1000 mm: must be below 13"),
     "pushed": ({"axial_force": "-3000 N"}, "axial_force = -3000 N: must be below 2036.4 N"),
     "second": ({"second_driver": "x"}, 'pair.I.double_helical.second_driver = "x": is not a gear of this case'),
     "hand": ({"second_driver": "p"}, 'second_driver = "p": must be of the other hand than p; set gear.p.hand = "left"'),

@@ -146,7 +146,24 @@ def check_double(scene: Scene, name: str) -> None:
         if other is not None:
             check_solid_gear(scene, other)
     asked = double_to_load(scene, name)
+    refuse_another_space(asked)
     refuse_pushed_off(asked)
+
+
+def refuse_another_space(asked: DoubleToLoad) -> None:
+    """Refuse an apex offset with which teeth of one half would be in another tooth space than those of the other.
+
+    Raises
+    ------
+    InputError
+    """
+    spec = asked.spec
+    limit = 0.5 * spec.halves[0].pair.base_pitch / min(abs(one) for one in spec.seat.twist)
+    if abs(spec.apex_offset) >= limit:
+        raise InputError(
+            f"{spec.name}.apex_offset", f"{spec.apex_offset * 1e3:.6g} mm",
+            f"must be below {limit * 1e3:.4g} mm in size (half a pitch at the flanks)", "check its unit",
+        )  # fmt: skip
 
 
 def refuse_pushed_off(asked: DoubleToLoad) -> None:
