@@ -103,10 +103,11 @@ def test_the_helical_pair_that_it_becomes_has_the_same_answers(say):
     commands = {name: printed(out, name) for name in (*NAMES, "I.K_Hbeta")}
     typed = {f"gear.{gear}.{key}": text for gear in ("pinion", "wheel") for key, text in {
         "normal_module": "3 mm", "face_width": "30 mm", "helix_angle": "15 deg", "relief.tip.amount": "20 um",
-        "relief.tip.length": "4 mm"}.items()}  # fmt: skip
+        "relief.tip.length": "4 mm", "relief.tip.shape": "linear"}.items()}  # fmt: skip
     typed |= {"gear.pinion.teeth": "21", "gear.wheel.teeth": "53", "gear.pinion.profile_shift": "0.3",
               "gear.wheel.profile_shift": "0.1", "pair.I.torque": "260 N m", "pair.I.line_error.over_face": "10 um",
-              "effects.relief": "true", "effects.misalignment": "true", **COARSE}  # fmt: skip
+              "gear.pinion.lead.crowning": "0 um", "effects.relief": "true", "effects.misalignment": "true",
+              **COARSE}  # fmt: skip
     window = by_form("helical", typed)
     for name, value in commands.items():
         assert window[name] == pytest.approx(value, rel=1e-8)

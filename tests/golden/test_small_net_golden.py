@@ -10,6 +10,7 @@ import pytest
 import fegear
 from fegear.base.notes import OPEN
 from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.output.figures import described
 from fegear.output.report.blocks import Group
@@ -294,7 +295,7 @@ def test_the_first_screen_of_further_cases_has_the_answer(name):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kind", ["gear", "pair", "relief", "ring", "study", "train", "planetary"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_fresh_template_has_no_open_note(kind, tmp_path):
     """All that stands open on a report are failures, tolerances, neglected effects and assumptions."""
     path = tmp_path / f"{kind}.toml"

@@ -18,7 +18,7 @@ import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case import examples
 from fegear.case.built.design_range import design_range
-from fegear.case.drafts.answers import Answers, questions
+from fegear.case.drafts.answers import HELICAL, Answers, questions
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
@@ -130,7 +130,7 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
         (("x", "--tip-relief", "20 um", "none"), "must have both amount and length"),
         (("x", "--kind", "pair", "--lead-error", "9 um"), 'is not used for a case of kind "pair"'),
-        (("x", "--kind", "bevel"), "known here: gear, helical, pair, planetary, relief, ring, study, train"),
+        (("x", "--kind", "bevel"), "known here: gear, gearbox, helical, pair, planetary, relief, ring, study, train"),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "is in a folder that does not exist"),
@@ -223,10 +223,14 @@ def test_a_relief_design_takes_a_helix_and_a_range_of_torques():
     assert "helix" not in draft(Answers("relief", {}), "x")
 
 
+#: 3D gears take ten seconds: here by slices, without figures.
+CHEAP = ("--no-plots", "--set", 'pair.I.width="slices"', "--set", "load_distribution={positions=4, panels=8}")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0
-    assert say("run", "case.toml", "-q")[0] == 0
+    assert say("run", "case.toml", "-q", *(CHEAP if kind in HELICAL else ()))[0] == 0
     assert (tmp_path / "results" / "case" / "report.html").is_file()
 
 
@@ -348,6 +352,45 @@ def test_an_example_needs_a_folder_where_another_file_stands(say, tmp_path):
     assert code == 2
     assert re.search("cannot be read|cannot be used as a folder", complaint)
     assert (tmp_path / "data").read_text() == "mine"
+
+
+def test_helical_gears_have_relief_and_crowning_unless_the_drawing_has_others_or_none():
+    """Line load and pressure at sharp edges stood on fresh reports with errors of 14 and 6 %."""
+    for kind in HELICAL:
+        for given, tip, crowning in (
+            ({}, "10 um", "3 um"),
+            ({"torque": "95 N m"}, "5.1 um", "1.5 um"),
+            ({"tip_relief": "20 um", "relief_length": "4 mm"}, "20 um", None),
+            ({"tip_relief": "none", "relief_length": "none"}, None, None),
+        ):
+            case = tomllib.loads(draft(Answers(kind, given), "case"))
+            pinion, wheel = case["gear"].values()
+            found = [gear.get("relief", {"tip": {"amount": None}})["tip"]["amount"] for gear in (pinion, wheel)]
+            assert found == [tip, tip]
+            assert [gear.get("lead", {}).get("crowning") for gear in (pinion, wheel)] == [crowning, None]
+            assert case["effects"].get("relief", False) == (tip is not None)
+
+
+def test_shafts_of_a_drafted_gearbox_suit_its_gears():
+    given = {"teeth": "20 80", "module": "2 mm", "face_width": "25 mm", "helix_angle": "15 deg"}
+    case = tomllib.loads(draft(Answers("gearbox", given), "case"))
+    turn = np.cos(np.radians(15.0))
+    assert case["shaft"]["output"]["axis"] == [f"{100.0 / turn:.6g} mm", "0 mm"]
+    bore = 0.5 * (20.0 / turn - 2.5)
+    for shaft, gear, radius in (("input", "pinion", bore), ("output", "wheel", 1.5 * bore)):
+        one = case["shaft"][shaft]
+        length, at, seats, outer = (
+            [float(text.split()[0]) for text in texts]
+            for texts in (
+                [one["sections"][0]["length"]], [one["gears"][0]["at"]], [b["at"] for b in one["bearings"]],
+                [one["sections"][0]["outer"]],
+            )
+        )  # fmt: skip
+        assert float(case["gear"][gear]["bore_radius"].split()[0]) == pytest.approx(radius, rel=1e-5)
+        assert outer[0] == pytest.approx(2.0 * radius, rel=1e-5)
+        assert at[0] == pytest.approx(0.5 * length[0])
+        assert seats[0] < at[0] - 12.5 < at[0] + 12.5 < seats[1] < length[0]
+        assert sum(seats) == pytest.approx(length[0])
 
 
 def test_bodies_of_a_drafted_train_suit_its_gears():

@@ -23,6 +23,10 @@ _LINE_LOAD = 200e3
 _FACE = 10.0
 
 
+#: Kinds whose gears are helical.
+HELICAL = ("helical", "gearbox")
+
+
 #: Answer to a question about what a drawing need not have.
 _NONE = "none"
 
@@ -107,7 +111,7 @@ class Answers:
     @property
     def helical(self) -> bool:
         """Whether the gears are helical: always, or where an angle is given."""
-        return self.kind == "helical" or (self.kind == "relief" and self.has("helix_angle"))
+        return self.kind in HELICAL or (self.kind == "relief" and self.has("helix_angle"))
 
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: the last stands for those that are not given."""
@@ -147,7 +151,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             ),
             "teeth",
         ),
-        Question("module", "Normal module" if kind == "helical" else "Module", "3 mm", "length"),
+        Question("module", "Normal module" if kind in HELICAL else "Module", "3 mm", "length"),
     ]
     module = _readable(given.get("module", found[1].default), "length")
     face = f"{_FACE * module * 1e3:.3g} mm"
@@ -162,7 +166,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             )
         else:
             prompt, default, dimension = _ALL[name]
-            default = _NONE if name == "helix_angle" and kind != "helical" else default
+            default = _NONE if name == "helix_angle" and kind not in HELICAL else default
             plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
             found.append(Question(name, prompt + plural, default, dimension))
     return found

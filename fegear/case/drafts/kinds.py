@@ -39,6 +39,8 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
                    ("helix_angle", *_LOADED)),
     "helical": Kind("helical pair: load distribution over the face width, transmission error, misalignment",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
+    "gearbox": Kind("gearbox stage: helical pair on shafts and bearings, misalignment, load distribution, rating",
+                    ("pinion", "wheel"), ("helix_angle", *_RELIEVED)),
     "train": Kind("drive train dynamics: motor, gear pair, driven machine; resonances, dynamic factor",
                   ("pinion", "wheel"), _RELIEVED),
     "planetary": Kind("planetary gear set: planet load sharing, phasing, modes, vibration", ("sun", "planet"),

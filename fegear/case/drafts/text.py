@@ -11,7 +11,7 @@ from importlib.resources import files
 from string import Template
 
 from fegear.base.units import from_si
-from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.answers import HELICAL, Answers
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
@@ -51,7 +51,7 @@ hand = "{hand}"
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-bore_radius = "{bore_radius}"     # gear body fixed there: half the root radius; replace by that of the drawing
+bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}; replace by that of the drawing
 {relief}
 """
 _RING = """\
@@ -97,6 +97,7 @@ _EFFECTS = {
         "# misalignment = true     # off: for pairs with line_error or misalignment",
     ),
 }
+_ON = "relief = true     # on: tip relief of both gears, crowning of the pinion"
 #: Column of comments behind keys.
 _COMMENTS = 30
 _ASSUMED = "     # assumed"
@@ -104,6 +105,22 @@ _ASSUMED = "     # assumed"
 _OF_PAIR = ("torque", "speed", "lead_error")
 #: Speeds of a train's motion, as shares of the given one.
 _SLOWEST, _FASTEST = 0.5, 1.5
+#: Length of the tip relief that is assumed of helical gears [modules]; crowning over its amount. Their flanks are
+#: hardly ever left without: line load and pressure at sharp edges have no finite limit. A parabola starts without kink.
+_ALONG, _CROWNING = 1.6, 0.3
+_ROUNDED = 'relief = {{ tip = {{ amount = {amount}, length = {length}, shape = "parabolic" }} }}'
+_CROWNED = "lead = {{ crowning = {crowning} }}"
+#: What a rating asks of a gear besides, assumed.
+_RATED = """\
+tolerance_class = 6     # ISO 1328; assumed
+roughness = { flank_rz = "4 um", root_rz = "16 um" }     # assumed
+strength = { material = "case-hardened-steel", quality = "MQ" }     # assumed
+material = { young_modulus = "206 GPa" }     # assumed: steel"""
+#: Middle of a bearing from the end of its shaft, in diameters; radial stiffness per bore, of deep groove ball bearings
+#: of middle size and their seats [N/m / m].
+_SEAT, _PER_BORE = 0.4, 7e9
+#: Thickest shaft of a wheel, over that of its pinion.
+_THICKER = 1.5
 #: Inertia of motor and machine over that of the gear beside them, assumed.
 _BODIES = 10.0
 _STEEL = 7850.0
@@ -111,7 +128,7 @@ _STEEL = 7850.0
 _BACKLASH = 0.05
 #: Radius at which a gear body is fixed, over its root radius; half a contact's width [modules]: as a case without them.
 _BORE, _HALF_WIDTH = 0.5, 0.02
-#: Mesh stiffness per face width, assumed for a ring [Pa]: c_gamma of ISO 6336 for steel.
+#: Mesh stiffness per face width, assumed for a ring and for reliefs [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
 
 
@@ -151,10 +168,11 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
         "half_width": _length(_HALF_WIDTH * answers.si("module")),
-        "relief": _EFFECTS["tip_relief"][not answers.has("tip_relief")],
+        "relief": _ON if _modified_by_assumption(answers) else _EFFECTS["tip_relief"][not answers.has("tip_relief")],
         "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
         **(_train(answers) if answers.kind == "train" else {}),
         **(_planetary(answers) if answers.kind == "planetary" else {}),
+        **(_gearbox(answers) if answers.kind == "gearbox" else {}),
         **(_study(answers) if answers.kind == "study" else {}),
     }
     template = files("fegear.case.drafts").joinpath("templates", _template(answers)).read_text("utf-8")
@@ -180,7 +198,7 @@ def _texts(answers: Answers, names: tuple[str, ...]) -> dict[str, str]:
 def _gear(answers: Answers, number: int) -> str:
     kind = KINDS[answers.kind]
     texts = _texts(answers, ("module", *(name for name in kind.asks if name not in _OF_PAIR)))
-    texts["relief"] = _RELIEF.format(**texts) if answers.has("tip_relief") else f"# {_NO_RELIEF}"
+    texts["relief"] = _modified(answers, number, texts)
     texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
     shift = float(answers.numbers("profile_shift")[number])
     texts["profile_shift"] = repr(shift)
@@ -190,10 +208,40 @@ def _gear(answers: Answers, number: int) -> str:
     module, teeth, dedendum = answers.si("module"), int(texts["teeth"]), BasicRack.named(answers["rack"]).dedendum
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
     texts["bore_radius"] = _length(_BORE * module * (0.5 * teeth / turn - dedendum + shift))
+    texts["bore_note"] = "half the root radius"
+    if answers.kind == "gearbox":
+        texts |= {"bore_radius": _length(_shaft_radii(answers)[number]), "bore_note": "that of the shaft"}
     if answers.helical:
         return _HELICAL.format(**texts, hand=("right", "left")[number])
     texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
     return _SPUR.format(**texts)
+
+
+def _modified(answers: Answers, number: int, texts: Mapping[str, str]) -> str:
+    """Lines for the flanks of a gear, and for its rating in a gearbox."""
+    lines = [_RELIEF.format(**texts) if answers.has("tip_relief") else f"# {_NO_RELIEF}"]
+    if answers.kind in HELICAL:
+        amount, along = _deflection(answers), _ALONG * answers.si("module")
+        crowned = _CROWNED.format(crowning=toml_string(_amount(_CROWNING * amount, "um")))
+        if _modified_by_assumption(answers):
+            sizes = {"amount": toml_string(_amount(amount, "um")), "length": toml_string(_amount(along, "mm"))}
+            lines = [_ROUNDED.format(**sizes) + _ASSUMED]
+        if number == 0:
+            lines.append(crowned + _ASSUMED if _modified_by_assumption(answers) else f"# {crowned}")
+    return "\n".join([*lines, _RATED] if answers.kind == "gearbox" else lines)
+
+
+def _deflection(answers: Answers) -> float:
+    """Mean deflection of a helical mesh under its torque, which a tip relief makes up for [m]."""
+    turn = math.cos(answers.si("helix_angle"))
+    radius = 0.5 * answers.si("module") * int(answers.numbers("teeth")[0]) / turn
+    radius *= math.cos(math.atan(math.tan(answers.si("pressure_angle")) / turn))
+    return answers.si("torque") / (radius * answers.si("face_width") * _PER_WIDTH)
+
+
+def _modified_by_assumption(answers: Answers) -> bool:
+    """Whether tip relief and crowning are assumed; "none" for an answer is none."""
+    return answers.kind in HELICAL and answers.assumed("tip_relief")
 
 
 def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
@@ -249,6 +297,32 @@ def _train(answers: Answers) -> Mapping[str, str]:
         "slowest": _amount(_SLOWEST * speed, "rpm"),
         "fastest": _amount(_FASTEST * speed, "rpm"),
     }
+
+
+def _gearbox(answers: Answers) -> Mapping[str, str]:
+    """Shafts as thick as their gears let them be, with bearings of that size clear of the gears."""
+    radii, face = _shaft_radii(answers), answers.si("face_width")
+    seat = 2.0 * _SEAT * radii[0]
+    length = face + 4.0 * seat
+    turn = math.cos(answers.si("helix_angle"))
+    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
+    return {
+        "shaft_length": _length(length), "middle": _length(0.5 * length), "left": _length(seat),
+        "right": _length(length - seat), "input_diameter": _length(2.0 * radii[0]),
+        "output_diameter": _length(2.0 * radii[1]),
+        "distance": _length(answers.si("module") * (0.5 * teeth / turn + shifts)),
+        "bearing": _amount(2.0 * _PER_BORE * radii[0], "N/um"),
+    }  # fmt: skip
+
+
+def _shaft_radii(answers: Answers) -> tuple[float, float]:
+    """Half the root radius of the pinion, and up to half as much again below the wheel [m]."""
+    turn, dedendum = math.cos(answers.si("helix_angle")), BasicRack.named(answers["rack"]).dedendum
+    teeth, shifts = (map(float, answers.numbers(name)) for name in ("teeth", "profile_shift"))
+    first, second = (
+        _BORE * answers.si("module") * (0.5 * z / turn - dedendum + x) for z, x in zip(teeth, shifts, strict=True)
+    )
+    return first, min(second, _THICKER * first)
 
 
 def _planetary(answers: Answers) -> Mapping[str, str]:
