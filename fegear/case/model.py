@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.compound import CompoundPart
     from fegear.case.design import DesignPart
     from fegear.case.encoders import EncodersPart
+    from fegear.case.fillet_design import FilletDesignPart
     from fegear.case.flank_design import FlankDesignPart
     from fegear.case.gauge import GaugePart
     from fegear.case.planetary import PlanetaryPart
@@ -35,6 +36,7 @@ else:  # tables that few cases have
     CompoundPart = Later("fegear.case.compound", "CompoundPart")
     DesignPart = Later("fegear.case.design", "DesignPart")
     EncodersPart = Later("fegear.case.encoders", "EncodersPart")
+    FilletDesignPart = Later("fegear.case.fillet_design", "FilletDesignPart")
     FlankDesignPart = Later("fegear.case.flank_design", "FlankDesignPart")
     GaugePart = Later("fegear.case.gauge", "GaugePart")
     PlanetaryPart = Later("fegear.case.planetary", "PlanetaryPart")
@@ -90,6 +92,9 @@ class Case(Part):
     )
     flank_design: Table[FlankDesignPart] | None = Field(
         default=None, description="Design of profile and flank line modifications of a 3D pair."
+    )
+    fillet_design: Table[FilletDesignPart] | None = Field(
+        default=None, description="Design of the fillet with minimum root stress (result `fillet-design`)."
     )
     robustness: Table[TolerancePart] | None = Field(
         default=None, description="Random deviations of a pair within the tolerances of its gears."

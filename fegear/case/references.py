@@ -50,6 +50,9 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:
         yield "design.pair", case.design.pair, "spur pair"
+    if case.fillet_design is not None:
+        yield "fillet_design.pair", case.fillet_design.pair, "pair"
+        yield "fillet_design.gear", case.fillet_design.gear, "gear"
     if case.loading is not None:
         yield "loading.pair", case.loading.pair, "spur pair"
     for name, part in case.transmissibility.items():

@@ -31,11 +31,14 @@ def apply(
         int | None,
         typer.Option("--variant", min=0, help="Variant of a sizing to be written as a new case; 0: the best."),
     ] = None,
+    fillet: Annotated[
+        bool, typer.Option("--fillet", help="Write the fillet of a fillet design, as points of the gear.")
+    ] = False,
     pair: Annotated[str, typer.Option("--pair", help="Pair. Default: the only pair with a design.")] = "",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the change without writing.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write a designed relief or lead correction into a case, or a variant of a sizing as a new case.
+    """Write a designed relief, lead correction or fillet into a case, or a variant of a sizing as a new case.
 
     Comments, order and form of the rest of a changed case stay.
 
@@ -58,7 +61,12 @@ def apply(
         voice.say(f"{'Would write' if dry_run else 'Wrote'} {said} to {case}.")
         return
     side, file = read_side(results, "RESULTS"), read_file(case, "--case")
-    found = applied_design(file.text, case, side.document, side.tables, str(results), relief, pair)
+    if fillet:
+        from fegear.results.relief.applied_fillet import applied_fillet
+
+        found = applied_fillet(file.text, case, side.document, side.tables, str(results), pair)
+    else:
+        found = applied_design(file.text, case, side.document, side.tables, str(results), relief, pair)
     if not dry_run:
         write_file(case, file.written(found.text), "--case")
     voice.say(f"{'Would write' if dry_run else 'Wrote'} {found.said}")

@@ -49,7 +49,7 @@ JOBS = {
 }  # fmt: skip
 #: Beginnings of the names of results by which a case is of a job, the first that fits.
 _BY_RESULT = (
-    ("relief", ("relief", "design-chart", "flank-design", "robustness", "sizing")),
+    ("relief", ("relief", "design-chart", "flank-design", "fillet-design", "robustness", "sizing")),
     ("train", ("natural-modes", "gear-train", "dynamic", "mesh-force", "torque-ripple", "transmissibility")),
     ("face", ("load-distribution", "tooth-contact", "measured-flanks")),
     ("pair", ("load-sharing", "rating", "flank-surface", "gear-mesh-power-loss", "transmission-error")),

@@ -49,7 +49,7 @@ def planned():
 #: Results that are made for external teeth only, or for pairs of external gears.
 EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
-    "flank-design",
+    "fillet-design", "flank-design",
     "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response", "sizing", "tooth-contact",
     "transmissibility",
@@ -102,7 +102,17 @@ def test_reading_a_case_loads_no_table_that_it_does_not_have(planned):
     """Of 40 ms for all tables of a case a quarter is left out."""
     _, loaded = planned
     assert {"case.gear", "case.train"} <= set(loaded)
-    others = {"sizing", "compound", "planetary", "shaft", "transmissibility", "flank_design", "design", "gauge"}
+    others = {
+        "sizing",
+        "compound",
+        "planetary",
+        "shaft",
+        "transmissibility",
+        "flank_design",
+        "fillet_design",
+        "design",
+        "gauge",
+    }
     assert not {f"case.{one}" for one in (*others, "set_pairs", "trade_words")} & set(loaded)
 
 

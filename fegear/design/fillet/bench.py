@@ -150,7 +150,10 @@ class FilletBench:
         self.tried += 1
         gear, source = replace(self.gear, tooth=tooth), self.engagement.compliance.source(self.member)
         solved = solve_gear(gear, self.settings, reach=max(source.reach, 1), estimate_error=False)
-        known = finite_element_compliance(solved)
+        return self.stress(finite_element_compliance(solved))
+
+    def stress(self, known: FiniteElementCompliance) -> Array:
+        """The same of a tooth that was solved."""
         tension = self._extreme(known, "tension").max(axis=0)
         if self.objective == "tension":
             return tension

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
@@ -25,16 +26,18 @@ from fegear.fem.plane.solution import solve_to_tolerance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import PointsFillet
 from fegear.geometry.involute_tooth import InvoluteTooth
-from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.rack import BasicRack
 
-#: Searches: basis, how many waves or bumps, where the flank begins at first (share of the way to the base circle), and
-#: height of the first wave or bump. The first is the design, the others are its proof.
-SEARCHES: dict[str, tuple[Basis, int, float, float]] = {
-    "waves": ("waves", 7, 0.0, 0.0),
-    "waves, other start": ("waves", 7, 0.4, 0.02),
-    "bumps": ("bumps", 6, 0.3, 0.0),
+#: Searches: basis, where the flank begins at first (share of the way to the base circle), and height of the first wave
+#: or bump. The first is the design, the others are its proof.
+SEARCHES: dict[str, tuple[Basis, float, float]] = {
+    "waves": ("waves", 0.0, 0.0),
+    "waves, other start": ("waves", 0.4, 0.02),
+    "bumps": ("bumps", 0.3, 0.0),
 }
+#: Waves along a fillet.
+WAVES = 7
 #: Starts that are tried in turn where an ellipse cannot be: nearer to the base circle, and higher.
 _STARTS = ((0.0, 0.0), (0.2, 0.0), (0.4, 0.0), (0.7, 0.0), (0.2, 0.05), (0.5, 0.05), (0.9, 0.1))
 #: Roll positions of the final numbers; how far off a fillet is tried, halfway up [modules].
@@ -43,12 +46,22 @@ _POSITIONS, OFF = 48, 0.01
 
 @dataclass(frozen=True)
 class Stressed:
-    """A tooth and its largest stress by the objective in the pair, loaded with it [Pa]; its error is estimated."""
+    """A tooth and its largest stress by the objective in the pair, loaded with it [Pa]; its error is estimated.
+
+    Parameters
+    ----------
+    name : str
+    tooth : InvoluteTooth
+    stress, error : float
+    along : ndarray, shape (S,)
+        Largest stress over the mesh along the fillet, at `SHARES` of its length from the root circle [Pa].
+    """
 
     name: str
     tooth: InvoluteTooth
     stress: float
     error: float
+    along: Array
 
 
 @dataclass(frozen=True)
@@ -65,7 +78,6 @@ class FilletDesign:
         By search, see `SEARCHES`.
     off : (float, float)
         Stress over the best where half of the fillet's length is `OFF` modules deeper, and higher.
-    seconds : float
     """
 
     member: Member
@@ -83,7 +95,22 @@ class FilletDesign:
     @property
     def first(self) -> str:
         """The search that found it."""
-        return min(self.found, key=lambda name: self.found[name].stress)
+        return _first(self.found)
+
+    @property
+    def kept(self) -> bool:
+        """Whether it keeps its limits."""
+        return self.found[self.first].kept
+
+    @property
+    def off_by(self) -> float:
+        """How far a fillet was tried deeper and higher [modules]."""
+        return OFF
+
+    @property
+    def tried(self) -> int:
+        """Fillets that were solved."""
+        return sum(one.tried for one in self.found.values())
 
     @property
     def spread(self) -> float:
@@ -97,6 +124,11 @@ class FilletDesign:
         return 1.0 - ratio, ratio * (self.best.error / self.best.stress + over.error / over.stress)
 
 
+def _first(found: dict[str, Found]) -> str:
+    """The least stressed fillet of those that keep their limits; of all where none does."""
+    return min(found, key=lambda name: (not found[name].kept, found[name].stress))
+
+
 def design_fillet(
     loaded: LoadedPair,
     spec: PairSpec,
@@ -106,6 +138,9 @@ def design_fillet(
     objective: Objective = "tension",
     tolerance: float = 1e-2,
     progress: Callable[[float], None] = silent,
+    searches: int = len(SEARCHES),
+    waves: int = WAVES,
+    alike: bool = False,
 ) -> FilletDesign:
     """Find the fillet of one gear of a pair of external plane gears with the least root stress.
 
@@ -124,6 +159,12 @@ def design_fillet(
     tolerance : float
         Of the final numbers.
     progress : callable, optional
+    searches : int
+        How many of `SEARCHES`: one is quick and proves nothing.
+    waves : int
+        Of the first family; the bumps of the other are one less.
+    alike : bool
+        Whether the gear meshes with its like, which has the same fillet in the final numbers.
 
     Raises
     ------
@@ -135,19 +176,19 @@ def design_fillet(
     present = bench.largest(tooth)
     flank = bench.flank(tooth.root_radius)
     found = {}
-    for n, (name, (basis, count, share, height)) in enumerate(SEARCHES.items()):
-        family = MovedEllipses(flank, bench.active_roll, basis, count)
+    for n, (name, (basis, share, height)) in enumerate(islice(SEARCHES.items(), searches)):
+        family = MovedEllipses(flank, bench.active_roll, basis, waves if basis == "waves" else max(1, waves - 1))
         start = _start(bench, family, share, height)
         if start is not None:
             found[name] = search(bench, family, present, start)
-        progress((n + 1) / (len(SEARCHES) + 2))
+        progress((n + 1) / (searches + 1))
     if not found:
         raise GeometryError(
             "fillet_design", "(start)", "has no ellipse tangent to root circle and flank to start from",
             "reduce smallest_radius or clearance, or choose another root circle",
         )  # fmt: skip
-    best = min(found.values(), key=lambda one: one.stress)
-    finally_ = _Final(loaded, spec, solved, member, objective, tolerance)
+    best = found[_first(found)]
+    finally_ = _Final(loaded, spec, solved, member, objective, tolerance, alike)
     full = full_rounded(tooth)
     rows = [
         None if one is None else finally_.stressed(name, one)
@@ -217,20 +258,26 @@ class _Final:
     member: Member
     objective: Objective
     tolerance: float
+    alike: bool
 
     def stressed(self, name: str, tooth: InvoluteTooth) -> Stressed:
         """Of a tooth, with its estimated error."""
-        i = 0 if self.member == "driver" else 1
+        changed = [g for g, member in enumerate(MEMBERS) if member == self.member or self.alike]
         gears = [self.loaded.pair.driver, self.loaded.pair.driven]
-        gears[i] = replace(gears[i], tooth=tooth)
         solved = list(self.solved)
-        solved[i] = solve_to_tolerance(gears[i], self.tolerance, reach=self.solved[i].reach)
+        i = MEMBERS.index(self.member)
+        new = replace(gears[i], tooth=tooth)
+        of_new = solve_to_tolerance(new, self.tolerance, reach=self.solved[i].reach)
+        for g in changed:
+            gears[g], solved[g] = new, of_new
         pair = GearPair(gears[0], gears[1], self.loaded.pair.centre_distance, self.loaded.pair.axial_offset)
         e = load_plane(replace(self.spec, pair=pair), solved, estimates=False).engagement
         states = loaded_states(e, (), (self.loaded.nominal,), roll_positions(e, _POSITIONS))
-        found = tooth_stress(e, states, self.member, finite_element_compliance(solved[i]))
+        known = finite_element_compliance(of_new)
+        found = tooth_stress(e, states, self.member, known)
+        bench = FilletBench(e, self.loaded.nominal, self.member, objective=self.objective, settings=of_new.settings)
+        along = bench.stress(known)
         most, error = float(found.largest_tension[0]), found.error(0) or 0.0
         if self.objective == "tension" or found.largest_compression is None:
-            return Stressed(name, tooth, most, error)
-        bench = FilletBench(e, self.loaded.nominal, self.member, objective=self.objective, settings=solved[i].settings)
-        return Stressed(name, tooth, bench.largest(tooth), 0.5 * (error + (found.compression_off(0) or 0.0)))
+            return Stressed(name, tooth, most, error, along)
+        return Stressed(name, tooth, float(along.max()), 0.5 * (error + (found.compression_off(0) or 0.0)), along)

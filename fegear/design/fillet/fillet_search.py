@@ -22,6 +22,8 @@ from fegear.geometry.fillet_shapes import PointsFillet
 _TRUST, _NO_TRUST, _SLOPE, _ROUNDS, _ENDED = 0.5, 2e-3, 0.02, 30, 1e-4
 #: Weight of a broken limit against the relative stress.
 _BROKEN = 10.0
+#: How far below zero what is left of a limit may end.
+KEPT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -36,12 +38,20 @@ class Found:
         On the search's mesh, under the present loads [Pa].
     tried : int
         Fillets that were solved.
+    room : float
+        What is left of its limits; negative: broken, see `FilletBench.room`.
     """
 
     numbers: Array
     shape: PointsFillet
     stress: float
     tried: int
+    room: float = 0.0
+
+    @property
+    def kept(self) -> bool:
+        """Whether it keeps its limits."""
+        return self.room > -KEPT
 
 
 def search(bench: FilletBench, family: MovedEllipses, present: float, start: Array) -> Found:
@@ -66,7 +76,7 @@ def search(bench: FilletBench, family: MovedEllipses, present: float, start: Arr
         while trust > _NO_TRUST:
             step, promised = _programme(at, slopes, present, numbers, spread, trust)
             if promised < _ENDED:
-                return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun)
+                return _found(bench, family, numbers, at, begun)
             there = _judged(bench, family, numbers + step * spread)
             gained = -math.inf if there is None else _merit(at, present) - _merit(there, present)
             if there is not None and gained > 0.1 * promised:
@@ -76,7 +86,12 @@ def search(bench: FilletBench, family: MovedEllipses, present: float, start: Arr
             trust *= 0.3
         else:
             break
-    return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun)
+    return _found(bench, family, numbers, at, begun)
+
+
+def _found(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judged, begun: int) -> Found:
+    room = float(at.room.min())
+    return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun, room)
 
 
 def _judged(bench: FilletBench, family: MovedEllipses, numbers: Array) -> Judged | None:

@@ -168,7 +168,7 @@ def applied_design(
     pair = _pair(tables, source, pair)
     chosen = _chosen(designs_of(tables, pair), design, source)
     before = build_scene(parse_document(text, f'"{where}"'), where.stem, where.parent)
-    gears = _gears(before, document, pair, where)
+    gears = gears_of_design(before, document, pair, where)
     keys = keys_of_design(tables, pair, gears, chosen)
     of_lead = any(str(row["design"]) == chosen for row in _rows(tables, OF_LEADS, pair))
     modified = _MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",)
@@ -244,7 +244,7 @@ def _chosen(designs: list[str], wanted: str, source: str) -> str:
     return fitting[0]
 
 
-def _gears(scene: Scene, document: Mapping[str, object], pair: str, where: Path) -> tuple[str, str]:
+def gears_of_design(scene: Scene, document: Mapping[str, object], pair: str, where: Path) -> tuple[str, str]:
     """Driver and driven gear of the case, if they are those of the run."""
     from fegear.case.reading import build_scene
 

@@ -1,0 +1,35 @@
+"""``[fillet_design]``: the fillet with the minimum root stress that is to be found for a gear of a pair."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from fegear.case.part import LengthOrZero, Part, PositiveLength
+
+
+class FilletDesignPart(Part):
+    """Which gear's fillet is to be found, what it is judged by, and the limits that it must keep."""
+
+    pair: str | None = Field(default=None, description="Pair. Default: the only plane (2D) pair.")
+    gear: str | None = Field(default=None, description="Gear of the pair. Default: its driver.")
+    objective: Literal["tension", "alternating"] = Field(
+        default="tension",
+        description="Stress to be minimised: `tension`, maximum root stress over the mesh; `alternating`, half its "
+        "range in teeth loaded on both flanks (idlers, planets).",
+    )
+    clearance: LengthOrZero | None = Field(
+        default=None,
+        description="Minimum clearance to the path of the mating tip at the root circle; decreases to zero at the "
+        "start of the flank. Default: 0.02 modules.",
+    )
+    minimum_radius: PositiveLength | None = Field(
+        default=None, description="Minimum radius of curvature of the fillet. Default: 0.1 modules."
+    )
+    waves: Annotated[int, Field(ge=1, le=12)] = Field(
+        default=7, description="Number of waves by which the fillet may differ from an ellipse."
+    )
+    searches: Annotated[int, Field(ge=1, le=3)] = Field(
+        default=3, description="Number of searches; the second (other start) and third (other curves) verify the first."
+    )

@@ -1,0 +1,122 @@
+"""Result ``fillet-design``: the fillet of one gear of a plane pair with the minimum root stress, its gain and proof."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError, shown
+from fegear.case.fillet_design import FilletDesignPart
+from fegear.case.nearest import nearest
+from fegear.engine.citation import Citation, citing
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS
+from fegear.results.forecasts import RING
+from fegear.results.gear.solved_gear import needs_solution, solution_of
+from fegear.results.pair.fillet_design_data import FilletDesignData, FilletDesignInputs
+from fegear.results.pair.fillet_design_sheet import FILLET_DESIGN_SHEET
+from fegear.results.pair.loaded_teeth import PLANE, check_teeth, gears_of, loaded_pair, needs_teeth
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.geometry.pair import Member
+
+#: Seconds of a fillet that is tried, how many a wave takes, and of the final solutions.
+_TRIED, _BY_WAVE, _FINAL = 0.08, 7.0, 1.5
+
+
+def fillet_part(scene: Scene) -> FilletDesignPart:
+    """``[fillet_design]``, or its defaults."""
+    return scene.case.fillet_design or FilletDesignPart()
+
+
+def fillet_pairs(scene: Scene) -> tuple[str, ...]:
+    """The pair whose gear gets a fillet: named, or the only plane one."""
+    named, plane = fillet_part(scene).pair, tuple(scene.plane_pairs)
+    if named is not None:
+        return (named,)
+    if len(plane) > 1:
+        rule = "is required with several plane (2D) pairs"
+        raise InputError("fillet_design.pair", "(not given)", rule, f"choose from {', '.join(plane)}")
+    return plane or tuple(scene.pairs)
+
+
+def fillet_member(scene: Scene, name: str) -> Member:
+    """Driver or driven gear of the pair: named, or the driver."""
+    gear, gears = fillet_part(scene).gear, gears_of(scene, name)
+    for member in MEMBERS:
+        if gear in (None, gears[member]):
+            return member
+    raise InputError(
+        "fillet_design.gear", shown(str(gear)), f"is not a gear of pair {name}",
+        nearest(str(gear), tuple(gears.values())),
+    )  # fmt: skip
+
+
+def _check(scene: Scene, name: str) -> None:
+    if name not in scene.plane_pairs:
+        raise InputError(
+            f"pair.{name}.width", f'"{scene.width_of(name)}"', "is not available for fillet design (plane teeth)",
+            f'set pair.{name}.width = "plane"',
+        )  # fmt: skip
+    check_teeth(scene, name)
+    source = scene.case.pair[name].compliance.source
+    if source != "fe":
+        raise InputError(
+            f"pair.{name}.compliance.source", f'"{source}"', "has no root stress; fillet design requires FE",
+            f'set pair.{name}.compliance.source = "fe"',
+        )  # fmt: skip
+    member = fillet_member(scene, name)
+    gear = gears_of(scene, name)[member]
+    if (mesh := scene.case.gear[gear].tooth_mesh) is not None:
+        raise InputError(
+            f"gear.{gear}.tooth_mesh", shown(str(mesh)), "contradicts fillet design, which meshes every fillet anew",
+            "remove tooth_mesh",
+        )  # fmt: skip
+
+
+def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
+    gears, member = gears_of(scene, name), fillet_member(scene, name)
+    alike = gears["driver"] == gears["driven"]
+    return FilletDesignInputs(fillet_part(scene), member, alike, scene.case.accuracy.tolerance, name, gears)
+
+
+def _compute(asked: FilletDesignInputs, upstream: Upstream, work: Work) -> FilletDesignData:
+    from fegear.design.fillet.bench import Limits
+    from fegear.design.fillet.fillet_design import design_fillet
+
+    part, loaded = asked.part, loaded_pair(upstream, asked.name)
+    module, usual = loaded.pair.driver.module, Limits()
+    limits = Limits(
+        usual.clearance if part.clearance is None else part.clearance / module,
+        usual.smallest_radius if part.minimum_radius is None else part.minimum_radius / module,
+    )
+    solved = (solution_of(upstream, asked.gears["driver"]), solution_of(upstream, asked.gears["driven"]))
+    design = design_fillet(
+        loaded, loaded.spec, solved, asked.member, limits, part.objective, asked.tolerance, work.progress,
+        part.searches, part.waves, alike=asked.alike,
+    )  # fmt: skip
+    return FilletDesignData(loaded.pair, loaded.nominal, design)
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    gears = gears_of(scene, name)
+    return (*needs_teeth(scene, name), *needs_solution(gears["driver"], gears["driven"]))
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    part = fillet_part(scene)
+    tried = round(part.searches * _BY_WAVE * (part.waves + 1))
+    return Forecast({"searches": part.searches, "waves": part.waves}, _FINAL + _TRIED * tried)
+
+
+FILLET_DESIGN = Stage(
+    subjects=fillet_pairs,
+    inputs=_inputs,
+    compute=_compute,
+    present=FILLET_DESIGN_SHEET.present,
+    needs=_needs,
+    check=_check,
+    effects_of=lambda _scene, _name: PLANE.effects,
+    cites=citing(*RING, Citation("mark", "root stress history of a tooth in mesh", "section 3, Appendix B")),
+    forecast=_forecast,
+)

@@ -1,0 +1,214 @@
+"""What the design of a fillet depends on, what comes of it, and as its sheet reads it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.base.shown import shown, shows
+from fegear.case.fillet_design import FilletDesignPart
+from fegear.geometry.pair import GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.design.fillet.fillet_design import FilletDesign, Stressed
+
+#: Points by which the length of a fillet is measured.
+_MEASURED = 1001
+#: Chords of a drawn tooth stay this close to it [modules].
+_CHORD = 1e-4
+#: Words of names of values, and roles of curves, by what a fillet is called.
+_WORDS = {"present": "present", "full fillet of a rack": "full_rounded", "optimum": "optimum"}
+_ROLES = {"present": "series:3", "full fillet of a rack": "series:1", "optimum": "series:0"}
+
+
+@dataclass(frozen=True)
+class FilletDesignInputs:
+    """What the design of a fillet depends on, besides its loaded pair and the solutions of both gears.
+
+    Parameters
+    ----------
+    part : FilletDesignPart
+    member : {"driver", "driven"}
+        That gets the fillet.
+    alike : bool
+        Whether a gear meshes with its like.
+    tolerance : float
+        Of the final solutions.
+    name : str
+        Of the pair.
+    gears : mapping of str to str
+        Names of driver and driven.
+    """
+
+    part: FilletDesignPart
+    member: Member
+    alike: bool
+    tolerance: float
+    name: str = field(compare=False)
+    gears: Mapping[Member, str] = field(compare=False)
+
+    @property
+    def gear(self) -> str:
+        """Name of the gear that gets the fillet."""
+        return self.gears[self.member]
+
+
+@dataclass(frozen=True)
+class FilletDesignData:
+    """A design, its present pair and the load [N]."""
+
+    pair: GearPair
+    load: float
+    design: FilletDesign
+
+
+@dataclass(frozen=True)
+class FilletPoints:
+    """Points of the designed fillet, which a case reads back as ``fillet``; arrays of shape (N,)."""
+
+    x: Array = shown("mm", "distance from the centre line of the tooth")
+    y: Array = shown("mm", "distance from the gear axis along the centre line of the tooth")
+
+
+@dataclass(frozen=True)
+class StressedFillet:
+    """One fillet and the stress along it; arrays of shape (S,).
+
+    Parameters
+    ----------
+    label, role : str
+        Of its curves.
+    word : str
+        In names of values.
+    error : float
+        Estimated, of the largest stress [Pa].
+    outline : ndarray, shape (2, N)
+        Right half of the tooth from the middle of the space to the tip [m].
+    """
+
+    label: str
+    role: str
+    word: str
+    error: float
+    outline: Array
+    largest: float = shown("MPa", "maximum root stress over the mesh", name="root_stress")
+    fillet: str = shown("", "fillet")
+    arc: Array = shown(
+        "mm", "arc length from the middle of the tooth space", label="arc length from the middle of the tooth space"
+    )
+    diameter: Array = shown("mm", "diameter of the fillet point")
+    stress: Array = shown("MPa", "maximum root stress over the mesh", label="root stress, maximum over the mesh")
+
+
+@dataclass(frozen=True)
+class FilletShown:
+    """A design as its sheet reads it.
+
+    Parameters
+    ----------
+    data : FilletDesignData
+    asked : FilletDesignInputs
+    """
+
+    data: FilletDesignData
+    asked: FilletDesignInputs
+
+    @property
+    def design(self) -> FilletDesign:
+        """The design."""
+        return self.data.design
+
+    @property
+    def module(self) -> float:
+        """[m]."""
+        return self.data.pair.driver.module
+
+    @property
+    def points(self) -> FilletPoints:
+        """Of the designed fillet."""
+        x, y = np.array(self.design.shape.points).T * self.module
+        return FilletPoints(x, y)
+
+    @cached_property
+    def fillets(self) -> list[StressedFillet]:
+        """Present, that of a rack with a full radius where there is one, and the designed one."""
+        design = self.design
+        rows = (design.present, design.full, design.best)
+        return [self._stressed(one) for one in rows if one is not None]
+
+    def _stressed(self, one: Stressed) -> StressedFillet:
+        from fegear.design.fillet.bench import SHARES
+        from fegear.geometry.outline import tooth_outline
+
+        tooth, m = one.tooth, self.module
+        x, y = tooth.fillet.points(np.linspace(tooth.fillet.start, tooth.fillet.end, _MEASURED)) * m
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+        land = float(np.hypot(x[0], y[0])) * (math.pi / tooth.teeth - math.atan2(abs(float(x[0])), float(y[0])))
+        places = SHARES * arc[-1]
+        diameter = 2.0 * np.interp(places, arc, np.hypot(x, y))
+        half = tooth_outline(tooth, _CHORD) * m
+        half = half[:, half[0] >= 0.0][:, ::-1]
+        return StressedFillet(
+            f"{one.name}: {one.stress * 1e-6:.4g} MPa", _ROLES[one.name], _WORDS[one.name], one.error, half, one.stress,
+            one.name, land + places, diameter, one.along,
+        )  # fmt: skip
+
+    @property
+    @shows("", "reduction of the maximum root stress by the designed fillet")
+    def gain(self) -> float:
+        """Over the present fillet."""
+        return self.design.gain(self.design.present)[0]
+
+    @property
+    def gain_error(self) -> float:
+        """Of it."""
+        return self.design.gain(self.design.present)[1]
+
+    @property
+    @shows("", "reduction of the maximum root stress compared with the full fillet of a rack")
+    def gain_over_full_rounded(self) -> float | None:
+        """None where no rack makes the gear."""
+        return None if self.design.full is None else self.design.gain(self.design.full)[0]
+
+    @property
+    def gain_over_full_rounded_error(self) -> float | None:
+        """Of it."""
+        return None if self.design.full is None else self.design.gain(self.design.full)[1]
+
+    @property
+    @shows("", "largest difference of the searches, relative")
+    def spread_of_searches(self) -> float | None:
+        """None of a single search."""
+        return self.design.spread if len(self.design.found) > 1 else None
+
+    @property
+    @shows("", "increase of the maximum root stress, fillet 0.01 modules deeper at half its length")
+    def increase_if_deeper(self) -> float:
+        """NaN where there is no such fillet."""
+        return self.design.off[0]
+
+    @property
+    @shows("", "increase of the maximum root stress, fillet 0.01 modules higher at half its length")
+    def increase_if_higher(self) -> float:
+        """NaN where there is no such fillet."""
+        return self.design.off[1]
+
+    @property
+    @shows("mm", "minimum radius of curvature of the designed fillet")
+    def minimum_radius(self) -> float:
+        """Along the fillet [m]."""
+        fillet = self.design.best.tooth.fillet
+        curvature = np.abs(fillet.curvatures(np.linspace(fillet.start, fillet.end, _MEASURED)))
+        return float(self.module / curvature.max())
+
+    @property
+    @shows("mm", "root form diameter, where the designed fillet ends")
+    def form_diameter(self) -> float:
+        """[m]."""
+        return 2.0 * self.module * self.design.best.tooth.form_radius

@@ -1,0 +1,186 @@
+"""What a designed fillet shows: its points, the tooth with each fillet, stress along them, gain, what it depends on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from fegear.base.notes import Note, exceeding, failing
+from fegear.base.printed import figures, percent, rounded
+from fegear.engine.declared import axis_of
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.items import Curve, outline
+from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.sheet import Sheet
+from fegear.results.pair.fillet_design_data import FilletShown, StressedFillet
+
+if TYPE_CHECKING:
+    from fegear.engine.sheet.seen import Seen
+
+#: Searches that differ by more do not verify each other.
+_SPREAD = 5e-3
+#: Room above the fillets in the drawing [modules].
+_ABOVE = 0.6
+_OWNER = "{name}.{asked.gear}"
+
+
+def _in_percent(share: float, error: float | None = None) -> str:
+    """A share with its error, both to the error's first digit."""
+    if not error:
+        return percent(share)
+    decimals = max(0, -math.floor(math.log10(100.0 * error)))
+    return f"{100.0 * share:.{decimals}f} ± {100.0 * error:.{decimals}f} %"
+
+
+def _kind(seen: Seen) -> str:
+    return "alternating root stress" if seen.asked.part.objective == "alternating" else "root stress"
+
+
+def _answer(seen: Seen) -> Iterator[str]:
+    """Gain over the present fillet and over that of a rack; whether it is verified."""
+    shown: FilletShown = seen.data
+    design, subject = shown.design, f"Pair {seen.name}"
+    if not design.kept:
+        yield f"{subject}: no fillet of gear {seen.asked.gear} within the limits of clearance and radius was found."
+        return
+    before, after = (rounded(one.stress * 1e-6, one.error * 1e-6) for one in (design.present, design.best))
+    gain, rack = shown.gain_over_full_rounded, ""
+    if gain is not None:
+        where = "below" if gain >= 0.0 else "above"
+        rack = f"; {_in_percent(abs(gain), shown.gain_over_full_rounded_error)} {where} the full fillet of a rack"
+    yield (
+        f"{subject}: fillet of gear {seen.asked.gear} by {len(design.shape.points)} points: {_kind(seen)} "
+        f"{before} -> {after} MPa ({_in_percent(-shown.gain, shown.gain_error)}){rack}."
+    )
+    if shown.spread_of_searches is not None:
+        off = f"{figures(1e6 * design.off_by * shown.module, 2)} µm ({design.off_by:g} modules)"
+        agree = "agree within" if shown.spread_of_searches <= _SPREAD else "differ by"
+        yield (
+            f"{subject}: {len(design.found)} searches {agree} {percent(shown.spread_of_searches)}; a fillet {off} off "
+            f"at half its length has {_loss(shown)}."
+        )
+
+
+def _difference(_seen: Seen) -> bool:
+    """A gain has the error of both stresses: relative to them, not to itself."""
+    return True
+
+
+def _loss(shown: FilletShown) -> str:
+    """What a fillet that is off loses, at most."""
+    known = [one for one in shown.design.off if math.isfinite(one)]
+    return f"up to {percent(max(0.0, *known))} more stress" if known else "an unknown stress (no such fillet)"
+
+
+def _remarks(seen: Seen) -> Iterator[Note | str]:
+    shown: FilletShown = seen.data
+    design, subject = shown.design, f"Pair {seen.name}, gear {seen.asked.gear}"
+    if not design.kept:
+        yield failing(
+            f"{subject}: no fillet within the limits was found; reduce fillet_design.minimum_radius or "
+            "fillet_design.clearance."
+        )
+    elif shown.gain <= shown.gain_error:
+        yield exceeding(
+            f"{subject}: the gain of {percent(shown.gain)} does not exceed its estimated error of "
+            f"{percent(shown.gain_error)}; reduce accuracy.tolerance or keep the present fillet."
+        )
+    if shown.spread_of_searches is None:
+        yield f"{subject}: the minimum by a single search is not verified; set fillet_design.searches = 3."
+    elif shown.spread_of_searches > _SPREAD:
+        yield exceeding(
+            f"{subject}: the searches differ by {percent(shown.spread_of_searches)}, so that the minimum is not "
+            "verified; increase fillet_design.waves."
+        )
+    if design.full is None:
+        yield f"{subject}: comparison with a rack of full tip radius omitted (no such rack for this gear)."
+    yield (
+        f"{subject}: to compute with the designed fillet, run fegear apply RESULTS --fillet --case CASE, or set "
+        f'gear.{seen.asked.gear}.fillet = {{ kind = "points", file = "designed_fillet_{seen.name}_'
+        f'{seen.asked.gear}.csv" }}.'
+    )
+
+
+def _figure(seen: Seen) -> Iterator[Figure]:
+    """Half a tooth with each fillet beside the stress along them."""
+    shown: FilletShown = seen.data
+    fillets: list[StressedFillet] = shown.fillets
+    yield Figure(
+        f"fillet_design_{seen.name}",
+        f"Fillets of gear {seen.asked.gear} in pair {seen.name}",
+        f"Pair {seen.name}, gear {seen.asked.gear}: half a tooth from the middle of the tooth space (right) up the "
+        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh.",
+        (
+            _drawn(fillets, shown.module * 1e3),
+            Panel(
+                axis_of(StressedFillet, "arc"),
+                axis_of(StressedFillet, "stress", zero=True),
+                tuple(
+                    Curve(one.arc * 1e3, one.stress * 1e-6, one.label, one.role, dash="solid", markers=False)
+                    for one in fillets
+                ),
+                title="Stress", height=1.3,
+            ),
+        ),
+        columns=2,
+        under=f"{shown.data.load:.5g} N",
+    )  # fmt: skip
+
+
+def _drawn(fillets: list[StressedFillet], module: float) -> Panel:
+    """The fillets and the flank just above them [mm]."""
+    curves = [one.outline * 1e3 for one in fillets]
+    low = min(float(curve[1].min()) for curve in curves) - 0.1 * module
+    top = max(0.5e3 * float(one.diameter.max()) for one in fillets) + _ABOVE * module
+    parts = [curve[:, curve[1] <= top] for curve in curves]
+    ends = [float(end) for part in parts for end in (part[0].min(), part[0].max())]
+    middle, half = 0.5 * (min(ends) + max(ends)), 0.5 * (top - low)
+    return Panel(
+        Axis("distance from the centre line of the tooth", "mm", limits=(middle - half, middle + half)),
+        Axis("distance from the gear axis", "mm", limits=(low, top)),
+        tuple(outline(part, one.label, one.role, 2.0, "solid") for one, part in zip(fillets, parts, strict=True)),
+        title="Fillets", height=1.3, equal=True,
+    )  # fmt: skip
+
+
+FILLET_DESIGN_SHEET = Sheet(
+    of=FilletShown,
+    tables=(
+        Rows(
+            "designed_fillet_{name}_{asked.gear}", "Designed fillet of gear {asked.gear} in pair {name}",
+            ("x", "y"), of="points",
+        ),
+        Rows(
+            "fillet_stress_{name}_{asked.gear}", "Root stress along fillets of gear {asked.gear} in pair {name}",
+            ("fillet", "arc", "diameter", "stress"), stacked="fillets",
+        ),
+    ),
+    values=(
+        Number(
+            "largest", "error", owner=_OWNER, name="root_stress_{one.word}", each="fillets",
+            meaning=lambda seen: f"maximum {_kind(seen)} over the mesh, {seen.one.fillet}",
+        ),
+        Number("gain", "gain_error", owner=_OWNER, zero=_difference),
+        Number("gain_over_full_rounded", "gain_over_full_rounded_error", owner=_OWNER, zero=_difference),
+        Number("spread_of_searches", owner=_OWNER),
+        Number("increase_if_deeper", owner=_OWNER),
+        Number("increase_if_higher", owner=_OWNER),
+        Number("minimum_radius", exact, owner=_OWNER),
+        Number("form_diameter", exact, owner=_OWNER),
+    ),
+    figures=(_figure,),
+    answer=Answer(_answer, figure="fillet_design_{name}"),
+    remarks=(_remarks,),
+    settings={
+        "objective": "asked.part.objective",
+        "searches": lambda seen: len(seen.data.design.found),
+        "fillets_solved": "design.tried",
+        "best_search": "design.first",
+        "load": "data.load",
+    },
+)  # fmt: skip
