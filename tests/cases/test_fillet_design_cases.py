@@ -1,0 +1,205 @@
+"""``fillet-design``: from a case to points that a case reads back, the stress it promises, its notes and refusals."""
+
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tomlkit
+
+from fegear.base.errors import InputError
+from fegear.base.notes import NoteClass, class_of
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+from fegear.results.pair.fillet_design_data import FilletDesignInputs
+from fegear.results.pair.fillet_design_sheet import FILLET_DESIGN_SHEET
+from fegear.results.relief.applied_fillet import applied_fillet
+
+GEAR = {"module": "3 mm", "face_width": "6 mm", "bore_radius": "12 mm"}
+CASE = {
+    "results": ["fillet-design"],
+    "neglected": False,
+    "gear": {"a": {"teeth": 20, **GEAR}, "b": {"teeth": 31, **GEAR}},
+    "pair": {"I": {"driver": "a", "driven": "b", "load": "1 kN"}},
+    "fillet_design": {"gear": "b", "waves": 1, "searches": 1},
+    "effects": {"neighbour_coupling": True},
+    "accuracy": {"tolerance": 0.1},
+}
+TEXT = tomlkit.dumps(CASE)
+
+
+def plan_of(document):
+    scene = build_scene(document, "case", Path())
+    return scene, make_plan(scene, STAGES)
+
+
+def changed(path, value):
+    """The case with one key changed."""
+    document = tomllib.loads(TEXT)
+    *tables, key = path.split(".")
+    table = document
+    for name in tables:
+        table = table.setdefault(name, {})
+    table[key] = value
+    return document
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+@pytest.fixture(scope="module")
+def outcome(cache):
+    scene, plan = plan_of(tomllib.loads(TEXT))
+    return run_plan(scene, plan, cache=cache).outcomes[Task("fillet-design", "I")]
+
+
+def asked(**changes):
+    scene, _ = plan_of(tomllib.loads(TEXT))
+    inputs = STAGES.called("fillet-design").inputs(scene, "I")
+    assert isinstance(inputs, FilletDesignInputs)
+    return replace(inputs, **changes)
+
+
+def value(outcome, name):
+    (found,) = (one for one in outcome.values if one.name == f"I.b.{name}")
+    return found
+
+
+def table(outcome, name):
+    (found,) = (one for one in outcome.tables if one.name == name)
+    return found
+
+
+@pytest.mark.dear
+def test_the_designed_fillet_is_less_stressed_and_the_answer_says_by_how_much(outcome):
+    design = outcome.data.design
+    present, full, best = (value(outcome, f"root_stress_{one}") for one in ("present", "full_rounded", "optimum"))
+    assert best.si < full.si < present.si
+    assert value(outcome, "gain").si == pytest.approx(1.0 - best.si / present.si)
+    assert value(outcome, "gain").si > 0.15
+    assert design.kept
+    assert value(outcome, "minimum_radius").si >= 0.1 * 3e-3
+    (said,) = outcome.answer.sentences
+    assert "fillet of gear b by 41 points" in said
+    assert f"(-{100.0 * value(outcome, 'gain').si:.0f} ± " in said
+    stress = table(outcome, "fillet_stress_I_b")
+    for name, one in (("present", present), ("optimum", best)):
+        rows = stress["fillet"] == name
+        assert stress["stress"][rows].max() == pytest.approx(one.si * 1e-6, rel=2e-2)
+        assert np.all(np.diff(stress["arc"][rows]) > 0.0)
+    # A single search is not proof, and the note says so.
+    assert any("not verified" in note for note in outcome.remarks)
+
+
+@pytest.mark.dear
+def test_an_applied_fillet_has_the_stress_that_its_design_promises(outcome, cache):
+    tables = {one.name: one for one in outcome.tables}
+    found = applied_fillet(TEXT, Path("case.toml"), CASE, tables, "results/case")
+    again = applied_fillet(found.text, Path("case.toml"), CASE, tables, "results/case")
+    assert again.text == found.text
+    document = tomllib.loads(found.text)
+    assert len(document["gear"]["b"]["fillet"]["x"]) == 41
+    assert "fillet" not in document["gear"]["a"]
+    document["results"] = ["root-stress-history"]
+    scene, plan = plan_of(document)
+    history = run_plan(scene, plan, cache=cache).outcomes[Task("root-stress-history", "I")]
+    (found,) = (one.si for one in history.values if one.name == "I.driven.largest_root_tension")
+    assert found == pytest.approx(value(outcome, "root_stress_optimum").si, rel=3e-3)
+
+
+def presented(outcome, inputs=None, **changes):
+    """The same with another design."""
+    data = replace(outcome.data, design=replace(outcome.data.design, **changes))
+    return FILLET_DESIGN_SHEET.present(data, inputs or asked())
+
+
+@pytest.mark.dear
+def test_what_is_not_proven_or_not_within_the_limits_is_said(outcome):
+    design = outcome.data.design
+    (name, one), = design.found.items()  # fmt: skip
+    other = replace(one, stress=1.04 * one.stress)
+    both = presented(outcome, found={name: one, "bumps": other})
+    assert "2 searches differ by 4.0 %" in both.answer.sentences[1]
+    assert any("not verified" in n and class_of(n) is NoteClass.BEYOND_TOLERANCE for n in both.remarks)
+    agreeing = presented(outcome, found={name: one, "bumps": replace(one, stress=1.001 * one.stress)})
+    assert "agree within 0.100 %" in agreeing.answer.sentences[1]
+    assert not any("not verified" in n for n in agreeing.remarks)
+    # A fillet that breaks its limits is not taken, whatever its stress, unless all do.
+    broken = replace(one, stress=0.9 * one.stress, room=-0.1)
+    assert replace(design, found={name: one, "bumps": broken}).first == name
+    none = presented(outcome, found={name: broken})
+    assert any(class_of(n) is NoteClass.FAILS for n in none.remarks)
+    assert "no fillet" in none.answer.sentences[0]
+    worse = presented(outcome, best=replace(design.best, stress=1.2 * design.present.stress))
+    assert any("does not exceed" in n for n in worse.remarks)
+    alone = presented(outcome, full=None, off=(math.nan, math.nan))
+    assert not any(v.name.endswith(("full_rounded", "deeper", "higher")) for v in alone.values)
+    assert any("comparison with a rack" in n for n in alone.remarks)
+
+
+@pytest.mark.dear
+def test_alternating_is_said(outcome):
+    part = asked().part.model_copy(update={"objective": "alternating"})
+    found = presented(outcome, asked(part=part))
+    assert "alternating root stress" in found.answer.sentences[0]
+    assert "alternating" in value(found, "root_stress_optimum").meaning
+
+
+@pytest.mark.parametrize(
+    ("path", "given", "key"),
+    [
+        ("fillet_design.pair", "J", "fillet_design.pair"),
+        ("fillet_design.gear", "c", "fillet_design.gear"),
+        ("fillet_design.objective", "least", "fillet_design.objective"),
+        ("fillet_design.searches", 4, "fillet_design.searches"),
+        ("fillet_design.clearance", "-1 um", "fillet_design.clearance"),
+        ("fillet_design.minimum_radius", "0 mm", "fillet_design.minimum_radius"),
+        ("pair.I.width", "slices", "pair.I.width"),
+        ("pair.I.compliance", {"source": "cornell"}, "pair.I.compliance.source"),
+        ("gear.c", {"teeth": 20, **GEAR}, ""),
+    ],
+)
+def test_refusals_name_their_key(path, given, key):
+    document = changed(path, given)
+    if not key:  # a gear of the case, but not of the pair
+        document["fillet_design"]["gear"], key = "c", "fillet_design.gear"
+    with pytest.raises(InputError) as refused:
+        plan_of(document)
+    assert refused.value.key == key
+
+
+def test_several_pairs_need_a_name_and_a_run_without_a_design_has_no_fillet():
+    document = changed("pair.K", {"driver": "a", "driven": "b", "load": "1 kN"})
+    with pytest.raises(InputError, match=r"fillet_design.pair .*I, K"):
+        plan_of(document)
+    with pytest.raises(InputError, match="has no designed fillet"):
+        applied_fillet(TEXT, Path("case.toml"), CASE, {}, "results/case")
+
+
+def test_limits_are_lengths_and_defaults_are_those_of_the_design():
+    scene, plan = plan_of(changed("fillet_design.minimum_radius", "0.6 mm"))
+    (step,) = (one for one in plan.steps if one.task.stage == "fillet-design")
+    part = step.inputs(scene).part
+    assert (part.minimum_radius, part.clearance) == (0.6e-3, None)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("objective", ["tension", "alternating"])
+def test_three_searches_verify_each_other(objective, cache):
+    document = changed("fillet_design", {"gear": "a", "objective": objective})
+    document["accuracy"]["tolerance"] = 0.02
+    scene, plan = plan_of(document)
+    found = run_plan(scene, plan, cache=cache).outcomes[Task("fillet-design", "I")]
+    assert len(found.answer.sentences) == 2
+    assert "3 searches agree" in found.answer.sentences[1]
+    gain = next(one for one in found.values if one.name == "I.a.gain")
+    assert 0.2 < gain.si < 0.4
+    assert 0.0 < gain.si_error < 0.03
