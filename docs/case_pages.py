@@ -23,7 +23,9 @@ PAGES = {
         "Case files: what single results read",
         ("stiffness", "study", "tooth_contact", "load_distribution", "transmission_error", "loading", "cost"),
     ),
-    "case-files-design.md": ("Case files: design and tolerances", ("design", "robustness", "flank_design", "fillet_design")),
+    "case-files-design.md": (
+        "Case files: design and tolerances", ("design", "robustness", "flank_design", "fillet_design"),
+    ),
     "case-files-accuracy.md": ("Case files: effects, accuracy and rating", ("effects", "accuracy", "rating")),
 }  # fmt: skip
 _HEAD = re.compile(r"^(#{2,3}) (.+)$", re.MULTILINE)

@@ -13,6 +13,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
+from fegear.design.fillet.limits import Limits
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
@@ -147,8 +148,7 @@ def test_what_is_not_proven_or_not_within_the_limits_is_said(outcome):
 
 @pytest.mark.dear
 def test_alternating_is_said(outcome):
-    part = asked().part.model_copy(update={"objective": "alternating"})
-    found = presented(outcome, asked(part=part))
+    found = presented(outcome, asked(objective="alternating"))
     assert "alternating root stress" in found.answer.sentences[0]
     assert "alternating" in value(found, "root_stress_optimum").meaning
 
@@ -187,8 +187,8 @@ def test_several_pairs_need_a_name_and_a_run_without_a_design_has_no_fillet():
 def test_limits_are_lengths_and_defaults_are_those_of_the_design():
     scene, plan = plan_of(changed("fillet_design.minimum_radius", "0.6 mm"))
     (step,) = (one for one in plan.steps if one.task.stage == "fillet-design")
-    part = step.inputs(scene).part
-    assert (part.minimum_radius, part.clearance) == (0.6e-3, None)
+    limits = step.inputs(scene).limits
+    assert (limits.smallest_radius, limits.clearance) == (pytest.approx(0.2), Limits().clearance)
 
 
 @pytest.mark.long

@@ -100,6 +100,8 @@ ELLIPSE = joined(PAIR, {"results": ["geometry"], "gear.a.fillet": {"kind": "elli
 ASYMMETRIC = joined(PAIR, {"results": ["geometry"], "gear.a.coast_pressure_angle": "22 deg",
                            "gear.b.coast_pressure_angle": "22 deg", "pair.I.compliance": None})  # fmt: skip
 
+FILLET = joined(LOADED, {"results": ["fillet-design"], "pair.I.compliance": None, "fillet_design": {"searches": 1}})
+
 #: Key, case, where it is written, and what is written: a value, or how it follows from the case as it was built.
 ROWS = {
     "DoubleHelicalPart.floating": (
@@ -116,6 +118,10 @@ ROWS = {
         joined(PAIR, {"results": ["geometry"]}), "gear.a.bore_radius", _root),
     "GearPart.coast_pressure_angle": (
         joined(PAIR, {"results": ["geometry"]}), "gear.a.coast_pressure_angle", "20 deg"),
+    "FilletDesignPart.pair": (FILLET, "fillet_design.pair", "I"),
+    "FilletDesignPart.gear": (FILLET, "fillet_design.gear", "a"),
+    "FilletDesignPart.clearance": (FILLET, "fillet_design.clearance", f"{0.02 * 3.0!r} mm"),
+    "FilletDesignPart.minimum_radius": (FILLET, "fillet_design.minimum_radius", f"{0.1 * 3.0!r} mm"),
     "FilletPart.form_diameter": (
         ELLIPSE, "gear.a.fillet.form_diameter", lambda s: metres(2.0 * s.gears["a"].form_radius)),
     "FilletPart.root_diameter": (

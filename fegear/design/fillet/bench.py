@@ -20,6 +20,7 @@ from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_e
 from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
+from fegear.design.fillet.limits import Limits
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.fillet_shapes import FilletShape, FlankAbove
@@ -47,22 +48,6 @@ def search_settings() -> MeshSettings:
     """Mesh of a search: stress of any fillet within 0.3 %, differences of neighbours far better."""
     fine = settings_at(_FILLET_LEVEL)
     return replace(settings_at(_LEVEL), root_edge_length=fine.root_edge_length, root_fraction=fine.root_fraction)
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a fillet must keep [modules].
-
-    Parameters
-    ----------
-    clearance : float
-        Room to the path of the mating tip at the root circle, falling to zero at the start of the flank.
-    smallest_radius : float
-        Of curvature.
-    """
-
-    clearance: float = 0.02
-    smallest_radius: float = 0.1
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import InputError, shown
 from fegear.case.fillet_design import FilletDesignPart
 from fegear.case.nearest import nearest
+from fegear.design.fillet.limits import Limits
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
@@ -76,24 +77,25 @@ def _check(scene: Scene, name: str) -> None:
 
 def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
     gears, member = gears_of(scene, name), fillet_member(scene, name)
-    alike = gears["driver"] == gears["driven"]
-    return FilletDesignInputs(fillet_part(scene), member, alike, scene.case.accuracy.tolerance, name, gears)
-
-
-def _compute(asked: FilletDesignInputs, upstream: Upstream, work: Work) -> FilletDesignData:
-    from fegear.design.fillet.bench import Limits
-    from fegear.design.fillet.fillet_design import design_fillet
-
-    part, loaded = asked.part, loaded_pair(upstream, asked.name)
-    module, usual = loaded.pair.driver.module, Limits()
+    part, module, usual = fillet_part(scene), scene.pairs[name].driver.module, Limits()
     limits = Limits(
         usual.clearance if part.clearance is None else part.clearance / module,
         usual.smallest_radius if part.minimum_radius is None else part.minimum_radius / module,
     )
+    return FilletDesignInputs(
+        part.objective, limits, part.waves, part.searches, member, gears["driver"] == gears["driven"],
+        scene.case.accuracy.tolerance, name, gears,
+    )  # fmt: skip
+
+
+def _compute(asked: FilletDesignInputs, upstream: Upstream, work: Work) -> FilletDesignData:
+    from fegear.design.fillet.fillet_design import design_fillet
+
+    loaded = loaded_pair(upstream, asked.name)
     solved = (solution_of(upstream, asked.gears["driver"]), solution_of(upstream, asked.gears["driven"]))
     design = design_fillet(
-        loaded, loaded.spec, solved, asked.member, limits, part.objective, asked.tolerance, work.progress,
-        part.searches, part.waves, alike=asked.alike,
+        loaded, loaded.spec, solved, asked.member, asked.limits, asked.objective, asked.tolerance, work.progress,
+        asked.searches, asked.waves, alike=asked.alike,
     )  # fmt: skip
     return FilletDesignData(loaded.pair, loaded.nominal, design)
 

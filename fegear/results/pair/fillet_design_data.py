@@ -12,10 +12,11 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.case.fillet_design import FilletDesignPart
+from fegear.design.fillet.limits import Limits
 from fegear.geometry.pair import GearPair, Member
 
 if TYPE_CHECKING:
+    from fegear.design.fillet.bench import Objective
     from fegear.design.fillet.fillet_design import FilletDesign, Stressed
 
 #: Points by which the length of a fillet is measured.
@@ -33,7 +34,9 @@ class FilletDesignInputs:
 
     Parameters
     ----------
-    part : FilletDesignPart
+    objective : {"tension", "alternating"}
+    limits : Limits
+    waves, searches : int
     member : {"driver", "driven"}
         That gets the fillet.
     alike : bool
@@ -46,7 +49,10 @@ class FilletDesignInputs:
         Names of driver and driven.
     """
 
-    part: FilletDesignPart
+    objective: Objective
+    limits: Limits
+    waves: int
+    searches: int
     member: Member
     alike: bool
     tolerance: float

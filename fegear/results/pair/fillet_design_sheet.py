@@ -38,7 +38,7 @@ def _in_percent(share: float, error: float | None = None) -> str:
 
 
 def _kind(seen: Seen) -> str:
-    return "alternating root stress" if seen.asked.part.objective == "alternating" else "root stress"
+    return "alternating root stress" if seen.asked.objective == "alternating" else "root stress"
 
 
 def _answer(seen: Seen) -> Iterator[str]:
@@ -177,7 +177,7 @@ FILLET_DESIGN_SHEET = Sheet(
     answer=Answer(_answer, figure="fillet_design_{name}"),
     remarks=(_remarks,),
     settings={
-        "objective": "asked.part.objective",
+        "objective": lambda seen: seen.asked.objective,
         "searches": lambda seen: len(seen.data.design.found),
         "fillets_solved": "design.tried",
         "best_search": "design.first",
