@@ -13,7 +13,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
-from fegear.design.fillet.limits import Limits
+from fegear.design.fillet.fillet_limits import Limits
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

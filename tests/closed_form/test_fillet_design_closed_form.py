@@ -10,8 +10,8 @@ from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.maker import load_plane
 from fegear.design.fillet.bench import FilletBench, search_settings
 from fegear.design.fillet.fillet_design import design_fillet, full_rounded, moved
+from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import search
-from fegear.design.fillet.limits import Limits
 from fegear.design.fillet.moved_ellipses import MovedEllipses
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear, solve_to_tolerance

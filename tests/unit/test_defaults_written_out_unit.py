@@ -124,6 +124,8 @@ MORE = {
         "amount": "5 um", "length": "1 mm"}}}}}),
     "lead": ("spur_over_the_face", {"effects": {"relief": True}, "gear": {"a": {"lead": {"slope": "3 um"}}}}),
     "line error": ("spur_misaligned", {"pair": {"I": {"line_error": {"crowning": "3 um"}}}}),
+    "fillet design": ("nasa_four_square", {
+        "results": ["fillet-design"], "fillet_design": {"pair": "I", "gear": "test"}}),
     "grid": ("helical_flank_design", {"flank_design": {"grid": {"crownings": ["2 um"]}}}),
     "followed": ("blankenship_singh", {"transmissibility": {"I": {"follow": {
         "bearing_stiffness": {"start": 0.5, "stop": 2.0},

@@ -20,7 +20,7 @@ from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_e
 from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
-from fegear.design.fillet.limits import Limits
+from fegear.design.fillet.fillet_limits import Limits
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.fillet_shapes import FilletShape, FlankAbove

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import InputError, shown
 from fegear.case.fillet_design import FilletDesignPart
 from fegear.case.nearest import nearest
-from fegear.design.fillet.limits import Limits
+from fegear.design.fillet.fillet_limits import Limits
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS

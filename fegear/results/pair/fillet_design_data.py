@@ -12,7 +12,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.design.fillet.limits import Limits
+from fegear.design.fillet.fillet_limits import Limits
 from fegear.geometry.pair import GearPair, Member
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _MEASURED = 1001
 #: Chords of a drawn tooth stay this close to it [modules].
 _CHORD = 1e-4
+#: How far above a fillet the tooth is drawn, and room around the drawing [modules].
+_ABOVE, _ROOM = 0.6, 0.1
 #: Words of names of values, and roles of curves, by what a fillet is called.
 _WORDS = {"present": "present", "full fillet of a rack": "full_rounded", "optimum": "optimum"}
 _ROLES = {"present": "series:3", "full fillet of a rack": "series:1", "optimum": "series:0"}
@@ -94,15 +96,16 @@ class StressedFillet:
         In names of values.
     error : float
         Estimated, of the largest stress [Pa].
-    outline : ndarray, shape (2, N)
-        Right half of the tooth from the middle of the space to the tip [m].
+    x, y : ndarray, shape (N,)
+        Right half of the tooth from the middle of the space to above the fillet [m].
     """
 
     label: str
     role: str
     word: str
     error: float
-    outline: Array
+    x: Array = shown("mm", "distance from the centre line of the tooth")
+    y: Array = shown("mm", "distance from the gear axis")
     largest: float = shown("MPa", "maximum root stress over the mesh", name="root_stress")
     fillet: str = shown("", "fillet")
     arc: Array = shown(
@@ -148,6 +151,14 @@ class FilletShown:
         rows = (design.present, design.full, design.best)
         return [self._stressed(one) for one in rows if one is not None]
 
+    @property
+    def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Ends of a square around the drawn fillets, in x and in y [mm]."""
+        x, y = (np.concatenate([getattr(one, axis) for one in self.fillets]) * 1e3 for axis in ("x", "y"))
+        half = 0.5 * max(float(np.ptp(x)), float(np.ptp(y))) + _ROOM * self.module * 1e3
+        middle = [0.5 * float(one.min() + one.max()) for one in (x, y)]
+        return (middle[0] - half, middle[0] + half), (middle[1] - half, middle[1] + half)
+
     def _stressed(self, one: Stressed) -> StressedFillet:
         from fegear.design.fillet.bench import SHARES
         from fegear.geometry.outline import tooth_outline
@@ -159,10 +170,10 @@ class FilletShown:
         places = SHARES * arc[-1]
         diameter = 2.0 * np.interp(places, arc, np.hypot(x, y))
         half = tooth_outline(tooth, _CHORD) * m
-        half = half[:, half[0] >= 0.0][:, ::-1]
+        half = half[:, (half[0] >= 0.0) & (half[1] <= 0.5 * diameter[-1] + _ABOVE * m)][:, ::-1]
         return StressedFillet(
-            f"{one.name}: {one.stress * 1e-6:.4g} MPa", _ROLES[one.name], _WORDS[one.name], one.error, half, one.stress,
-            one.name, land + places, diameter, one.along,
+            f"{one.name}: {one.stress * 1e-6:.4g} MPa", _ROLES[one.name], _WORDS[one.name], one.error, half[0], half[1],
+            one.stress, one.name, land + places, diameter, one.along,
         )  # fmt: skip
 
     @property

@@ -10,10 +10,8 @@ from fegear.base.notes import Note, exceeding, failing
 from fegear.base.printed import figures, percent, rounded
 from fegear.engine.declared import axis_of
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, outline
-from fegear.engine.figure.panel import Panel
 from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -24,8 +22,6 @@ if TYPE_CHECKING:
 
 #: Searches that differ by more do not verify each other.
 _SPREAD = 5e-3
-#: Room above the fillets in the drawing [modules].
-_ABOVE = 0.6
 _OWNER = "{name}.{asked.gear}"
 
 
@@ -106,47 +102,23 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
     )
 
 
-def _figure(seen: Seen) -> Iterator[Figure]:
-    """Half a tooth with each fillet beside the stress along them."""
-    shown: FilletShown = seen.data
-    fillets: list[StressedFillet] = shown.fillets
-    yield Figure(
-        f"fillet_design_{seen.name}",
-        f"Fillets of gear {seen.asked.gear} in pair {seen.name}",
+def _across(seen: Seen) -> Axis:
+    return axis_of(StressedFillet, "x", limits=seen.data.window[0])
+
+
+def _up(seen: Seen) -> Axis:
+    return axis_of(StressedFillet, "y", limits=seen.data.window[1])
+
+
+def _caption(seen: Seen) -> str:
+    return (
         f"Pair {seen.name}, gear {seen.asked.gear}: half a tooth from the middle of the tooth space (right) up the "
-        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh.",
-        (
-            _drawn(fillets, shown.module * 1e3),
-            Panel(
-                axis_of(StressedFillet, "arc"),
-                axis_of(StressedFillet, "stress", zero=True),
-                tuple(
-                    Curve(one.arc * 1e3, one.stress * 1e-6, one.label, one.role, dash="solid", markers=False)
-                    for one in fillets
-                ),
-                title="Stress", height=1.3,
-            ),
-        ),
-        columns=2,
-        under=f"{shown.data.load:.5g} N",
-    )  # fmt: skip
+        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh."
+    )
 
 
-def _drawn(fillets: list[StressedFillet], module: float) -> Panel:
-    """The fillets and the flank just above them [mm]."""
-    curves = [one.outline * 1e3 for one in fillets]
-    low = min(float(curve[1].min()) for curve in curves) - 0.1 * module
-    top = max(0.5e3 * float(one.diameter.max()) for one in fillets) + _ABOVE * module
-    parts = [curve[:, curve[1] <= top] for curve in curves]
-    ends = [float(end) for part in parts for end in (part[0].min(), part[0].max())]
-    middle, half = 0.5 * (min(ends) + max(ends)), 0.5 * (top - low)
-    return Panel(
-        Axis("distance from the centre line of the tooth", "mm", limits=(middle - half, middle + half)),
-        Axis("distance from the gear axis", "mm", limits=(low, top)),
-        tuple(outline(part, one.label, one.role, 2.0, "solid") for one, part in zip(fillets, parts, strict=True)),
-        title="Fillets", height=1.3, equal=True,
-    )  # fmt: skip
-
+_FILLETS = Family("fillets", "{one.label}", "{one.role}")
+_PLAIN = {"dash": "solid", "markers": False}
 
 FILLET_DESIGN_SHEET = Sheet(
     of=FilletShown,
@@ -173,7 +145,22 @@ FILLET_DESIGN_SHEET = Sheet(
         Number("minimum_radius", exact, owner=_OWNER),
         Number("form_diameter", exact, owner=_OWNER),
     ),
-    figures=(_figure,),
+    figures=(
+        Chart(
+            "fillet_design_{name}", "Fillets of gear {asked.gear} in pair {name}", _caption,
+            (
+                Over(
+                    _across, (Line("y", x="x", each=_FILLETS, look=_PLAIN),), _up, title="Fillets",
+                    panel={"height": 1.3, "equal": True},
+                ),
+                Over(
+                    "arc", (Line("stress", each=_FILLETS, look=_PLAIN),), "stress", options={"zero": True},
+                    title="Stress", panel={"height": 1.3},
+                ),
+            ),
+            of="fillets", columns=2, under=lambda seen: f"{seen.data.data.load:.5g} N",
+        ),
+    ),
     answer=Answer(_answer, figure="fillet_design_{name}"),
     remarks=(_remarks,),
     settings={
