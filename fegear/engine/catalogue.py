@@ -43,6 +43,8 @@ class Entry(NamedTuple):
         Whether it takes teeth with two different flanks; a plan refuses those of other stages.
     generated : bool
         Whether it needs fillets as a tool generates them; a plan refuses others there.
+    table : str
+        Table of a case that describes what it is computed for (``encoders.NAME``); empty for gears and pairs.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Entry(NamedTuple):
     internal: bool = False
     asymmetric: bool = False
     generated: bool = False
+    table: str = ""
 
 
 def _entry(stage: Stage) -> Entry:
@@ -132,6 +135,10 @@ class Catalogue(Sequence[Stage]):
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)
         return self._loaded[name]
+
+    def table_of(self, name: str) -> str:
+        """Table of a case that describes what a stage is computed for; empty for gears and pairs."""
+        return self._by_name[name].table
 
     def holds(self, stage: Stage) -> bool:
         """Whether it is one of these."""

@@ -130,7 +130,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
                 "results",
                 f'"{result}"',
                 "cannot be computed: the case does not define the required objects",
-                "add the required gear, pair or train" + _straight(scene),
+                _missing([known.table_of(stage.name) for stage in asked]) + _straight(scene),
             )
         for stage, subject in described:
             task = Task(stage.name, subject)
@@ -177,6 +177,12 @@ def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -
 
         rule, remedy = "unknown result", nearest(result, by_result, '"fegear results"', lambda word, _: of_result(word))
         raise InputError("results", f'"{result}"', rule, remedy)
+
+
+def _missing(tables: Sequence[str]) -> str:
+    """What to add to a case in which none of these tables is, by which stages of one result are described."""
+    named = [f"[{table}]" for table in dict.fromkeys(tables) if table]
+    return f"add {' or '.join(named)}" if named else "add the required gear or pair"
 
 
 def _refuse_circle(task: Task, reason: str, result: str, finished: Collection[Task]) -> None:

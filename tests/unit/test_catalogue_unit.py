@@ -6,7 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.case.model import Case
+from fegear.case.reading import build_scene
 from fegear.engine.catalogue import Catalogue
+from fegear.engine.plan import make_plan
 from fegear.engine.stage import Stage
 from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 
@@ -131,3 +135,20 @@ def test_stages_at_hand_are_a_catalogue_too():
     assert Catalogue.of(made) is made
     assert made.holds(own)
     assert not STAGES.holds(own)
+
+
+def test_a_result_of_a_table_that_is_not_there_says_which():
+    """Forty results asked for "the required gear, pair or train" whatever they are of."""
+    known = STAGES.by_result()
+    tables = {name: {STAGES.table_of(stage) for stage in stages} for name, stages in known.items()}
+    for name, of in tables.items():
+        if of == {""}:
+            continue
+        gear = {"teeth": 20, "module": "2 mm", "face_width": "10 mm"}
+        case = {"gear": {"a": gear, "b": gear}, "pair": {"I": {"driver": "a", "driven": "b", "load": "1 kN"}}}
+        with pytest.raises(InputError) as refused:
+            make_plan(build_scene({**case, "results": [name]}, "case", Path()), STAGES)
+        assert refused.value.remedy == f"add [{next(iter(of))}]"
+    assert tables["measured-transmission-error"] == {"encoders.NAME"}
+    keys = {table.split(".")[0] for of in tables.values() for table in of} - {""}
+    assert keys < set(Case.model_fields)
