@@ -20,6 +20,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.atlas_teeth import SOLVED_AFTER_ALL
 from fegear.case.reading import build_scene, read_document, set_key, typed_value
 from fegear.case.text_file import digest_of_file
 from fegear.engine.executor import Executor, count_kept, map_points
@@ -158,9 +159,9 @@ def sweep_case(
     """
     started = time.perf_counter()
     path = Path(path)
-    document = read_document(path, overrides)
-    _check(axes, document)
-    document = _by_atlas(axes, document)
+    given = read_document(path, overrides)
+    _check(axes, given)
+    document = _by_atlas(axes, given)
     points = [
         {"document": changed, "name": path.stem, "folder": str(path.parent.absolute())}
         for changed in map(_neglecting, itertools.count(), _grid(document, axes))
@@ -173,7 +174,8 @@ def sweep_case(
     )
     used = cache.shapes.since(before)
     shapes = (used.computed, used.recalled, used.spared)
-    results = tuple(item if isinstance(item, Failure) else _point(item) for item in found)
+    unasked = document is not given  # for an atlas: that one answers is said, not that none does
+    results = tuple(item if isinstance(item, Failure) else _point(item, unasked=unasked) for item in found)
     title = str(document.get("title") or path.stem)
     return SweepResults(path.stem, title, tuple(axes), results, time.perf_counter() - started, kept, shapes)
 
@@ -254,13 +256,13 @@ def point_content(point: Mapping[str, Any]) -> object:
     return [document, {text: digest for text, digest in digests.items() if digest}]  # most texts name no files
 
 
-def _point(found: Mapping[str, Any]) -> Point:
+def _point(found: Mapping[str, Any], *, unasked: bool) -> Point:
     return Point(
         tuple(Value(*value) for value in found["values"]),
         tuple(
             Table(name, tuple(Column(*column) for column in columns), title) for name, title, columns in found["tables"]
         ),
-        tuple(found["remarks"]),
+        tuple(one for one in found["remarks"] if not (unasked and SOLVED_AFTER_ALL in one)),
     )
 
 

@@ -16,9 +16,10 @@ import pytest
 from typer.testing import CliRunner
 
 from fegear.base.errors import InputError
+from fegear.case.built.atlas_teeth import solved_remarks
 from fegear.cli import program
 from fegear.engine.executor import Executor
-from fegear.studies.sweep import SweepResults, _by_atlas, point_content, read_axis, sweep_case
+from fegear.studies.sweep import SweepResults, _by_atlas, _point, point_content, read_axis, sweep_case
 from fegear.studies.swept import Swept, best_lines
 
 CASE = """
@@ -161,6 +162,14 @@ def test_the_best_point_is_told_with_those_that_may_be_as_good_and_where_a_bette
         "Maximum I.driver.S_F: 6 at gear.a.profile_shift = 0.2, gear.b.teeth = 31; at the limit of the range of "
         "gear.a.profile_shift."
     )
+
+
+def test_who_asks_for_no_atlas_is_not_bothered_with_those_that_do_not_answer():
+    """28 of 28 points of a page said that no atlas has their rack."""
+    said = [*solved_remarks("a", "rack.tip_radius = 0.25: must be 0.38 in this atlas"), "something else"]
+    found = {"values": [], "tables": [], "remarks": said}
+    assert _point(found, unasked=True).remarks == ("something else",)
+    assert _point(found, unasked=False).remarks == tuple(said)
 
 
 def test_sweeps_over_gears_take_teeth_from_an_atlas_unless_the_case_or_an_axis_says_otherwise():

@@ -115,6 +115,10 @@ def atlas_remarks(asked: GearFromAtlas, known: AtlasGear) -> tuple[str, ...]:
     return (exceeding(said) if max(errors.values()) > asked.tolerance else said,)
 
 
+#: What says of a gear that it was solved although the case would take it from an atlas.
+SOLVED_AFTER_ALL = "solved by finite elements, not taken from an atlas"
+
+
 def solved_remarks(name: str, why: str) -> tuple[str, ...]:
     """Say that a gear was solved although the case would take it from an atlas."""
-    return (f"Gear {name}: solved by finite elements, not taken from an atlas ({why}).",) if why else ()
+    return (f"Gear {name}: {SOLVED_AFTER_ALL} ({why}).",) if why else ()
