@@ -239,8 +239,14 @@ def check_first_screen(found):
         assert any(value.name == first.name for outcome in outcomes for value in outcome.values)
 
 
-@pytest.mark.dear("flank_design")
-@pytest.mark.parametrize("name", small_net.RUNS)
+#: Takes 20 s; the same search with other options is tried at every change.
+LONG = {"flank_design"}
+
+
+@pytest.mark.dear("flank_design_options", "robustness")
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in small_net.RUNS]
+)
 def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
     found = small_net.computed(name)
     for table in found.tables:
