@@ -236,7 +236,7 @@ class Atlas:
         beside = path.with_name(f".{path.name}.{os.getpid()}")
         try:
             with beside.open("wb") as file:
-                np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+                np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # names of arrays
             beside.replace(path)
         finally:
             beside.unlink(missing_ok=True)

@@ -121,7 +121,7 @@ class Family:
 
     def least_shift(self, teeth: float) -> float:
         """x_E from which on the rack cuts nothing off the involute: the undercut line."""
-        return ToothNumbers(teeth, self.pressure_angle, 0.0).least_shift(self._rack)  # type: ignore[arg-type]
+        return ToothNumbers(teeth, self.pressure_angle, 0.0).least_shift(self._rack)  # type: ignore[arg-type]  # its protocol
 
     def least_shift_of(self, teeth: Array) -> Array:
         """The same of numbers of teeth, shape (N,)."""

@@ -61,11 +61,11 @@ class Alike(Brief):
         """Compare by content, in the place of what the decorator of a dataclass would write."""
         super().__init_subclass__()
         if "__eq__" not in cls.__dict__:
-            cls.__eq__ = _alike  # type: ignore[method-assign]
+            cls.__eq__ = _alike  # type: ignore[method-assign]  # on purpose
 
 
 def _alike(one: object, other: object) -> bool:
-    if type(one) is not type(other) or not getattr(one, "__dataclass_params__").eq:  # noqa: B009
+    if type(one) is not type(other) or not getattr(one, "__dataclass_params__").eq:  # noqa: B009  (mypy does not know it)
         return NotImplemented
     return same(one, other)
 
@@ -77,7 +77,7 @@ class ReadOnlyArrays(Alike):
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        for field in fields(self):  # type: ignore[arg-type]
+        for field in fields(self):  # type: ignore[arg-type]  # heirs are dataclasses
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

@@ -25,7 +25,7 @@ class Brief:
         """Take the place of what the decorator of a dataclass would write."""
         super().__init_subclass__()
         if "__repr__" not in cls.__dict__:
-            cls.__repr__ = _written  # type: ignore[method-assign]
+            cls.__repr__ = _written  # type: ignore[method-assign]  # on purpose
 
 
 def _written(self: object) -> str:
@@ -60,7 +60,7 @@ def brief(value: object, depth: int = 1) -> str:
     if isinstance(value, (tuple, list)):
         inner = [brief(one, depth - 1) for one in value[:_FEW]]
         return _closed("()" if isinstance(value, tuple) else "[]", inner, len(value), depth)
-    if isinstance(value, Callable):  # type: ignore[arg-type]
+    if isinstance(value, Callable):  # type: ignore[arg-type]  # an abstract class of Python
         return f"<{getattr(value, '__qualname__', type(value).__qualname__)}>"
     return f"{type(value).__qualname__}(...)"
 
