@@ -1,10 +1,8 @@
-"""CSV files that a case names: columns with units in their heads, as fegear itself writes them."""
+"""CSV files that a case names: columns with units in their heads, as fegear and measuring programs write them."""
 
 from __future__ import annotations
 
-import csv
 import math
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -14,25 +12,69 @@ from numpy.typing import NDArray
 from fegear.base.errors import InputError, shown
 from fegear.base.unit_text import plain_number
 from fegear.base.units import unit_size
+from fegear.case.csv_lines import CsvLines, decimal_commas, read_lines
 from fegear.case.part import LARGEST
-from fegear.case.text_file import read_text
 
-#: Most lines of a table: some seconds of reading.
-_MOST_LINES = 400_000
+#: Units of heads as they are written elsewhere.
+_ELSEWHERE = {"Grad": "deg", "Umdr.": "rev", "µE": "ustrain", "uE": "ustrain"}
+#: Heads that a message names.
+_NAMED = 8
 
-_HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
+
+class Columns(dict[str, NDArray[np.float64]]):
+    """The known columns of a file in SI.
+
+    Parameters
+    ----------
+    columns : mapping
+    heads : tuple of str
+        All heads of the file.
+    reading : str
+        What had to be understood: decimal commas, lines that were passed over; empty for nothing.
+    """
+
+    def __init__(
+        self, columns: Mapping[str, NDArray[np.float64]], heads: tuple[str, ...] = (), reading: str = ""
+    ) -> None:
+        super().__init__(columns)
+        self.heads, self.reading = heads, reading
+
+    @property
+    def has(self) -> str:
+        """The heads as a message names them."""
+        named = ", ".join(shown(head) for head in self.heads[:_NAMED])
+        return f"{named} ..." if len(self.heads) > _NAMED else named
+
+    def require(self, name: str, key: str, file: str, word: str) -> None:
+        """Refuse a file without a column.
+
+        Parameters
+        ----------
+        name : str
+        key, file : str
+            Where the case names the file.
+        word : str
+            Key that gives the column another name.
+
+        Raises
+        ------
+        InputError
+        """
+        if name not in self:
+            raise InputError(key, f'"{file}"', f"requires a column {name}; it has {self.has}", f"add it or set {word}")
 
 
 def read_columns(
     path: Path, key: str, dimensions: Mapping[str, str], units: Mapping[str, str] | None = None
-) -> dict[str, NDArray[np.float64]]:
+) -> Columns:
     """Read the columns that are known by name into SI; others are passed over.
 
     Parameters
     ----------
     path : Path
-        The first line that does not start with ``#`` holds the heads, ``name [unit]``; entries are parted by commas,
-        or by what parts the heads: semicolons or tabs.
+        The first line that has one of the names and does not start with ``#`` holds the heads, ``name [unit]`` or
+        ``name (unit)``, or has a line with the units below; entries are parted by what parts the heads: commas,
+        semicolons or tabs. Numbers have decimal points, or all of them decimal commas.
     key : str
         Where the case names the file, for messages.
     dimensions : mapping
@@ -43,80 +85,74 @@ def read_columns(
     Raises
     ------
     InputError
-        If the file is no such table: its encoding, a head's unit, two columns of one name, a line with more or fewer
-        entries than heads, an entry that is no finite number or
-        beyond any machine.
+        If the file is no such table: a head's unit, two columns of one name, a line with more or fewer entries than
+        heads, an entry that is no finite number or beyond any machine, commas that may be those of thousands.
     """
-    numbered = _lines(path, key)
-    (_, heads), rows = numbered[0], numbered[1:]
-    for number, row in rows:
-        if len(row) != len(heads):
-            raise InputError(
-                key, f'"{path.name}"', f"has {len(row)} entries in line {number} but {len(heads)} column heads",
-                "use decimal points, not commas",
-            )  # fmt: skip
-    columns: dict[str, NDArray[np.float64]] = {}
-    for i, head in enumerate(heads):
-        match = _HEAD.fullmatch(head)
-        if match is None or match["name"] not in dimensions:
+    lines = read_lines(path, key, dimensions)
+    at: dict[str, int] = {}
+    for i, head in enumerate(lines.heads):
+        if head.name not in dimensions:
             continue
-        name = match["name"]
-        if name in columns:
-            raise InputError(key, f'"{path.name}"', f"has two columns {name}", "remove one of them")
-        if not dimensions[name] and match["unit"]:
+        if head.name in at:
+            raise InputError(key, f'"{path.name}"', f"has two columns {head.name}", "remove one of them")
+        if not dimensions[head.name] and head.unit:
             raise InputError(
-                key, f'"{path.name}"', f"has a unit in the head of column {name}, which is dimensionless", "remove it"
-            )
-        dimension = dimensions[name]
-        given = (units or {}).get(name, "")
-        scale = unit_size(match["unit"] or given, dimension, f"{key}, column {name}") if dimension else 1.0
-        if given and unit_size(given, dimension, key) != scale:
-            raise InputError(
-                key, f'"{path.name}"', f"has [{match['unit']}] in the head of column {name}, the case says {given}",
-                "remove one of them",
+                key, f'"{path.name}"', f"has a unit in the head of column {head.name}, which is dimensionless",
+                "remove it",
             )  # fmt: skip
-        entries = np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
-        beyond = np.flatnonzero(np.abs(entries) > LARGEST / scale)
-        if beyond.size:
-            number, row = rows[beyond[0]]
-            rule = f"has {shown(row[i])} in line {number}, {name}, which is beyond any machine"
-            raise InputError(key, f'"{path.name}"', rule, "check the unit")
-        columns[name] = scale * entries
-    return columns
+        at[head.name] = i
+    commas = decimal_commas([(number, row[i]) for number, row in lines.rows for i in at.values()], path, key)
+    columns = {
+        name: _column(lines, i, path, key, dimensions[name], (units or {}).get(name, ""), commas=commas)
+        for name, i in at.items()
+    }
+    return Columns(columns, tuple(head.text for head in lines.heads), _reading(lines, commas=commas))
 
 
-def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
-    """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
-    every = read_text(path, key).splitlines()
-    if len(every) > _MOST_LINES:
-        raise InputError(key, f'"{path.name}"', f"has more than {_MOST_LINES:,} lines", "use every second point")
-    lines = [(number, line) for number, line in enumerate(every, start=1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    if len(lines) < 2:
-        raise InputError(key, f'"{path.name}"', "must have column heads with numbers below")
-    head = lines[0][1]
-    parting = next((sign for sign in ",;\t" if sign in head), ",")
-    try:
-        rows = [(number, next(csv.reader([line], delimiter=parting, strict=True))) for number, line in lines]
-    except csv.Error as error:
-        raise InputError(key, f'"{path.name}"', f"is not a readable table ({error})") from None
-    if all(not row[-1].strip() for _, row in rows):
-        rows = [(number, row[:-1]) for number, row in rows]
-    return rows
+def _column(
+    lines: CsvLines, i: int, path: Path, key: str, dimension: str, given: str, *, commas: bool
+) -> NDArray[np.float64]:
+    """One column in SI."""
+    head = lines.heads[i]
+    unit = _ELSEWHERE.get(head.unit, head.unit)
+    scale = unit_size(unit or given, dimension, f"{key}, column {head.name}") if dimension else 1.0
+    if given and unit_size(given, dimension, key) != scale:
+        raise InputError(
+            key, f'"{path.name}"', f"has [{head.unit}] in the head of column {head.name}, the case says {given}",
+            "remove one of them",
+        )  # fmt: skip
+    entries = np.array(
+        [_entry(row[i], path, key, f"line {number}, {head.name}", commas=commas) for number, row in lines.rows]
+    )
+    beyond = np.flatnonzero(np.abs(entries) > LARGEST / scale)
+    if beyond.size:
+        number, row = lines.rows[beyond[0]]
+        rule = f"has {shown(row[i])} in line {number}, {head.name}, which is beyond any machine"
+        raise InputError(key, f'"{path.name}"', rule, "check the unit")
+    return scale * entries
 
 
-def _entry(text: str, path: Path, key: str, where: str) -> float:
-    value = plain_number(text)
+def _reading(lines: CsvLines, *, commas: bool) -> str:
+    parts = (
+        "decimal commas" if commas else "",
+        "units from the line below the heads" if lines.units_below else "",
+        f"{lines.above} line{'s' if lines.above > 1 else ''} above the heads left out" if lines.above else "",
+    )
+    return ", ".join(part for part in parts if part)
+
+
+def _entry(text: str, path: Path, key: str, where: str, *, commas: bool) -> float:
+    value = plain_number(text.replace(",", ".", 1) if commas else text)
     if value is None:
-        comma = plain_number(text.replace(",", ".", 1)) is not None
-        remedy = "use decimal points, not commas" if comma else "correct or remove the line"
-        raise InputError(key, f'"{path.name}"', f"contains {shown(text)} in {where}: not a number", remedy)
+        raise InputError(
+            key, f'"{path.name}"', f"contains {shown(text)} in {where}: not a number", "correct or remove the line"
+        )
     if not math.isfinite(value):
         raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
     return value
 
 
-def one_column(columns: Mapping[str, NDArray[np.float64]], names: tuple[str, ...], key: str, file: str | None) -> str:
+def one_column(columns: Columns, names: tuple[str, ...], key: str, file: str | None) -> str:
     """The one name of several of which a file has a column.
 
     Raises
@@ -126,7 +162,7 @@ def one_column(columns: Mapping[str, NDArray[np.float64]], names: tuple[str, ...
     """
     found = [name for name in names if name in columns]
     if not found:
-        raise InputError(key, f'"{file}"', f"requires a column {' or '.join(names)}")
+        raise InputError(key, f'"{file}"', f"requires a column {' or '.join(names)}; it has {columns.has}")
     if len(found) > 1:
         raise InputError(
             key, f'"{file}"', f"must have only one of the columns {' and '.join(found)}", f"remove column {found[1]}"

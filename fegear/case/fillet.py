@@ -156,7 +156,7 @@ class FilletPart(Part):
         key = "fillet.file"
         columns = read_columns(find(self.file, key), key, {"x": "length", "y": "length"})
         if not {"x", "y"} <= set(columns):
-            raise InputError(key, f'"{self.file}"', "requires the columns x and y")
+            raise InputError(key, f'"{self.file}"', f"requires the columns x and y; it has {columns.has}")
         x, y = columns["x"].tolist(), columns["y"].tolist()
         if not _FEWEST_POINTS <= len(x) <= _MOST_POINTS:
             raise InputError(

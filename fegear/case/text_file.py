@@ -93,6 +93,32 @@ def read_file(path: Path, key: str) -> TextFile:
     return TextFile(text.replace("\r\n", "\n"), digest_of(data), ends, data.startswith(codecs.BOM_UTF8))
 
 
+def read_table_text(path: Path, key: str) -> str:
+    """Return the text of a table: in UTF-8, in UTF-16 with its mark, else in Windows-1252, as other programs save it.
+
+    Parameters
+    ----------
+    path : Path
+    key : str
+        Where the file is named, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is not there, cannot be read, is too large or not a text.
+    """
+    data = _data(path, key)
+    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252", "latin-1"):
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if "\0" not in text:
+            return text.replace("\r\n", "\n")
+    raise InputError(key, f'"{path.name}"', "is not a text file", "check which file it is")
+
+
 def digest_of(data: bytes) -> str:
     """SHA-256 of the content of a file."""
     return hashlib.sha256(data).hexdigest()

@@ -89,7 +89,13 @@ def test_tables_are_parted_by_what_parts_their_heads(folder):
         ("radius [mm],relief [um],relief [mm]\n31,1,2\n33,2,3\n", "two columns relief"),
         ("radius [mm],relief [um]\n31,1,5\n33,2\n", "3 entries in line 2 but 2 column heads; use decimal points"),
         ("radius [mm],relief [um]\n31\n33,2\n", "1 entries in line 2"),
-        ("radius [mm];relief [um]\n31,5;1\n", r'contains "31,5" in line 2, radius: not a number; use decimal points'),
+        ("radius [mm],relief [um]\n31,5,1,5\n", "use decimal points, or part the entries by semicolons"),
+        ("radius [mm];relief [um]\n31,500;1,250\n", 'contains "31,500" in line 2: decimal comma or comma of thousands'),
+        (
+            "radius [mm];relief [um]\n31,5;1\n32,5;1.5\n",
+            r'a comma in "31,5" \(line 2\) and a point in "1.5" \(line 3\)',
+        ),
+        ("radius [mm];relief [um]\n1.031,5;1\n", r'contains "1.031,5" in line 2, radius: not a number'),
         ("radius [mm],relief [um]\n31,1_0\n", ": not a number"),
         ("radius [mm],relief [um]\n31,٣\n", ": not a number"),
         ("radius [mm],relief [um]\n31,0x10\n", ": not a number"),
@@ -114,10 +120,33 @@ def test_what_is_no_table_is_refused_in_a_sentence(folder, content, words):
     assert len(str(refusal.value)) < 300
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
-def test_tables_in_other_encodings_are_refused(folder, encoding):
-    with pytest.raises(InputError, match="UTF-8"):
-        columns(folder, "radius [mm],relief [µm]\n31,1\n".encode(encoding))
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16"])
+@pytest.mark.parametrize(
+    ("text", "reading"),
+    [
+        ("radius [mm];relief [µm]\r\n31,5;1\r\n0,25;-2,5e0\r\n", "decimal commas"),
+        ("radius (mm)\trelief (µm)\n31,5\t1\n0,25\t-2,5\n", "decimal commas"),
+        ('"radius [mm]","relief [µm]"\n"31,5","1"\n"0,25","-2,5"\n', "decimal commas"),
+        ("Radius / mm;Relief in µm;\n31.5;1;\n.25;-2.5;\n", ""),
+        ("radius;place, no.;relief\nmm;;µm\n31,5;3;1\n,25;4;-2,5\n",
+         "decimal commas, units from the line below the heads"),
+        ("Prüfstand: 3, links\n3. Mai;8:15\nradius [mm];relief [µm]\n31.5;1\n0.25;-2.5\n",
+         "2 lines above the heads left out"),
+    ],
+)  # fmt: skip
+def test_what_measuring_programs_export_is_read_and_how_is_said(folder, text, reading, encoding):
+    found = columns(folder, text.encode(encoding))
+    np.testing.assert_allclose(found["radius"], [0.0315, 0.00025], rtol=1e-15)
+    np.testing.assert_allclose(found["relief"], [1e-6, -2.5e-6], rtol=1e-15)
+    assert found.reading == reading
+
+
+def test_a_file_without_a_wanted_column_is_refused_with_the_heads_that_it_has(folder):
+    found = columns(folder, "Prüfstand;3\nWinkel (°);Dehnung (µm/m)\n0,5;1\n".encode("cp1252"))
+    with pytest.raises(
+        InputError, match=r'column angle; it has "Winkel \(°\)", "Dehnung .*; add it or set angle_column'
+    ):
+        found.require("angle", "gauge.a.measured.file", "a.csv", "angle_column")
 
 
 def notes_of(folder):

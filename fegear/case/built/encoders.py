@@ -34,6 +34,8 @@ class ErrorTrace:
         Rotation of the shaft in its sense [rad]; lag of the driven gear along the line of action [m].
     load : float
         [N].
+    reading : str
+        What had to be understood in the file: decimal commas, lines that were passed over.
     key, file : str
         Where the case names it.
     """
@@ -41,6 +43,7 @@ class ErrorTrace:
     angle: Array
     te: Array
     load: float
+    reading: str
     key: str = field(compare=False)
     file: str = field(compare=False)
 
@@ -102,8 +105,8 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
                 f"{key}.torque", f"{wanted * placed.driver.base_radius:.6g} N*m",
                 f"is not a torque of pair {pair} ({torques} N*m)", f"add it to pair.{pair}.torques",
             )  # fmt: skip
-        angle, te = _trace(scene, part, placed, one.file, f"{key}.file")
-        traces.append(ErrorTrace(angle, te, known[0] if known else 0.0, key, one.file))
+        angle, te, reading = _trace(scene, part, placed, one.file, f"{key}.file")
+        traces.append(ErrorTrace(angle, te, known[0] if known else 0.0, reading, key, one.file))
     traces.sort(key=lambda one: one.load)
     same = [two for two in pairwise(traces) if two[0].load == two[1].load]
     if same:
@@ -116,15 +119,14 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), name)
 
 
-def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> tuple[Array, Array]:
-    """Angle and transmission error of one file, in the senses of the computed ones."""
+def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> tuple[Array, Array, str]:
+    """Angle and transmission error of one file, in the senses of the computed ones, and how it was read."""
     along = part.te_at == "line-of-action"
     columns = {part.angle_column: "angle", part.te_column: "length" if along else "angle"}
     given = {part.angle_column: part.angle, part.te_column: part.te}
     found = read_columns(scene.file(file, key), key, columns, {name: unit for name, unit in given.items() if unit})
     for column, word in ((part.angle_column, "angle_column"), (part.te_column, "te_column")):
-        if column not in found:
-            raise InputError(key, f'"{file}"', f"requires a column {column}", f"add it or set {word}")
+        found.require(column, key, file, word)
     angle, te = found[part.angle_column], found[part.te_column]
     if not along:
         te = te * (pair.driver if part.te_at == "driver" else pair.driven).base_radius
@@ -136,4 +138,4 @@ def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str
     for what, values in (("angle", angle), ("transmission error", te)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
             raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
-    return (-angle if part.reverse else angle), (-te if part.positive == "lead" else te)
+    return (-angle if part.reverse else angle), (-te if part.positive == "lead" else te), found.reading

@@ -95,7 +95,8 @@ def _line_gap(scene: Scene, name: str) -> tuple[Array, Array]:
         key = f"pair.{name}.line_error.file"
         columns = read_columns(scene.file(part.file, key), key, {"z": "length", "gap": "length"})
         if not {"z", "gap"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
-            raise InputError(key, f'"{part.file}"', "requires the columns z [mm], ascending, and gap [um]")
+            rule = f"requires the columns z [mm], ascending, and gap [um]; it has {columns.has}"
+            raise InputError(key, f'"{part.file}"', rule)
         if columns["z"][0] > -half * (1.0 - 1e-6) or columns["z"][-1] < half * (1.0 - 1e-6):
             raise InputError(
                 key, f'"{part.file}"', f"must cover the face, from {-half * 1e3:.6g} to {half * 1e3:.6g} mm"

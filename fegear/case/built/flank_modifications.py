@@ -102,7 +102,8 @@ def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankMo
         key = f"gear.{name}.lead.file"
         columns = read_columns(scene.file(part.file, key), key, {"z": "length", "removal": "length"})
         if not {"z", "removal"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
-            raise InputError(key, f'"{part.file}"', "requires the columns z [mm], ascending, and removal [um]")
+            rule = f"requires the columns z [mm], ascending, and removal [um]; it has {columns.has}"
+            raise InputError(key, f'"{part.file}"', rule)
         _refuse_uncovered(columns["z"], width, key)
         found.append(LeadTable(columns["z"], columns["removal"]))
     return found

@@ -40,12 +40,15 @@ class MeasuredStrain:
         In the sense of the gear's rotation [rad], and as measured.
     fit : tuple of str
         What is fitted.
+    reading : str
+        What had to be understood in the file: decimal commas, lines that were passed over.
     file : str
     """
 
     angle: Array
     strain: Array
     fit: tuple[Fitted, ...]
+    reading: str
     file: str = field(compare=False)
 
 
@@ -179,8 +182,7 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
         scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}
     )
     for column, word in ((part.angle_column, "angle_column"), (part.strain_column, "strain_column")):
-        if column not in found:
-            raise InputError(key, f'"{part.file}"', f"requires a column {column}", f"add it or set {word}")
+        found.require(column, key, part.file, word)
     angle, strain = found[part.angle_column], found[part.strain_column]
     if angle.size < FEWEST + len(part.fit):
         raise InputError(
@@ -196,4 +198,4 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
     for what, values in (("angle", angle), ("strain", strain)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
             raise InputError(key, f'"{part.file}"', f"has the same {what} in every line", "check the columns")
-    return MeasuredStrain(-angle if part.reverse else angle, strain, tuple(part.fit), part.file)
+    return MeasuredStrain(-angle if part.reverse else angle, strain, tuple(part.fit), found.reading, part.file)

@@ -94,7 +94,8 @@ def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> 
             {"roll_angle": "angle", "radius": "length", "relief": "length"},
         )  # fmt: skip
         if "relief" not in columns or not ("roll_angle" in columns or "radius" in columns):
-            raise InputError(f"{key}.file", f'"{part.file}"', "requires the columns relief and roll_angle or radius")
+            rule = f"requires the columns relief and roll_angle or radius; it has {columns.has}"
+            raise InputError(f"{key}.file", f'"{part.file}"', rule)
         one_column(columns, ("roll_angle", "radius"), f"{key}.file", part.file)
         values = columns["relief"]
         roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
@@ -121,7 +122,7 @@ def _spacing_errors(scene: Scene, gear: str) -> Array:
     else:
         columns = read_columns(scene.file(part.file or "", f"{key}.file"), f"{key}.file", {"spacing_error": "length"})
         if "spacing_error" not in columns:
-            raise InputError(f"{key}.file", f'"{part.file}"', "has no column spacing_error")
+            raise InputError(f"{key}.file", f'"{part.file}"', f"has no column spacing_error; it has {columns.has}")
         errors = columns["spacing_error"]
     teeth, module = scene.gears[gear].teeth, scene.gears[gear].module
     if errors.size != teeth:

@@ -154,7 +154,8 @@ def _read_distribution(path: Path, key: str) -> list[NDArray[np.float64]]:
     columns = read_columns(path, key, _DISTRIBUTION)
     for name, head in zip(_DISTRIBUTION, _HEADS, strict=True):
         if name not in columns:
-            raise InputError(key, f'"{path.name}"', f"has no column {head}", f"heads are {', '.join(_HEADS)}")
+            rule = f"has no column {head}; it has {columns.has}"
+            raise InputError(key, f'"{path.name}"', rule, f"heads are {', '.join(_HEADS)}")
     return [columns[name] for name in _DISTRIBUTION]
 
 

@@ -166,7 +166,7 @@ def _columns(scene: Scene, file: str, key: str, gear: Gear, *, over_face: bool =
     place = ["z"] if over_face else [one for one in ("radius", "roll_angle", "roll_length") if one in found]
     if len(place) != 1 or place[0] not in found or "deviation" not in found:
         what = "z [mm]" if over_face else "radius [mm], roll_angle [deg] or roll_length [mm]"
-        raise InputError(key, f'"{file}"', f"requires the columns {what}, and deviation [um]")
+        raise InputError(key, f'"{file}"', f"requires the columns {what}, and deviation [um]; it has {found.has}")
     if found["deviation"].size > _MOST:
         raise InputError(key, f'"{file}"', f"has more than {_MOST:,} points", "use every second point")
     _check(found, key, gear)

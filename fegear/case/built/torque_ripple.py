@@ -81,8 +81,9 @@ def _of_file(scene: Scene, name: str, part: TorqueRipplePart, file: str, ratio: 
     places = [column for column in ("angle", "time") if column in columns]
     if len(places) != 1 or "torque" not in columns:
         raise InputError(
-            key, f'"{file}"', "requires the columns angle [deg] or time [s], one of them, and torque [N*m]"
-        )
+            key, f'"{file}"', "requires the columns angle [deg] or time [s], one of them, and torque [N*m]; it has "
+            f"{columns.has}",
+        )  # fmt: skip
     place, torque = columns[places[0]], columns["torque"]
     if place.size < _FEWEST or not np.all(np.diff(place) > 0.0):
         rule = f"needs at least {_FEWEST} lines, with {places[0]} strictly increasing"

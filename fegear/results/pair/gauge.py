@@ -75,6 +75,7 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     return GaugeData(
         teeth.loads, at, history, placed.place, placed.clearance(history.pair, gauge.member), placed.clipped,
         gauge.load_tolerance, asked.speed, compared(gauge, history.angle, history.strain[:, at]),
+        gauge.measured.reading if gauge.measured else "",
     )  # fmt: skip
 
 
@@ -141,12 +142,14 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
+        lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.compared else [],
         "Gauge {name}: peak strain {v[peak_strain]}, peak stress {v[peak_stress]}.",
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}",
     ),
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="compared"),
+        Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(
             lambda seen: f"Gauge {seen.name}: the contact comes within {seen.data.clearance:.2f} modules of the grid; "
             "strain at the lowest contact is not resolved; move the gauge towards the root.",

@@ -86,6 +86,8 @@ class GaugeData:
         Of the gear [rad/s].
     compared : FittedCurve or None
         Measured and computed strain at the nominal load.
+    reading : str
+        What had to be understood in the file of the trace.
     """
 
     loads: Sequence[float]
@@ -97,6 +99,7 @@ class GaugeData:
     load_tolerance: float
     speed: float | None
     compared: FittedCurve | None
+    reading: str = ""
 
     @property
     @shows("s", "time from the first position")
@@ -197,12 +200,20 @@ class GaugeData:
     @property
     def verdict(self) -> str:
         """Measured against computed strain at the nominal load; empty where nothing was measured."""
+        return self._verdict(brief=False)
+
+    @property
+    def judged(self) -> str:
+        """The same without what its limit is made of."""
+        return self._verdict(brief=True)
+
+    def _verdict(self, *, brief: bool) -> str:
         if self.compared is None:
             return ""
         peak, error = float(self.peak_strain[self.at]), self.peak_error
         return verdict(
             self.compared, peak, self.peak_change_by_placement, 0.0 if error is None else float(error[self.at]),
-            self.load_tolerance,
+            self.load_tolerance, brief=brief,
         )  # fmt: skip
 
 
@@ -212,7 +223,9 @@ def thinned(found: FittedCurve) -> FittedCurve:
     return replace(found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some])
 
 
-def verdict(found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float) -> str:
+def verdict(
+    found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float, *, brief: bool = False
+) -> str:  # fmt: skip
     """Measured against computed strain, in one or two sentences without a subject.
 
     Parameters
@@ -224,6 +237,8 @@ def verdict(found: FittedCurve, peak: float, by_placement: float, error: float, 
         What the place within its tolerance changes of it, and its estimated error.
     load_tolerance : float
         Relative uncertainty of load and gauge factor.
+    brief : bool
+        Without the parts of the limit and the residual.
     """
     size = abs(peak)
     limits = Limits(by_placement / size, load_tolerance, error / size, _CERTAIN * found.gain_error)
@@ -237,10 +252,10 @@ def verdict(found: FittedCurve, peak: float, by_placement: float, error: float, 
     within = abs(off) <= limits.together
     judged = (
         f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one, "
-        f"{'within' if within else 'beyond'} ±{percent(limits.together)} ({parts})"
+        f"{'within' if within else 'beyond'} ±{percent(limits.together)}{'' if brief else f' ({parts})'}"
     )
     if found.correlation < _ALIKE:
         judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
     elif not within:
         judged += "; check load, gauge factor and place of the grid"
-    return f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"
+    return judged if brief else f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"

@@ -36,6 +36,8 @@ class TraceBeside:
     computed_error : float or None
         Estimated error of the computed peak-to-peak value [m].
     load_tolerance : float
+    reading : str
+        What had to be understood in the file.
     """
 
     found: MeasuredError
@@ -46,6 +48,7 @@ class TraceBeside:
     load: float = shown("N", "load along the line of action")
     computed_peak_to_peak: float = shown("um", "peak-to-peak transmission error computed")
     load_tolerance: float = 0.01
+    reading: str = ""
 
     @property
     @shows("", "harmonic of the tooth-mesh frequency")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.contact.error_over_pitch import ErrorOverPitch
     from fegear.contact.measured_error import MeasuredError
 
-_DOTS = {"size": 3.0, "symbol": "circle"}
+_DOTS = {"size": 5.0, "symbol": "circle"}
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -78,6 +78,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
             TraceBeside(
                 measured, fitted, amplitude, None if relative is None else relative * size,
                 trace.load * pair.driver.base_radius, trace.load, size, asked.load_tolerance,
+                trace.reading,
             )
         )  # fmt: skip
     return MeasuredErrorData(traces, asked.member)
@@ -192,6 +193,10 @@ _SHEET = Sheet(
     remarks=(
         Remark(
             lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.verdict}.", each="traces",
+        ),
+        Remark(
+            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: file read with {seen.one.reading}.",
+            each="traces", when=lambda seen: bool(seen.one.reading),
         ),
     ),
     sharper_by="",

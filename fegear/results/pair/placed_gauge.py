@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _PLACES = 10
 #: Looks of displaced grids and of samples.
 DASHED = {"dash": "dash", "width": 1.0}
-_DOTS = {"size": 3.0, "symbol": "circle"}
+_DOTS = {"size": 5.0, "symbol": "circle"}
 
 
 @dataclass(frozen=True)
