@@ -9,14 +9,16 @@ import functools
 import json
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
 from fegear.commands.common import AsJson, Voice, out_option
 from fegear.commands.help_texts import two_columns
-from fegear.engine.stage import Stage
+
+if TYPE_CHECKING:
+    from fegear.engine.catalogue import Entry
 
 #: Name by which drafted cases ask for it.
 SCHEMA_FILE = "fegear.schema.json"
@@ -95,35 +97,35 @@ def results(as_json: AsJson = False) -> None:
     from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 
     voice = Voice(as_json=as_json)
-    subjects = {subject: [STAGES.called(entry.name) for entry in entries] for subject, entries in SUBJECTS.items()}
-    if added := STAGES.with_added[len(STAGES) :]:
-        subjects["From other distributions"] = list(added)
-    column = max(map(len, (*RESULTS, *(name for stage in added for name in stage.results))))
-    for subject, stages in subjects.items():
+    subjects = dict(SUBJECTS)
+    if added := STAGES.with_added.entries[len(STAGES) :]:
+        subjects["From other distributions"] = added
+    column = max(map(len, (*RESULTS, *(name for entry in added for name in entry.results))))
+    for subject, entries in subjects.items():
         voice.say(f"{subject}:")
         # Several stages may give one result, each for gears and pairs of its kind.
-        once = {name: _meaning(stage, name) for stage in reversed(stages) for name in reversed(stage.results)}
+        once = {name: _meaning(entry, name) for entry in reversed(entries) for name in reversed(entry.results)}
         for line in two_columns(list(reversed(once.items())), column):
             voice.say(line)
     for error in STAGES.with_added.broken.values():
         voice.note(str(error))
     voice.say('Request them with results = ["geometry", ...] in a case, or with --results geometry,stiffness.')
     found = [
-        (subject, stage, name) for subject, stages in subjects.items() for stage in stages for name in stage.results
+        (subject, entry, name) for subject, entries in subjects.items() for entry in entries for name in entry.results
     ]
     voice.tell(
         {
-            name: {"subject": subject, "about": stage.about, "needs_effects": _needed(stage, name)}
-            for subject, stage, name in found
+            name: {"subject": subject, "about": entry.about, "needs_effects": _needed(entry, name)}
+            for subject, entry, name in found
         }
     )
 
 
-def _meaning(stage: Stage, name: str) -> str:
-    first, needed = stage.results[0], _needed(stage, name)
-    about = stage.about if name == first else f"same as {first}"
+def _meaning(entry: Entry, name: str) -> str:
+    first, needed = entry.results[0], _needed(entry, name)
+    about = entry.about if name == first else f"same as {first}"
     return f"{about} (requires the effect{'s' * (len(needed) > 1)} {' and '.join(needed)})" if needed else about
 
 
-def _needed(stage: Stage, name: str) -> list[str]:
-    return [need.effect for need in stage.requires if not need.results or name in need.results]
+def _needed(entry: Entry, name: str) -> list[str]:
+    return [need.effect for need in entry.requires if not need.results or name in need.results]

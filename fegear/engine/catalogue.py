@@ -11,7 +11,7 @@ from typing import NamedTuple, overload
 
 from fegear.base.errors import InputError
 from fegear.base.extensions import Group, added
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Need, Stage
 
 
 class Entry(NamedTuple):
@@ -35,6 +35,8 @@ class Entry(NamedTuple):
         Name by which older cases ask for it; empty for most.
     effects : tuple of str
         Effects that change what it computes.
+    requires : tuple of Need
+        Effects that must be on; a scene that leaves them off is refused with the remedy.
     quantities : tuple of str
         Quantities that a study of cost takes for its results; empty where it knows none.
     internal : bool
@@ -55,6 +57,7 @@ class Entry(NamedTuple):
     extra: str = ""
     formerly: str = ""
     effects: tuple[str, ...] = ()
+    requires: tuple[Need, ...] = ()
     quantities: tuple[str, ...] = ()
     internal: bool = False
     asymmetric: bool = False
@@ -64,7 +67,8 @@ class Entry(NamedTuple):
 
 def _entry(stage: Stage) -> Entry:
     return Entry(stage.name, "", stage.title, stage.results, stage.about, stage.extra, effects=stage.effects,
-                 internal=stage.internal, asymmetric=stage.asymmetric, generated=stage.generated)  # fmt: skip
+                 requires=stage.requires, internal=stage.internal, asymmetric=stage.asymmetric,
+                 generated=stage.generated)  # fmt: skip
 
 
 class Catalogue(Sequence[Stage]):
@@ -129,8 +133,8 @@ class Catalogue(Sequence[Stage]):
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
             named = replace(
                 found, name=name, title=entry.title, results=entry.results, about=entry.about, extra=entry.extra,
-                effects=entry.effects, internal=entry.internal, asymmetric=entry.asymmetric,
-                generated=entry.generated,
+                effects=entry.effects, requires=entry.requires, internal=entry.internal,
+                asymmetric=entry.asymmetric, generated=entry.generated,
             )  # fmt: skip
             # Of two threads that get here at once, both go on with the same stage.
             self._loaded.setdefault(name, named)

@@ -166,8 +166,6 @@ class Stage:
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
     effects_of : callable or None
         ``effects_of(scene, subject)`` -> those of its `effects` that change it for this subject; None where all do.
-    requires : tuple of Need
-        Effects that must be on; a scene that leaves them off is refused with the remedy.
     forecast : callable
         ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
     cites : callable
@@ -199,6 +197,8 @@ class Stage:
         What it is called: given by the catalogue, see `Entry`.
     effects : tuple of str
         Effects that change what it computes: given by the catalogue.
+    requires : tuple of Need
+        Effects that must be on: given by the catalogue.
     """
 
     subjects: Callable[[Scene], tuple[str, ...]]
@@ -208,7 +208,6 @@ class Stage:
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects_of: Callable[[Scene, str], tuple[str, ...]] | None = None
-    requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
     internal: bool = False
@@ -227,6 +226,7 @@ class Stage:
     about: str = ""
     extra: str = ""
     effects: tuple[str, ...] = ()
+    requires: tuple[Need, ...] = ()
 
     def effects_on(self, scene: Scene, subject: str) -> tuple[str, ...]:
         """Effects that change what it computes for a subject."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from fegear.base.effects import (
     AT_REST,
+    CONTACT_LOSS,
     FRICTION,
     HERTZ,
     MISALIGNMENT,
@@ -16,13 +17,14 @@ from fegear.base.effects import (
     NEIGHBOUR_COUPLING,
     ODD_TEETH,
     PAIR_EFFECTS,
+    PARAMETRIC,
     PLANE_EFFECTS,
     ROOT_EFFECTS,
     TORQUE_RIPPLE,
     WIDE_EFFECTS,
 )
 from fegear.engine.catalogue import Catalogue, Entry
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Need, Stage
 
 #: Effects on loads in mesh and on root stress under them, of results on root stress.
 _STRESS, _PLANE_STRESS = (*PAIR_EFFECTS, *ROOT_EFFECTS), (*PLANE_EFFECTS, *ROOT_EFFECTS)
@@ -67,7 +69,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("odd-tooth-stiffness", "gear.odd_tooth_stiffness.ODD_TOOTH_STIFFNESS",
               "Stiffness of cracked teeth", ("odd-tooth-stiffness",),
               "stiffness of a cracked tooth and of its neighbours along the flank",
-              effects=(ODD_TEETH.name,), internal=True, table="gear.NAME.odd_tooth"),
+              effects=(ODD_TEETH.name,), internal=True, table="gear.NAME.odd_tooth",
+              requires=(Need(ODD_TEETH.name, "its teeth are what the result is about"),)),
         Entry("crosscheck", "gear.crosscheck.CROSSCHECK", "Analytical formulas compared with FE", ("crosscheck",),
               "formulas for stiffness and root stress (ISO 6336, AGMA 908, ...) compared with finite elements",
               quantities=("c_0", "root-stress"), generated=True),
@@ -98,10 +101,12 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("stress-intensity", "pair.stress_intensity.STRESS_INTENSITY",
               "Stress intensity of cracked teeth", ("stress-intensity",),
               "stress intensity factors K_I, K_II of cracks over the mesh under shared load",
-              effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True, table="gear.NAME.odd_tooth"),
+              effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True, table="gear.NAME.odd_tooth",
+              requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
         Entry("crack-path", "pair.crack_path.CRACK_PATH", "Growth of cracks", ("crack-path",),
               "path of cracks through tooth or rim, load cycles, stiffness on the way",
-              effects=(*PLANE_EFFECTS, ODD_TEETH.name), table="gear.NAME.odd_tooth"),
+              effects=(*PLANE_EFFECTS, ODD_TEETH.name), table="gear.NAME.odd_tooth",
+              requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
         Entry("gauge", "pair.gauge.GAUGE", "Strain of gauges in root fillets", ("gauge",),
               "strain and stress under strain gauges over the rotation; comparison with measured strain",
               effects=_PLANE_STRESS, internal=True, table="gauge.NAME"),
@@ -289,7 +294,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               internal=True, table="shaft.NAME"),
         Entry("lead-correction", "shafts.lead_correction.LEAD_CORRECTION", "Lead correction", ("lead-correction",),
               "helix slope and crowning of each mesh over the torque range, K_Hbeta before and after",
-              effects=WIDE_EFFECTS, internal=True, table="shaft.NAME"),
+              effects=WIDE_EFFECTS, internal=True, table="shaft.NAME",
+              requires=(Need(MISALIGNMENT.name, "the lead is corrected for the misalignment by the shafts"),)),
     ),
     "Drive train dynamics": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),
@@ -301,7 +307,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               effects=(TORQUE_RIPPLE.name,), internal=True, table="train"),
         Entry("torque-ripple", "train.torque_ripple.TORQUE_RIPPLE", "Torque ripple", ("torque-ripple",),
               "mesh forces and shaft torques due to torque ripple, per unit torque and at the operating speed",
-              effects=(TORQUE_RIPPLE.name,), internal=True, table="train"),
+              effects=(TORQUE_RIPPLE.name,), internal=True, table="train",
+              requires=(Need(TORQUE_RIPPLE.name, "the torques of train.torque_ripple are its load"),)),
         Entry("dynamic-increments", "train.dynamic_increments.DYNAMIC_INCREMENTS",
               "Dynamic increment functions", ("dynamic-increments",),
               "dynamic increment functions of every mesh over frequency, with asymptotes (Mark)",
@@ -324,7 +331,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("tooth-friction", "pair.tooth_friction.TOOTH_FRICTION",
               "Tooth friction over the path of contact", ("tooth-friction",),
               "coefficient of friction, friction torques and power loss of a tooth pair over the path of contact",
-              effects=(FRICTION.name,), internal=True, table="train"),
+              effects=(FRICTION.name,), internal=True, table="train",
+              requires=(Need(FRICTION.name, "it computes the forces and losses of friction"),)),
         Entry("train-loss", "pair.train_power_loss.TRAIN_LOSS",
               "Gear mesh power loss of the train", ("gear-mesh-power-loss",),
               "gear mesh power loss, tooth loss factor H_V (also Ohlendorf, Wimmer), mesh efficiency",
@@ -341,7 +349,9 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               extra="motion", effects=MOTION_EFFECTS, internal=True, table="train"),
         Entry("design-chart", "train.design_chart.DESIGN_CHART", "Tip relief design chart", ("design-chart",),
               "dynamic factor over amount and length of tip relief", extra="motion",
-              effects=MOTION_EFFECTS, table="train"),
+              effects=MOTION_EFFECTS, table="train",
+              requires=(Need(CONTACT_LOSS.name, "required for reliefs with loss of contact"),
+                        Need(PARAMETRIC.name, "relief acts on single tooth pairs"))),
     ),
 })
 # fmt: on

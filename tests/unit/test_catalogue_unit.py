@@ -42,6 +42,21 @@ list(plan_lines(scene, make_plan(scene, STAGES)))
 print(*(m.removeprefix("fegear.") for m in sys.modules if m.startswith("fegear.")))
 """
 
+LISTED = """
+import sys
+from fegear.commands.schema import results
+results()
+assert not [m for m in sys.modules if m.startswith(("fegear.results.", "fegear.case.part", "fegear.contact"))
+            and m != "fegear.results.catalogue"]
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import plan_lines
+from fegear.results.catalogue import STAGES
+scene = read_scene(sys.argv[1], ['results=["dynamic-factor"]'])
+list(plan_lines(scene, make_plan(scene, STAGES)))
+print(*(m.removeprefix("fegear.") for m in sys.modules if m.startswith("fegear.")))
+"""
+
 
 @pytest.fixture(scope="module")
 def planned():
@@ -100,6 +115,18 @@ def test_a_plan_of_plane_gears_imports_no_mechanics_of_other_cases(planned):
     # What only holds the inputs of a table of a case.
     specs = {"shafts.section", "shafts.printed_bearing", "shafts.life"}
     assert [name for name in loaded if name.startswith(others) and name not in specs] == []
+
+
+def test_results_are_listed_without_what_computes_them_and_motions_planned_without_their_integrator():
+    """Listing loaded every result (1 s); a plan of motions loaded 60 modules that only a run needs."""
+    case = CASE.with_name("two_stage_gearbox.toml")
+    ran = subprocess.run([sys.executable, "-c", LISTED, str(case)], capture_output=True, text=True, check=True)
+    *listed, loaded = ran.stdout.splitlines()
+    assert any(line.split()[:1] == ["dynamic-factor"] for line in listed)
+    assert "(requires the effect odd_teeth)" in " ".join(ran.stdout.split())
+    assert "results.train.motion" in loaded.split()
+    run_only = ("dynamics.motion.kernel", "dynamics.motion.moving_train", "contact.plane.engagement")
+    assert [name for name in loaded.split() if name.startswith(run_only)] == []
 
 
 def test_reading_a_case_loads_no_table_that_it_does_not_have(planned):

@@ -155,7 +155,7 @@ def test_with_a_ripple_the_motion_is_found_without_and_with_it_each_half_of_the_
         return ("still" if not data.ripple else "moved",)
 
     monkeypatch.setattr(motion, "gear_train", lambda upstream: upstream)
-    monkeypatch.setattr(motion, "steady_motions", steady)
+    monkeypatch.setattr("fegear.dynamics.motion.moving_train.steady_motions", steady)
     monkeypatch.setattr(motion, "neglected_in_motion", lambda spec, data, states: (spec, data.ripple, states))
     asked = SimpleNamespace(motion="spec", neglected=True)
     found = motion._compute(asked, Data(("one",)), SimpleNamespace(progress=told.append))

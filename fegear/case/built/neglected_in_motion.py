@@ -14,7 +14,6 @@ from fegear.base.printed import percent
 from fegear.base.tally import note
 from fegear.case.built.neglected_effects import remark
 from fegear.case.effects import EffectsPart
-from fegear.contact.plane.neglected_effects import COUNTED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -142,6 +141,8 @@ class NeglectedInMotion:
 
 def neglected_in_motion(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> NeglectedInMotion:
     """What contact loss and friction would change where they are off."""
+    from fegear.contact.plane.neglected_effects import COUNTED  # late: the estimates, which no plan needs
+
     changes: dict[str, tuple[FactorChange, ...]] = {}
     failed: dict[str, str] = {}
     for effect, estimate in SIZED.items():

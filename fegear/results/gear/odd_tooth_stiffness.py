@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.arrays import Array, Index
-from fegear.base.effects import ODD_TEETH
 from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.case.built.odd_teeth import OddTeeth, cracked_gears, odd_teeth_of
@@ -23,7 +22,7 @@ from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Sheet
-from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.fem.teeth import meshing_order
 from fegear.geometry.outline import tooth_outline
 from fegear.results.forecasts import HERTZ, PATCH
@@ -261,7 +260,6 @@ ODD_TOOTH_STIFFNESS = Stage(
     inputs=odd_teeth_of,
     compute=_compute,
     present=_SHEET.present,
-    requires=(Need(ODD_TEETH.name, "its teeth are what the result is about"),),
     cites=citing(*CRACKS, PATCH, HERTZ),
     forecast=_forecast,
 )

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.base.effects import ODD_TEETH
 from fegear.base.notes import neglecting
 from fegear.base.printed import percent
 from fegear.base.shown import shown
@@ -28,7 +27,7 @@ from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.fem.teeth import meshing_order
 from fegear.geometry.outline import tooth_outline, turned
 from fegear.geometry.pair import MEMBERS
@@ -252,7 +251,6 @@ CRACK_PATH = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=check_teeth,
-    requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),),
     cites=citing(
         *CRACKS, HERTZ,
         Citation("erdogan-sih", "direction of crack growth by the maximum tangential stress"),

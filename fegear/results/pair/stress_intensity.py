@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.arrays import Array
-from fegear.base.effects import ODD_TEETH
 from fegear.base.notes import neglecting
 from fegear.base.shown import shown
 from fegear.case.built.odd_teeth import cracked_gears, odd_gears_of
@@ -18,7 +17,7 @@ from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.fem.teeth import meshing_order
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ
@@ -195,7 +194,6 @@ STRESS_INTENSITY = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=check_teeth,
-    requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),),
     cites=citing(*CRACKS, HERTZ),
     forecast=_forecast,
 )

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.effects import FRICTION
 from fegear.base.shown import shown, shows
 from fegear.case.built.train import motion_spec
 from fegear.contact.plane.pair_history import PairHistory
@@ -18,7 +17,7 @@ from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results.gear.drawing import roll_marks
 from fegear.results.train.gear_train import (
     carries_nothing,
@@ -243,7 +242,6 @@ TOOTH_FRICTION = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    requires=(Need(FRICTION.name, "it computes the forces and losses of friction"),),
     cites=_cites,
     forecast=_forecast,
 )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.base.effects import MISALIGNMENT
 from fegear.base.errors import InputError
 from fegear.base.printed import figures
 from fegear.base.shown import shown
@@ -15,7 +14,7 @@ from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
-from fegear.engine.stage import Need, Stage, Task
+from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
 from fegear.results.relief.grinding import CROWNING, OF_LEADS, SLOPE, Grinding, grinding_table
 from fegear.results.shafts.loaded_shafts import (
@@ -198,7 +197,6 @@ LEAD_CORRECTION = Stage(
     present=_SHEET.present,
     needs=_needs,
     check=_check,
-    requires=(Need(MISALIGNMENT.name, "the lead is corrected for the misalignment by the shafts"),),
     cites=citing(Citation("cowper", "shear coefficient of hollow circles")),
     forecast=lambda scene, _name: forecasts.constant(_SEARCH * max(1, len(fed_pairs(scene)))),
 )

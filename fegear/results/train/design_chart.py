@@ -8,7 +8,6 @@ from typing import cast
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.effects import CONTACT_LOSS, PARAMETRIC
 from fegear.base.errors import FegearError, InputError
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tooth_influence import GearToSolve, gear_to_solve
@@ -18,12 +17,11 @@ from fegear.case.reading import Scene
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.dynamics.motion.motion_spec import MotionSpec
-from fegear.dynamics.motion.moving_train import steady_motions
 from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.train_spec import TrainSpec, assemble
 from fegear.engine.citation import Citation, citing
-from fegear.engine.stage import Forecast, Need, Stage, Task, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import Shape
 from fegear.results import forecasts
@@ -85,6 +83,7 @@ class Trial:
 
 def chart_trial(trial: Trial) -> dict[str, float]:
     """Compute one point: largest dynamic factor over the case's speeds, where, and A_e of the static error."""
+    from fegear.dynamics.motion.moving_train import steady_motions
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.excitation import effective_error
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
@@ -247,10 +246,6 @@ DESIGN_CHART = Stage(
     compute=_compute,
     present=CHART_SHEET.present,
     check=_check,
-    requires=(
-        Need(CONTACT_LOSS.name, "required for reliefs with loss of contact"),
-        Need(PARAMETRIC.name, "relief acts on single tooth pairs"),
-    ),
     cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
     forecast=_forecast,
     in_points=True,

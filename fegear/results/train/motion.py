@@ -14,9 +14,7 @@ from fegear.base.printed import percent
 from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, motion_remarks, neglected_in_motion
 from fegear.case.built.train import motion_spec, train_inputs
 from fegear.case.part import at
-from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.motion_spec import MotionSpec
-from fegear.dynamics.motion.moving_train import steady_motions
 from fegear.dynamics.train.torque_ripple import LONGEST, common_period
 from fegear.dynamics.train.train_spec import build_train, speed_ratio
 from fegear.engine.citation import Citation
@@ -122,6 +120,8 @@ def _inputs(scene: Scene, _subject: str) -> SweepInputs:
 
 
 def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
+    from fegear.dynamics.motion.moving_train import steady_motions  # late: the integrator, which no plan needs
+
     data = gear_train(upstream)
     if data.ripple:
         # side by side: what the meshes do by themselves, and what they do under a torque that fluctuates
@@ -151,6 +151,8 @@ def _without_backlash(data: GearTrain) -> list[str]:
 
 def _common_period(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
     """Over which period motions under torque ripple are closed, and whose frequencies were shifted for that."""
+    from fegear.dynamics.motion.motion_model import MotionModel  # late: as above
+
     models = [state.model for state in states if isinstance(state.model, MotionModel) and state.model.ripple]
     if not models:
         return []

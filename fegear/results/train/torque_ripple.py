@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base import effects
 from fegear.base.arrays import Array, Complex
 from fegear.base.shown import shown, shows
 from fegear.case.built.train import TrainInputs, train_inputs
@@ -25,7 +24,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import itself
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.engine.stage import Forecast, Need, Stage, Upstream, Work
+from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, the_train
 from fegear.results.train.ripple_spectrum import RippleLines
 
@@ -395,7 +394,6 @@ TORQUE_RIPPLE = Stage(
     compute=_compute,
     present=_SHEET.present,
     check=needs_one_speed,
-    requires=(Need(effects.TORQUE_RIPPLE.name, "the torques of train.torque_ripple are its load"),),
     cites=citing(Citation("mark", "gear train of rotors, shafts and meshes, excited by a torque", "section 2")),
     forecast=_forecast,
 )
