@@ -13,8 +13,7 @@ from fegear.atlas.tables import over_contacts, shares_of_fillet
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.plane.fe_compliance import NOMINAL_HALF_WIDTH, chebyshev_over, own_lengths, roll_length
 from fegear.contact.plane.spline import Spline, spline
-from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.plane.influence import log_slope
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH, log_slope
 from fegear.fem.plane.root_stress import FilletCurve
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from fegear.base.errors import InputError
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks, ManyReliefs
 from fegear.contact.many.many_loaded import ManyErrors, transmission_errors
 from fegear.contact.many.many_roots import ManyFillets, ManyRootStress, root_stresses
-from fegear.fem.plane.influence import log_slope
+from fegear.fem.plane.contact_width import log_slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

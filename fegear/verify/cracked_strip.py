@@ -118,8 +118,9 @@ def intensity(
     ring: tuple[float, float] | None = None,
 ) -> Array:  # fmt: skip
     """K_I and K_II over sqrt(pi a)."""
+    from fegear.fem.plane.elements import sector_elements
     from fegear.fem.plane.odd.stress_intensity import RINGS, interaction
 
-    length = float(np.hypot(*sector.tip))
-    integral = interaction(sector, _NU, "strain", order, RINGS[0] if ring is None else ring)
+    length, elements = float(np.hypot(*sector.tip)), sector_elements(sector.mesh, order)
+    integral = interaction(sector, _NU, "strain", elements, RINGS[0] if ring is None else ring)
     return np.asarray(integral.T @ pulled(sector, order, stress)[0] / math.sqrt(math.pi * length))

@@ -8,12 +8,14 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.influence import SIDES, solve_influence
+from fegear.fem.plane.odd import odd_influence
 from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
 from fegear.fem.plane.odd.stress_intensity import RINGS
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import shape_codec
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
@@ -95,6 +97,39 @@ def test_healthy_odd_sectors_are_the_plain_ring(teeth):
             for side in SIDES:
                 off = found.fillet_stress(i, j, side, radii) - known.fillet_stress(i - j, side, radii)
                 assert np.abs(off).max() < 1e-11 * stress
+
+
+def test_the_ordinary_sector_of_a_solved_ring_is_not_solved_again(monkeypatch):
+    """What the plain ring keeps of its sector is what solving it again gives, to the last bit, of both orders."""
+    tooth, bore, settings = Tooth(12, TOOTH.rack), 0.45 * 6.0, settings_at(-4)
+    mesh = mesh_sector(tooth, bore, settings)
+    known = solve_influence(
+        tooth, mesh, NU, "strain", order=settings.order, corner_distance=settings.corner_distance, two_orders=True
+    )
+    crack = straight_crack(tooth, mouth_at_tangent(tooth, math.radians(30.0)), math.radians(70.0), depth=0.5)
+    odd = {0: OddTooth(tooth, cracked_sector(tooth, bore, settings, crack))}
+    solve, meshes = functools.partial(solve_odd_influence, tooth, mesh, odd, NU, "strain", settings), []
+    again = solve(two_orders=True)
+    usual = odd_influence.assemble_section_two_orders
+    monkeypatch.setattr(
+        odd_influence, "assemble_section_two_orders", lambda one, *rest: meshes.append(one) or usual(one, *rest)
+    )
+    found = solve(two_orders=True, known=known)
+    assert len(meshes) == 1
+    assert meshes[0] is odd[0].mesh
+    for one, other in ((found, again), (found.lower, again.lower)):
+        assert np.array_equal(one.ring.motion, other.ring.motion)
+        for name in ("flank_follows", "flank_own"):
+            assert np.array_equal(getattr(one.ordinary, name), getattr(other.ordinary, name))
+        for side in SIDES:
+            assert np.array_equal(one.ordinary.stress_follows[side], other.ordinary.stress_follows[side])
+            assert np.array_equal(one.ordinary.stress_own[side], other.ordinary.stress_own[side])
+    codec = shape_codec(tooth)
+    recalled = codec.read(codec.write(known))
+    assert recalled is not None
+    assert recalled.rows is recalled.lower.rows is None  # no more on disk than before: then it is solved again
+    solve(two_orders=True, known=recalled)
+    assert len(meshes) == 3
 
 
 @pytest.mark.parametrize("neighbour", [0.0, 0.3])

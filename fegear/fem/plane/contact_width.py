@@ -1,6 +1,7 @@
 """Which contact half-widths a flank can hold.
 
-What a corner of the outline does to a contact near it: the exact wedge, and how its angle follows from the tooth.
+How deflections go with them: the half-plane's logarithm, the surface's curvature, and what a corner of the outline
+does to a contact near it: the exact wedge, and how its angle follows from the tooth.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
+from fegear.geometry.gear import Plane
 from fegear.geometry.involute_side import InvoluteSide
 
 #: A contact's usual half-width [modules], at which what depends on it is reported.
@@ -28,6 +30,27 @@ LARGEST_HALF_WIDTH = 0.5
 
 #: A contact that reaches past an end of the flank by no more than this [modules] is reported; by more it is refused.
 FARTHEST_PAST_END = 0.1
+
+
+def log_slope(poisson_ratio: float, plane: Plane) -> float:
+    """Change of a body's approach with the logarithm of the contact's half-width, per unit line load, E = 1.
+
+    Two semi-elliptic pressures of the same load on a half-plane differ at their centre by exactly
+    2 (1 - nu^2) / (pi E) ln(a / b) (plane strain; without the nu in plane stress); Johnson, Contact Mechanics, 4.2.
+    """
+    return 2.0 * (1.0 - poisson_ratio**2 if plane == "strain" else 1.0) / np.pi
+
+
+def curvature_slope(poisson_ratio: float, plane: Plane) -> float:
+    """How the deflection near a line load on a surface of curvature 1/rho departs from the half-plane's, E = 1.
+
+    At a distance s it is larger by curvature_slope * s / rho, or smaller on a hollow surface, whose rho is negative.
+    The exact disc under pressure of n waves round its rim deflects (1/(n - 1) + (3 - 4 nu)/(n + 1)) (1 + nu)/2 (from
+    Michell's stress function; Barber, Elasticity, table 9.1). Its 1/n is the half-plane's logarithm; its 1/n^2, which
+    vanishes with 1 - 2 nu, is this.
+    """
+    nu = poisson_ratio
+    return 0.5 * (1.0 - 2.0 * nu) * (1.0 + nu) if plane == "strain" else 0.5 * (1.0 - nu)
 
 
 def check_half_widths(

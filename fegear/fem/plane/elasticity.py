@@ -44,6 +44,8 @@ class SectorElasticity:
         Unknowns at the mesh's points (vertices; middle nodes too where the order is 2, else -1).
     order, size : int
         Order of the elements; number of unknowns.
+    elements : SectorElements
+        What they are made of.
     whole : scipy.sparse.csr_matrix, shape (size, size), optional
         Of the whole sector, assembled by scikit-fem, which then eliminates too (`scikit_fem_solver`).
     """
@@ -57,6 +59,7 @@ class SectorElasticity:
     node_dofs: Index
     order: int
     size: int
+    elements: SectorElements
     whole: Any = None
 
 
@@ -129,6 +132,7 @@ def _elasticity(
         node_dofs=np.where(points < 0, -1, 2 * points + np.array([[0], [1]])),
         order=elements.order,
         size=2 * int(elements.dofs.N),
+        elements=elements,
         whole=whole,
     )
 

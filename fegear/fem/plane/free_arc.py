@@ -99,7 +99,7 @@ def free_arc_response(
     """
     sector = free_arc(mesh, elasticity, np.unique(watch), teeth)
     started = time.perf_counter()
-    ring = odd_ring(sector.part, {}, mesh.teeth, reach, sector.held)
+    ring = odd_ring(sector.part.held, {}, mesh.teeth, reach, sector.held)
     kinds = [sector.held.part if sector.held.of(k) else sector.part for k in range(-reach, reach + 1)]
     rows = [ports_of(part.sector, watch) for part in kinds]
     follow = [np.hstack([p.follow_a, p.follow_b])[r] for p, r in zip(kinds, rows, strict=True)]

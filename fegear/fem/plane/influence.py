@@ -12,11 +12,20 @@ import numpy as np
 
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
-from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
+from fegear.fem.plane.contact_width import (
+    POINT,
+    REFERENCE_HALF_WIDTH,
+    check_half_widths,
+    corner_angles,
+    curvature_slope,
+    log_slope,
+    wedge_slope,
+)
 from fegear.fem.plane.free_arc import free_arc_response
 from fegear.fem.plane.rim import PinForces, supported_response
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
+from fegear.fem.plane.sector_rows import SectorRows, sector_rows, stress_modulus
 from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
@@ -54,27 +63,6 @@ _STEP, _STEP_SHARE = 0.05, 0.25
 _MEAN = 256.0 / (45.0 * np.pi**2)
 
 
-def log_slope(poisson_ratio: float, plane: Plane) -> float:
-    """Change of a body's approach with the logarithm of the contact's half-width, per unit line load, E = 1.
-
-    Two semi-elliptic pressures of the same load on a half-plane differ at their centre by exactly
-    2 (1 - nu^2) / (pi E) ln(a / b) (plane strain; without the nu in plane stress); Johnson, Contact Mechanics, 4.2.
-    """
-    return 2.0 * (1.0 - poisson_ratio**2 if plane == "strain" else 1.0) / np.pi
-
-
-def curvature_slope(poisson_ratio: float, plane: Plane) -> float:
-    """How the deflection near a line load on a surface of curvature 1/rho departs from the half-plane's, E = 1.
-
-    At a distance s it is larger by curvature_slope * s / rho, or smaller on a hollow surface, whose rho is negative.
-    The exact disc under pressure of n waves round its rim deflects (1/(n - 1) + (3 - 4 nu)/(n + 1)) (1 + nu)/2 (from
-    Michell's stress function; Barber, Elasticity, table 9.1). Its 1/n is the half-plane's logarithm; its 1/n^2, which
-    vanishes with 1 - 2 nu, is this.
-    """
-    nu = poisson_ratio
-    return 0.5 * (1.0 - 2.0 * nu) * (1.0 + nu) if plane == "strain" else 0.5 * (1.0 - nu)
-
-
 @dataclass(frozen=True)
 class Influence:
     """c_k(p, q) and root-stress influence of one gear shape, ready for any position and contact width.
@@ -105,6 +93,8 @@ class Influence:
         Of a ring on pins what differs from tooth to tooth (`tooth_on_pins`); `compliance` and `stress` are means.
     support : RimSupport, optional
         What carries the rim; by default the whole bore, or outer circle of a ring gear, is held.
+    rows : SectorRows, optional
+        Its sector by itself, for a ring with odd teeth; not of what comes back from a file.
     """
 
     tooth: InvoluteSide
@@ -122,6 +112,7 @@ class Influence:
     lower: Influence | None = None
     pins: PinForces | None = None
     support: RimSupport | None = None
+    rows: SectorRows | None = field(default=None, compare=False, repr=False)
 
     @property
     def log_slope(self) -> float:
@@ -474,18 +465,21 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
     watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])
     response: Mapping[int, Array]
     pins: PinForces | None = None
+    rows: SectorRows | None = None
     closed = time.perf_counter()
     ring: Ring | Free
     if support is None or support.kind == "web":
         ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
         closed = time.perf_counter()
         response = ring.respond(flank.dofs, watch)
+        if not sector_teeth:
+            rows = sector_rows(ring.part, flank, fillets, poisson_ratio, plane)
     elif support.kind == "free_arc":
         response, ring = free_arc_response(mesh, elasticity, support.free_teeth, watch, flank.dofs.size, reach)
     else:
         response, pins, ring = supported_response(mesh, elasticity, support, watch, flank.dofs.size, reach)
     n, t = flank.dofs.size, fillets["tension"].dofs.size
-    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
+    modulus = stress_modulus(poisson_ratio, plane)
     compliance: dict[int, Array] = {}
     stress: dict[tuple[int, Side], Array] = {}
     for k, u in response.items():
@@ -496,5 +490,5 @@ def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influe
     seconds = {"mesh": mesh.seconds, "assembly": assembled - started, **ring.seconds, "influence": solved - closed}
     return Influence(
         tooth, poisson_ratio, plane, mesh, flank, compliance, fillets, stress,
-        corner_distance, reach, ring.size, seconds, pins=pins, support=support,
+        corner_distance, reach, ring.size, seconds, pins=pins, support=support, rows=rows,
     )  # fmt: skip

@@ -26,7 +26,7 @@ from fegear.fem.plane.chain import chain_coupling, chain_of, factored
 from fegear.fem.plane.condensation import Condensed
 from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.sector_sides import between_sides, condensed_sector, ports_of
+from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
 
 #: Motions of a side, shape (m,) or (m, d), in which a ring that nothing holds turns, and moves: harmonics 0 and 1.
 RigidSides = tuple[NDArray[np.inexact], NDArray[np.inexact]]
@@ -48,12 +48,8 @@ class Ring:
 
     Parameters
     ----------
-    sector : Condensed
-        Its `kept` are the ports, the sides first.
-    follow_a, follow_b : ndarray, shape (ports, m)
-        A and B.
-    own : ndarray, shape (ports, ports)
-        G; symmetric, zero for the sides.
+    part : BetweenSides
+        A sector, with A, B and G.
     from_a, from_b : dict of int to ndarray, shape (m, m)
         Motion of side A of sector k under forces on side A (H_k) and on side B (H_k-1) of sector 0, for
         k = -reach .. reach+1.
@@ -62,15 +58,32 @@ class Ring:
     seconds : dict of str to float
     """
 
-    sector: Condensed
-    follow_a: Array
-    follow_b: Array
-    own: Array
+    part: BetweenSides
     from_a: dict[int, Array]
     from_b: dict[int, Array]
     teeth: int
     reach: int
     seconds: dict[str, float]
+
+    @property
+    def sector(self) -> Condensed:
+        """Its `kept` are the ports, the sides first."""
+        return self.part.sector
+
+    @property
+    def follow_a(self) -> Array:
+        """A, shape (ports, m)."""
+        return self.part.follow_a
+
+    @property
+    def follow_b(self) -> Array:
+        """B, shape (ports, m)."""
+        return self.part.follow_b
+
+    @property
+    def own(self) -> Array:
+        """G, shape (ports, ports); symmetric, zero for the sides."""
+        return self.part.own
 
     @property
     def size(self) -> int:
@@ -218,10 +231,7 @@ def closed_ring(
         from_a = _coupling(part.held, teeth, reach + 1, rigid)
         from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
     return Ring(
-        sector=sector,
-        follow_a=part.follow_a,
-        follow_b=part.follow_b,
-        own=part.own,
+        part=part,
         from_a=from_a,
         from_b=from_b,
         teeth=teeth,

@@ -237,6 +237,8 @@ def _shape(gear: Gear) -> tuple[InvoluteSide, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
 
 
+#: Of a solution what is not kept on disk: whoever reads it knows the tooth, and can solve a sector again.
+_NOT_KEPT = frozenset({"tooth", "rows"})
 #: What a solved plane shape consists of.
 _PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain, PinForces, RimSupport)
 
@@ -255,9 +257,10 @@ def shape_codec(tooth: InvoluteSide, kinds: tuple[type, ...] = _PLANE) -> Codec[
 
 
 def _plain(item: object, kinds: tuple[type, ...]) -> object:
-    """Dataclasses as dictionaries with their name; without the tooth, which the reader knows."""
+    """Dataclasses as dictionaries with their name; without what is `_NOT_KEPT`."""
     if dataclasses.is_dataclass(item) and isinstance(item, kinds):
-        fields = {f.name: _plain(getattr(item, f.name), kinds) for f in dataclasses.fields(item) if f.name != "tooth"}
+        names = (f.name for f in dataclasses.fields(item) if f.name not in _NOT_KEPT)
+        fields = {name: _plain(getattr(item, name), kinds) for name in names}
         return {"kind": type(item).__name__, "fields": fields}
     if isinstance(item, dict):
         return {key: _plain(value, kinds) for key, value in item.items()}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.fem.plane.influence import curvature_slope
+from fegear.fem.plane.contact_width import curvature_slope
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands
 from fegear.fem.solid.settings import SolidSettings

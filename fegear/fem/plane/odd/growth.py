@@ -206,7 +206,7 @@ def _one(
     pressed = flank.patches(arc, np.full(arc.shape, _HALF_WIDTH))
     run = ports_of(condensed, flank.dofs)
     moved = np.linalg.solve(stiffness, follow[run][:, at].T @ pressed)
-    gathered = condensed.collect(interaction(sector, poisson_ratio, plane, elasticity.order))
+    gathered = condensed.collect(interaction(sector, poisson_ratio, plane, elasticity.elements))
     k = gathered.T @ (follow[:, at] @ moved + part.own[:, run] @ pressed)
     own = np.einsum("ip,ip->p", pressed, follow[run][:, at] @ moved + part.own[np.ix_(run, run)] @ pressed)
     by_load = k[:, : radius.size] * force

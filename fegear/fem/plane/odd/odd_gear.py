@@ -487,7 +487,7 @@ def _solve(
     }
     return solve_odd_influence(
         tooth, fine.mesh, odd, fine.poisson_ratio, fine.plane, settings, reach=reach, two_orders=two_orders,
-        missing=missing, support=fine.support,
+        missing=missing, support=fine.support, known=fine,
     )  # fmt: skip
 
 

@@ -22,7 +22,7 @@ from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import SIDES, Influence, Side
 from fegear.fem.plane.odd.crack_faces import CrackFaces, pressed
 from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
-from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, tooth_kind
+from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, ordinary_kind, tooth_kind
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import between_sides, bore_of_side, condensed_sector
 from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
@@ -339,6 +339,7 @@ def solve_odd_influence(
     two_orders: bool = False,
     missing: Mapping[int, SectorMesh] | None = None,
     support: RimSupport | None = None,
+    known: Influence | None = None,
 ) -> OddInfluence:
     """Solve one ring with odd teeth for all that can be asked of its teeth.
 
@@ -362,6 +363,8 @@ def solve_odd_influence(
         Meshes of the sectors without a tooth, by number.
     support : RimSupport, optional
         A free arc of the bore, whose middle is below tooth 0, or a web [modules]; by default the bore is held.
+    known : Influence, optional
+        The ring of ordinary teeth on that mesh: where it knows its sector by itself that is not solved again.
 
     Raises
     ------
@@ -370,10 +373,11 @@ def solve_odd_influence(
     FegearError
         If a stiffness is not positive definite.
     """
-    ordinary = OddTooth(tooth, mesh)
-    every, bare = [ordinary, *odd.values()], missing or {}
-    meshes = [*(one.mesh for one in every), *bare.values()]
     half = support.free_teeth // 2 if support is not None and support.kind == "free_arc" else None
+    solved = _solved_already(known, two_orders) if half is None else []
+    ordinary, bare = [] if solved else [OddTooth(tooth, mesh)], missing or {}
+    every = [*ordinary, *odd.values()]
+    meshes = [*(one.mesh for one in every), *bare.values()]
     with one_thread():
         order, solver = settings.order, settings.solver
         if two_orders:
@@ -382,16 +386,20 @@ def solve_odd_influence(
         else:
             orders = [[assemble_section(one, poisson_ratio, plane, order, solver, support) for one in meshes]]
         found = []
-        for elasticity in orders:
+        for n, elasticity in enumerate(orders):
             started = time.perf_counter()
-            usual, part = tooth_kind(ordinary, elasticity[0], poisson_ratio, plane, free=half is not None)
+            if solved:
+                usual, between = solved[n]
+            else:
+                usual, part = tooth_kind(ordinary[0], elasticity[0], poisson_ratio, plane, free=half is not None)
+                between = part.held
             far, held, bore = None, None, None
             if half is not None:
                 bore = bore_of_side(mesh, elasticity[0])
-                far, beyond = tooth_kind(ordinary, elasticity[0], poisson_ratio, plane, bore=bore)
+                far, beyond = tooth_kind(ordinary[0], elasticity[0], poisson_ratio, plane, bore=bore)
                 held = Held(half, ~bore, beyond)
             others = []
-            for number, one, each in zip(odd, odd.values(), elasticity[1 : len(every)], strict=True):
+            for number, one, each in zip(odd, odd.values(), elasticity[len(ordinary) : len(every)], strict=True):
                 free = half is not None and abs(number) <= half
                 others.append(tooth_kind(one, each, poisson_ratio, plane, free=free, bore=None if free else bore))
             kinds = {number: kind for number, (kind, _) in zip(odd, others, strict=True)}
@@ -405,7 +413,7 @@ def solve_odd_influence(
                 gap = between_sides(condensed_bare, side_size, turn)
                 parts[number] = gap if free or bore is None else held_sectors(0, bore, gap).part
             condensed = time.perf_counter()
-            ring = odd_ring(part, parts, tooth.teeth, reach, held)
+            ring = odd_ring(between, parts, tooth.teeth, reach, held)
             seconds = {
                 "mesh": sum(mesh.seconds for mesh in meshes),
                 "condensation": condensed - started,
@@ -418,3 +426,14 @@ def solve_odd_influence(
                 )
             )
     return replace(found[0], lower=found[1]) if two_orders else found[0]
+
+
+def _solved_already(known: Influence | None, two_orders: bool) -> list[tuple[ToothKind, Array]]:
+    """Ordinary teeth of each order, and the stiffness between their sides; of none where one is not known."""
+    orders = [] if known is None else [known, known.lower] if two_orders else [known]
+    found = [
+        (kind, one.rows.held)
+        for one in orders
+        if one is not None and one.rows is not None and (kind := ordinary_kind(one)) is not None
+    ]
+    return found if len(found) == len(orders) else []

@@ -99,13 +99,14 @@ def held_sectors(half: int, bore: Mask, part: BetweenSides) -> Held:
 
 
 def odd_ring(
-    ordinary: BetweenSides, odd: Mapping[int, BetweenSides], teeth: int, reach: int, held: Held | None = None
+    ordinary: Array, odd: Mapping[int, BetweenSides], teeth: int, reach: int, held: Held | None = None
 ) -> OddRing:
     """Close a ring of sectors of several kinds.
 
     Parameters
     ----------
-    ordinary : BetweenSides
+    ordinary : ndarray, shape (2 m, 2 m)
+        Stiffness of an ordinary sector between its sides.
     odd : mapping of int to BetweenSides
         By the number of the sector, -reach to reach.
     teeth, reach : int
@@ -124,15 +125,17 @@ def odd_ring(
         raise InputError(
             "reach", reach, f"must be at least {max(map(abs, odd), default=0)} and at most {(teeth - 1) // 2}"
         )
-    m, sides = ordinary.follow_a.shape[1], 2 * reach + 2
+    m, sides = ordinary.shape[0] // 2, 2 * reach + 2
     if any(part.follow_a.shape[1] != m for part in odd.values()):
         raise InputError("mesh", "side_a", "of an odd sector has other nodes than the ordinary sector's")
 
-    def part_of(k: int) -> BetweenSides:
-        return odd.get(k, ordinary if held is None or not held.of(k) else held.part)
+    def between(k: int) -> Array:
+        if k in odd:
+            return odd[k].held
+        return ordinary if held is None or not held.of(k) else held.part.held
 
     chains: list[tuple[Array | None, int, int]] = [
-        (part_of(k).held, k + reach, k + reach + 1) for k in range(-reach, reach + 1)
+        (between(k), k + reach, k + reach + 1) for k in range(-reach, reach + 1)
     ]
     fixed = {side for k in range(-reach, reach + 1) if held and held.of(k) for side in (k + reach, k + reach + 1)}
     others = [k if 2 * k < teeth else k - teeth for k in range(reach + 1, teeth - reach)]
@@ -143,7 +146,7 @@ def odd_ring(
     first, count = sides - 1, sides if others else sides - 1
     for n, (kind, members) in enumerate(runs):
         last = 0 if n == len(runs) - 1 else count
-        row = held.chain(members) if held is not None and kind else chain_of(ordinary.held, members)
+        row = held.chain(members) if held is not None and kind else chain_of(ordinary, members)
         chains.append((row, first, last))
         if kind:
             fixed |= {first, last}

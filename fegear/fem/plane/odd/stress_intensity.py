@@ -20,7 +20,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.fem.plane.elasticity import lame
-from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.elements import SectorElements
 from fegear.fem.plane.odd.cracked_sector import CrackedSector
 from fegear.geometry.gear import Plane
 
@@ -32,7 +32,11 @@ _DEGREE = 19
 
 
 def interaction(
-    sector: CrackedSector, poisson_ratio: float, plane: Plane, order: int, ring: tuple[float, float] = RINGS[0]
+    sector: CrackedSector,
+    poisson_ratio: float,
+    plane: Plane,
+    elements: SectorElements,
+    ring: tuple[float, float] = RINGS[0],
 ) -> Array:
     """Functionals g of a cracked sector's displacement u with K_I = g_I' u and K_II = g_II' u; E = 1.
 
@@ -41,8 +45,8 @@ def interaction(
     sector : CrackedSector
     poisson_ratio : float
     plane : {"strain", "stress"}
-    order : {2, 3, 4}
-        Of the elements that the displacement is of.
+    elements : SectorElements
+        That the displacement is of.
     ring : tuple of float
         Inner and outer radius as shares of the room around the tip.
 
@@ -53,7 +57,6 @@ def interaction(
         the crack; K_II is positive where its left face, seen from the mouth, moves toward the tip.
     """
     r1, r2 = (share * sector.room for share in ring)
-    elements = sector_elements(sector.mesh, order)
     tip = sector.tip[:, None] - elements.tip[:, 0]
     corners = np.hypot(*(elements.grid.p - tip))[elements.grid.t]
     chosen = np.flatnonzero((corners.min(axis=0) < r2) & (corners.max(axis=0) > r1))

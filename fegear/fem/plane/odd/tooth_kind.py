@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.plane.elasticity import SectorElasticity
-from fegear.fem.plane.influence import SIDES, Side
+from fegear.fem.plane.influence import SIDES, Influence, Side
 from fegear.fem.plane.odd.crack_faces import CrackFaces, opening_rows
 from fegear.fem.plane.odd.cracked_sector import CrackedSector
 from fegear.fem.plane.odd.odd_ring import held_sectors
 from fegear.fem.plane.odd.stress_intensity import RINGS, by_faces, interaction
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, fillet_strain
+from fegear.fem.plane.sector_rows import sector_rows, stress_modulus
 from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
+from fegear.geometry.involute_tooth import InvoluteTooth
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
-    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: How far below the flank a patch may reach into the fillet [modules], and how near to a crack's mouth, as a share of
 #: the way there.
@@ -149,24 +150,25 @@ def tooth_kind(
     if bore is not None:
         part = held_sectors(0, bore, part).part
     follow = np.hstack([part.follow_a, part.follow_b])
-    run = ports_of(condensed, flank.dofs)
-    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
-    rows = {side: ports_of(condensed, fillet.dofs) for side, fillet in fillets.items()}
+    run, rows = ports_of(condensed, flank.dofs), sector_rows(part, flank, fillets, poisson_ratio, plane)
     intensity_follows, intensity_own = np.zeros((0, 2, follow.shape[1])), np.zeros((0, 2, run.size))
     if isinstance(odd.sector, CrackedSector):
-        each = [interaction(odd.sector, poisson_ratio, plane, elasticity.order, ring) for ring in RINGS]
+        each = [interaction(odd.sector, poisson_ratio, plane, elasticity.elements, ring) for ring in RINGS]
         forces = condensed.collect(np.hstack(each)).T
         intensity_follows = (forces @ follow).reshape(len(RINGS), 2, -1)
         intensity_own = (forces @ part.own[:, run]).reshape(len(RINGS), 2, -1)
     faces = None
     if isinstance(odd.sector, CrackedSector) and closing:
-        on = ports_of(condensed, face)
+        on, modulus = ports_of(condensed, face), stress_modulus(poisson_ratio, plane)
         pushed = part.own[:, on] @ opening.T
         faces = CrackFaces(
             follows=opening @ follow[on],
             by_flank=pushed[run].T,
             own=opening @ pushed[on],
-            stress={side: modulus * (fillets[side].strain @ pushed[rows[side]]) for side in SIDES},
+            stress={
+                side: modulus * (fillets[side].strain @ pushed[ports_of(condensed, fillets[side].dofs)])
+                for side in SIDES
+            },
             intensity=(forces @ pushed).reshape(len(RINGS), 2, -1)
             + np.stack([by_faces(odd.sector, at_face, ring) for ring in RINGS]),
         )
@@ -175,10 +177,10 @@ def tooth_kind(
         mesh=mesh,
         flank=flank,
         fillets=fillets,
-        flank_follows=follow[run],
-        flank_own=part.own[np.ix_(run, run)],
-        stress_follows={side: modulus * (fillets[side].strain @ follow[rows[side]]) for side in SIDES},
-        stress_own={side: modulus * (fillets[side].strain @ part.own[np.ix_(rows[side], run)]) for side in SIDES},
+        flank_follows=rows.flank_follows,
+        flank_own=rows.flank_own,
+        stress_follows=rows.stress_follows,
+        stress_own=rows.stress_own,
         intensity_follows=intensity_follows,
         intensity_own=intensity_own,
         mouth=mouth,
@@ -187,3 +189,15 @@ def tooth_kind(
         faces=faces,
     )
     return kind, part
+
+
+def ordinary_kind(known: Influence) -> ToothKind | None:
+    """That of a solved ring's own sector; None where it does not know it by itself."""
+    rows = known.rows
+    if rows is None or not isinstance(known.tooth, InvoluteTooth):
+        return None
+    none = np.zeros((0, 2, 0))
+    return ToothKind(
+        known.tooth, known.mesh, known.flank, known.fillets, rows.flank_follows, rows.flank_own, rows.stress_follows,
+        rows.stress_own, none, none, 0.0, False, known.unknowns,
+    )  # fmt: skip
