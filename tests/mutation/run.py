@@ -6,10 +6,11 @@
     python tests/mutation/run.py holes                lines of functions that no ordinary test executes
 
 Every mutant is put into a copy of the repository. The tests that execute its line run nearest and cheapest first until
-one fails. A test that takes 20 s and 15 times as long as usual has failed: it may never end. A line that no test
-executes survives at once. Tests of `tests/architecture`, which read the source, do not count. Outcomes are kept as they
-come (`.mutation/drawn-SEED.jsonl`): the same draw again goes on where it was interrupted, and tries survivors against
-tests that have been recorded since. Another source makes another draw of the same seed.
+one fails. A test that takes 20 s of a processor, or a minute by the clock, and 15 times as long as usual has failed: it
+may never end. A line that no test executes survives at once. Tests of `tests/architecture`, which read the source, do
+not count. Outcomes are kept as they come (`.mutation/drawn-SEED.jsonl`): the same draw again goes on where it was
+interrupted, and tries survivors against tests that have been recorded since. Another source makes another draw of the
+same seed.
 """
 
 from __future__ import annotations
@@ -46,6 +47,10 @@ ROUNDS = (15, 120, 10**6)
 BUDGET = 150.0
 #: Seconds of a processor that a test may take besides 15 times its own; what numba compiles anew takes longer.
 PATIENCE, PATIENCE_TO_COMPILE = 20.0, 240.0
+#: Seconds by the clock that it may take so: one that waits for what never comes uses no processor.
+CLOCK = 60.0
+#: What pytest ends with where none of the tests that were asked for exists.
+NO_TESTS = 5
 #: Functions that numba compiles leave no trace: those who call them do.
 COMPILED, CALLERS = "fegear/dynamics/motion/kernel/", "fegear/dynamics/motion/motion.py"
 HEAVY = [
@@ -257,21 +262,31 @@ def passed(tree: Path, names: list[str], seconds: dict[str, float], patience: fl
         scratch = Path(folder)
         if not (child := os.fork()):
             _run_tests(tree, names, seconds, scratch, patience)
-        limit, code = 120.0 + 10.0 * sum(seconds[name] for name in names), None
-        started = time.monotonic()
+        running, code, started = "", None, time.monotonic()
         while code is None:
             done, status = os.waitpid(child, os.WNOHANG)
             code = os.waitstatus_to_exitcode(status) if done else None
             if code is None:
                 time.sleep(0.05)
-            if code is None and time.monotonic() - started > limit * _crowded():
-                os.kill(child, signal.SIGKILL)
+                before, running = running, _told(scratch)
+                started = started if running == before else time.monotonic()
+                limit = max(CLOCK, patience) + 15.0 * seconds.get(running, 4.0)
+                if time.monotonic() - started > limit * _crowded():
+                    os.kill(child, signal.SIGKILL)
         with contextlib.suppress(ProcessLookupError):  # programs that its tests left behind
             os.killpg(child, signal.SIGKILL)
-        told = scratch / "told"
-        if code and not told.exists():
+        last = _told(scratch)
+        code = 0 if code == NO_TESTS else code  # renamed since they were recorded
+        if code > 0 and not last:
             raise RuntimeError(f"no test could run:\n{(scratch / 'out').read_text()}")
-        return "" if not code else told.read_text() + ("" if code == 1 else f" (ended by signal {-code})")
+        return "" if not code else (last or "collecting") + ("" if code == 1 else f" (ended by signal {-code})")
+
+
+def _told(scratch: Path) -> str:
+    """Which test the child runs; nothing while it collects them."""
+    with contextlib.suppress(FileNotFoundError):
+        return (scratch / "told").read_text()
+    return ""
 
 
 def _crowded() -> float:
@@ -302,7 +317,9 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
     outcome, started, spent = Outcome(mutant), time.monotonic(), 0.0
     path = tree / mutant.path
     source = path.read_bytes()
-    os.environ["NUMBA_CACHE_DIR"] = str(tree / (f"numba-{mutant.start}" if "motion" in mutant.path else "numba"))
+    compiled = mutant.path.startswith(COMPILED)
+    machine_code = tree / (f"numba-{mutant.start}" if compiled else "numba")
+    os.environ["NUMBA_CACHE_DIR"] = str(machine_code)
     try:
         _written(path, mutant.applied(source))
         for first, last in zip((0, *ROUNDS), ROUNDS, strict=False):
@@ -311,7 +328,8 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
                 spent += taken[name]
                 part += [name] if spent < budget or not first else []
             if part and not outcome.killer:
-                patience = PATIENCE_TO_COMPILE if "motion" in mutant.path else PATIENCE
+                compiles = compiled or ("motion" in mutant.path and not machine_code.exists())
+                patience = PATIENCE_TO_COMPILE if compiles else PATIENCE
                 outcome.killer = passed(tree, part, taken, patience)
                 outcome.ran += part
     finally:
