@@ -37,7 +37,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-WORK = ROOT / ".mutation"
+WORK = (ROOT / ".mutation").resolve()
 sys.path.insert(0, str(HERE))
 from mutants import Mutant, draw, mutants_of, room_of  # noqa: E402
 
@@ -52,7 +52,13 @@ CLOCK = 60.0
 #: What pytest ends with where none of the tests that were asked for exists.
 NO_TESTS = 5
 #: Functions that numba compiles leave no trace: those who call them do.
-COMPILED, CALLERS = "fegear/dynamics/motion/kernel/", "fegear/dynamics/motion/motion.py"
+CALLERS = {
+    "fegear/dynamics/motion/kernel/": "fegear/dynamics/motion/motion.py",
+    "fegear/contact/many/kernel.py": "fegear/contact/many/many_loaded.py",
+    "fegear/contact/many/over_mesh.py": "fegear/contact/many/many_loaded.py",
+    "fegear/contact/many/over_fillets.py": "fegear/contact/many/many_roots.py",
+}
+COMPILED = tuple(CALLERS)
 HEAVY = [
     *("numpy", "scipy.optimize", "scipy.interpolate", "scipy.sparse.linalg", "scipy.integrate", "scipy.stats"),
     *("pytest", "hypothesis.strategies", "pint", "pydantic", "skfem", "gmsh", "meshio", "typer", "numba"),
@@ -169,7 +175,8 @@ class Record:
         path, tree = mutant.path, ast.parse((ROOT / mutant.path).read_bytes())
         inner, outer = _statements(tree, mutant.line)
         if path.startswith(COMPILED):
-            found = self.executed(CALLERS, _function_lines(CALLERS)) | self.executed(path, _function_lines(path))
+            callers = next(by for start, by in CALLERS.items() if path.startswith(start))
+            found = self.executed(callers, _function_lines(callers)) | self.executed(path, _function_lines(path))
         elif isinstance(outer[-1], ast.FunctionDef):
             known = inner & set(self.contexts(path))  # of a line that is new: the function's
             found = self.executed(path, known or set(range(outer[-1].lineno, outer[-1].end_lineno + 1)))
@@ -298,7 +305,7 @@ def _run_tests(tree: Path, names: list[str], seconds: dict[str, float], scratch:
     """In the child: pytest on a copy of the repository, and the end of the process."""
     import pytest
 
-    os.setsid()
+    os.setpgid(0, 0)  # a group to be ended as one; in the session, whose share of the processor is given
     os.chdir(tree)
     os.environ.update(environment(tree, FEGEAR_CACHE=str(scratch / "cache"), FEGEAR_STATE=str(scratch / "state")))
     sys.path[:] = [str(tree), *(one for one in sys.path if Path(one or ".").resolve() not in (HERE, ROOT))]
@@ -328,7 +335,7 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
                 spent += taken[name]
                 part += [name] if spent < budget or not first else []
             if part and not outcome.killer:
-                compiles = compiled or ("motion" in mutant.path and not machine_code.exists())
+                compiles = compiled or (mutant.path in CALLERS.values() and not machine_code.exists())
                 patience = PATIENCE_TO_COMPILE if compiles else PATIENCE
                 outcome.killer = passed(tree, part, taken, patience)
                 outcome.ran += part

@@ -1,0 +1,168 @@
+"""The functions that numba compiles for arrays of pairs, run as plain Python: each line of them against single pairs.
+
+As machine code they leave no trace, and take ten seconds to compile; a few positions of two pairs take a tenth of one.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.atlas import many as atlas_many
+from fegear.atlas.many import ManySpurPairs, known_pairs
+from fegear.atlas.shipped import shipped_atlas
+from fegear.contact.many import kernel, many_loaded, many_roots, over_fillets, over_mesh
+from fegear.contact.many.arrays import ManyReliefs
+from fegear.contact.plane.base_pitch import roll_positions
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress, with_peaks
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.relief import EndRelief
+
+LOADS = np.array([600.0, 9000.0])
+GEARS = (((17, 0.3), (60, -0.1)), ((24, 0.2), (31, 0.1)))
+M, FACE = 3e-3, 0.02
+RELIEFS = ManyReliefs(np.array([[8e-6, 0.0], [5e-6, 12e-6]]), np.full((2, 2), 0.7), np.array([[1.0, 1.0], [2.0, 1.0]]))
+
+
+@pytest.fixture(autouse=True)
+def plain(monkeypatch):
+    """None of them compiled, whether another test of this process has compiled them or not."""
+    for module in (kernel, over_mesh, over_fillets):
+        for name, function in list(vars(module).items()):
+            if callable(function):
+                monkeypatch.setattr(module, name, getattr(function, "py_func", function))
+    own = {name: function for module in (over_mesh, over_fillets) for name, function in vars(module).items()
+           if inspect.isfunction(function)}  # fmt: skip
+    for module in (many_loaded, many_roots):
+        monkeypatch.setattr(module, "compiled", lambda: own)
+
+
+def _gear(teeth: int, shift: float) -> Gear:
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.38), shift)
+    return Gear(tooth, M, 0.5 * tooth.root_radius * M, face_width=FACE)
+
+
+@pytest.fixture(scope="module")
+def pairs() -> list[GearPair]:
+    return [GearPair(*(_gear(*one) for one in both)) for both in GEARS]
+
+
+@pytest.fixture(scope="module")
+def many(pairs) -> ManySpurPairs:
+    def each(of) -> np.ndarray:
+        return np.array([[of(gear) for gear in members] for members in
+                         zip(*((one.driver, one.driven) for one in pairs), strict=True)], dtype=float)  # fmt: skip
+
+    return ManySpurPairs(
+        each(lambda g: g.teeth), each(lambda g: g.tooth.generating_shift), each(lambda g: g.tip_radius),
+        each(lambda g: g.bore_radius), np.full(2, M), np.array([one.centre_distance for one in pairs]),
+        np.full(2, FACE), each(lambda g: g.material.young_modulus),
+    )  # fmt: skip
+
+
+def _engagement(pair: GearPair, corners: bool, reliefs: ManyReliefs | None, i: int) -> Engagement:
+    atlas = shipped_atlas("A")
+    compliance = PairCompliance(pair, atlas.compliance(pair.driver), atlas.compliance(pair.driven))
+    engagement = Engagement(compliance, corner_contact=corners)
+    if reliefs is None:
+        return engagement
+    found = []
+    for member, gear in enumerate((pair.driver, pair.driven)):
+        low, high = (math.sqrt(r**2 - gear.base_radius**2) / gear.base_radius for r in gear.involute_radii)
+        begins = low + reliefs.start[member, i] * (high - low)
+        found.append(EndRelief(float(reliefs.amount[member, i]), begins, high, float(reliefs.power[member, i])))
+    return replace(engagement, driver_relief=found[0], driven_relief=found[1])
+
+
+@pytest.mark.parametrize(("corners", "reliefs"), [(False, None), (True, RELIEFS)])
+def test_positions_are_those_of_each_pair(pairs, many, corners, reliefs):
+    known = known_pairs(shipped_atlas("A"), many, corner_contact=corners, reliefs=reliefs, root_stress=True)
+    at = np.array([0.0007, 0.3, 0.985])
+    shared = many_loaded.shares_at(known.engagements, LOADS[1], at)
+    histories = many_roots.root_stress_at(known.engagements, known.fillets, LOADS[1], at)
+    for i, pair in enumerate(pairs):
+        one = _engagement(pair, corners, reliefs, i)
+        state = one.solve(one.grid(pair.x_start + pair.base_pitch * at), [LOADS[1]])
+        shares = np.zeros_like(shared.shares[i])
+        shares[:, state.grid.contacts.number - shared.first[i]] = state.shared.shares[:, :, 0].T
+        np.testing.assert_allclose(shared.shares[i], shares, atol=1e-11)
+        np.testing.assert_allclose(shared.transmission_error[i], state.transmission_error[:, 0], rtol=1e-11)
+        for m, member in enumerate(("driver", "driven")):
+            for side, name in enumerate(("tension", "compression")):
+                stress = root_stress_history(one, state, member, name, 1).stress[..., 0]
+                rows = state.grid.contacts.number[0] - 1 - histories.first[i] + np.arange(stress.shape[0])
+                mine = histories.stress[m, i, side][rows]
+                here = np.isfinite(mine)
+                assert here.sum() >= 3 * at.size
+                np.testing.assert_allclose(mine[here], stress[here], atol=1e-11 * np.abs(stress).max(), rtol=0.0)
+
+
+def test_errors_over_the_mesh_are_those_of_each_pair(pairs, many):
+    known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS)
+    found = many_loaded.transmission_errors(known.engagements, LOADS[1:], waves=1, samples=8, order=3)
+    for i, pair in enumerate(pairs):
+        exact = transmission_error(_engagement(pair, True, RELIEFS, i), LOADS[1], 8)
+        assert found.mean[i, 0] == pytest.approx(exact.mean, rel=8e-4)
+        assert abs(found.peak_to_peak[i, 0] - exact.peak_to_peak) < 1e-7 * exact.mean
+    np.testing.assert_allclose(found.largest_share, 1.0, atol=1e-12)
+
+
+def test_largest_root_stresses_are_those_of_a_pair(pairs, many):
+    two = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS, root_stress=True)
+    fillets = replace(two.fillets, length=two.fillets.length * np.array([1.0, np.nan]))
+    found = many_roots.root_stresses(two.engagements, fillets, LOADS[1:], samples=7)
+    one = _engagement(pairs[0], True, RELIEFS, 0)
+    sources = {member: (one.compliance.source(member),) for member in ("driver", "driven")}
+    states = loaded_states(one, (), [LOADS[1]], with_peaks(one, LOADS[1], roll_positions(one, 32), sources))
+    for m, member in enumerate(("driver", "driven")):
+        each = tooth_stress(one, states, member, estimates=False)
+        tension, compression = float(each.largest_tension[0]), float(each.largest_compression[0])
+        assert found.tension[m, 0, 0] == pytest.approx(tension, rel=1e-5)
+        assert found.compression[m, 0, 0] == pytest.approx(compression, rel=1e-5)
+        assert abs(found.tension_range[m, 0, 0] - float(each.tension_range[0])) < 1e-5 * tension
+    assert np.isnan(found.tension[:, 1]).all()
+
+
+def test_pairs_that_are_looked_up_in_parts_stand_in_their_order(many, monkeypatch):
+    """What is asked of each part is recorded: the numbers themselves are those of the tests above."""
+    three = ManySpurPairs(*(np.concatenate([a, a[..., :1]], axis=-1) for a in vars(many).values()))
+    three = replace(three, teeth=np.where(np.arange(3) == 1, 5.0, three.teeth))
+    loads = np.arange(6.0).reshape(3, 2)
+
+    def errors(engagements, given):
+        assert engagements.module.size == len(given) <= 2
+        return many_loaded.ManyErrors(given, given + 10.0, given + 20.0)
+
+    def stresses(engagements, fillets, given):
+        assert fillets.length.shape == (2, len(given))
+        return many_roots.ManyRootStress(*(np.stack([given + k, given - k]) for k in (30.0, 40.0, 50.0)))
+
+    monkeypatch.setattr(atlas_many, "transmission_errors", errors)
+    monkeypatch.setattr(atlas_many, "root_stresses", stresses)
+    atlas = shipped_atlas("A")
+    found = atlas_many.loaded_pairs(atlas, three, loads, at_once=2)
+    assert found.held.tolist() == [True, False, True]
+    for k, part in enumerate(found.transmission_error):
+        np.testing.assert_array_equal(part, loads + 10.0 * k)
+    for k, part in zip((30.0, 40.0, 50.0), found.root_stress, strict=True):
+        np.testing.assert_array_equal(part, np.stack([loads + k, loads - k]))
+    np.testing.assert_array_equal(found.error[:, 0], found.error[:, 2])
+    np.testing.assert_array_equal(found.stress_error[:, 0], found.stress_error[:, 2])
+    assert ((found.error[:, 0] > 0.0) & (found.error[:, 0] < 5e-3)).all()
+    assert found.error.shape == (2, 3)
+    assert found.stress_error.shape == (2, 3, 2)
+    assert atlas_many.loaded_pairs(atlas, three, loads, root_stress=False, at_once=2).root_stress is None
+    for held, name in ((found.error[:, 0], "c_self"), (found.stress_error[:, 0, 0], "tension 0"), (
+        found.stress_error[:, 0, 1], "compression 0")):  # fmt: skip
+        np.testing.assert_allclose(held, [atlas.gear(_gear(*one)).errors[name] for one in GEARS[0]])
