@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Fewest and most points: more are of a measuring machine that should filter them.
 _FEWEST_POINTS, _MOST_POINTS = 4, 5000
+#: Largest scatter [modules]: ten times what a drawing that was scanned has.
+_MOST_SCATTER = 0.1
 #: Finds the file of a name that a case gives under a key.
 FindFile = Callable[[str, str], Path]
 #: Keys by the kinds that they belong to, and what they are for.
@@ -53,8 +55,8 @@ class FilletPart(Part):
     )
     scatter: PositiveLength | None = Field(
         default=None,
-        description="Accuracy of measured or rounded points: the curve is smoothed within this distance. Default: "
-        "curve through all points.",
+        description="Accuracy of measured or rounded points: the curve is smoothed within this distance, at most 0.1 "
+        "modules. Default: curve through all points.",
     )
     form_diameter: PositiveLength | None = Field(
         default=None,
@@ -132,7 +134,13 @@ class FilletPart(Part):
         places = tuple((x / module, y / module) for x, y in points)
         if self.kind == "spline":
             return ControlFillet(places, self.frame == "space")
-        return PointsFillet(places, self.frame == "space", form, (self.scatter or 0.0) / module)
+        scatter = (self.scatter or 0.0) / module
+        if scatter > _MOST_SCATTER:
+            raise InputError(
+                "fillet.scatter", f"{scatter * module * 1e3:.4g} mm", f"must be at most {_MOST_SCATTER:g} modules: the "
+                "curve would not follow the points", "specify how far measured points scatter about the profile",
+            )  # fmt: skip
+        return PointsFillet(places, self.frame == "space", form, scatter)
 
     def on(self, tooth: InvoluteSide, module: float, find: FindFile | None) -> InvoluteSide:
         """A tooth with this fillet; the tooth itself where it is asymmetric, or where the file cannot be looked for.

@@ -232,7 +232,7 @@ def build_scene(
     except ValidationError as error:
         from fegear.case.refusal import refusal  # late: it knows the words of the trade
 
-        raise refusal(error) from None
+        raise refusal(error, document) from None
     case, derived = settled(case)
     gears = {key: part.build(f"gear.{key}", partial(_file, folder, within)) for key, part in case.gear.items()}
     if case.planetary:

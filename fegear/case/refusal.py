@@ -44,12 +44,19 @@ _KINDS = {
 }
 
 
-def refusal(error: ValidationError) -> InputError:
-    """Return the sentence about the first thing that is wrong."""
+def refusal(error: ValidationError, document: Mapping[str, Any] | None = None) -> InputError:
+    """Return the sentence about the first thing that is wrong.
+
+    Parameters
+    ----------
+    error : ValidationError
+    document : mapping, optional
+        What was read; a list of it that stands for a table (`torques`) is named as the user wrote it.
+    """
     found = error.errors(include_url=False)
     # A misspelt key comes first: what is said to be missing is often its right spelling.
     first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
-    told = _sentence(first)
+    told = _sentence(first, document)
     if first["type"] in _KINDS:  # the other things that the value may be, where there are several kinds
         others = [
             one["ctx"]["expected"] for one in found if one["type"] == "literal_error" and _place(one) == _place(first)
@@ -68,10 +75,26 @@ def _place(error: ErrorDetails) -> list[str]:
     return steps
 
 
-def _sentence(error: ErrorDetails) -> InputError:
+def _as_written(loc: list[str], document: Any) -> list[str]:
+    """The same without the key of the list that a list for a table stands for."""
+    for i, step in enumerate(loc):
+        if isinstance(document, list):
+            if step == "values":
+                return loc[:i] + loc[i + 1 :]
+            if not step.isdigit() or int(step) >= len(document):
+                return loc
+            document = document[int(step)]
+        elif isinstance(document, dict):
+            document = document.get(step)
+        else:
+            return loc
+    return loc
+
+
+def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) -> InputError:
     """Turn one of pydantic's errors into fegear's."""
     kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
-    loc = _place(error)
+    loc = _as_written(_place(error), document)
     if kind == "fegear" and context["key"]:
         loc.append(context["key"])
     key = _dotted(loc)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fegear.base.brief import Brief
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.notes import neglecting
+from fegear.case.measurements import unused_measurements
 from fegear.case.nearest import nearest
 from fegear.case.reading import Scene
 from fegear.engine.catalogue import Catalogue, Entry
@@ -166,6 +167,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     # What the description calls for, and no wanted result uses, was not asked for.
     named = idle if scene.case.effects.start == "none" else scene.case.effects.named
     said += [neglecting(_idle(effect, known.entries)) for effect in idle if effect in named]
+    said += unused_measurements(scene.case, {result for step in steps for result in step.stage.results})
     return Plan(steps, skipped, idle, (*scene.renamed, *scene.derived, *said))
 
 

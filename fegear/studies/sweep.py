@@ -20,6 +20,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
+from fegear.base.unit_text import plain_number
 from fegear.case.built.atlas_teeth import SOLVED_AFTER_ALL
 from fegear.case.reading import build_scene, read_document, set_key, typed_value
 from fegear.case.text_file import digest_of_file
@@ -312,7 +313,7 @@ def read_axis(text: str) -> Axis:
     text : str
         ``KEY=START:STOP:COUNT`` for equally spaced values, with ``:log`` behind for values in geometric progression;
         ``KEY=V1,V2,...`` for a list. Quantities carry their unit: ``10 mm:20 mm:6`` or, once for all,
-        ``10:20:6:mm``. Whole numbers stay whole where the spacing allows it.
+        ``10:20:6:mm`` and ``10,15,20:mm``. Whole numbers stay whole where the spacing allows it.
 
     Raises
     ------
@@ -325,9 +326,16 @@ def read_axis(text: str) -> Axis:
     parts = [part.strip() for part in given.split(":")]
     if len(parts) == 1 or given.startswith(("[", '"')):
         return _list(key, given)
+    if len(parts) == 2 and "," in parts[0] and not any(map(_is_number, parts[1].split(","))):
+        return _list(key, ",".join(f"{one.strip()} {parts[1]}" for one in parts[0].split(",")))
     if len(parts) not in (3, 4, 5):
-        raise InputError("--over", f'"{text}"', "must have the form START:STOP:COUNT", _EXAMPLE)
+        rule = "must have the form KEY=START:STOP:COUNT or KEY=V1,V2,..."
+        raise InputError("--over", f'"{text}"', rule, _EXAMPLE)
     return _range(key, parts, text)
+
+
+def _is_number(text: str) -> bool:
+    return plain_number(text) is not None
 
 
 def _range(key: str, parts: list[str], text: str) -> Axis:
@@ -337,7 +345,7 @@ def _range(key: str, parts: list[str], text: str) -> Axis:
     found = {match[2] for match in ends if match and match[2]} | set(units)
     if None in ends or len(found) > 1 or not re.fullmatch("[0-9]{1,9}", parts[2]):
         raise InputError(
-            "--over", f'"{text}"', "must have the form START:STOP:COUNT with one unit for both ends", _EXAMPLE
+            "--over", f'"{text}"', "must have the form KEY=START:STOP:COUNT with one unit for both ends", _EXAMPLE
         )
     start, stop = (float(match[1]) for match in ends if match)
     if not (math.isfinite(start) and math.isfinite(stop)):

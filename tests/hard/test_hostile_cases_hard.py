@@ -159,7 +159,7 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
         ("sources/mark_fig22", "pair.I.root_stress={source=5}", "pair.I.root_stress.source", "quotes or a list"),
         ("sources/mark_fig22", "pair.I.root_stress={source=[]}", "pair.I.root_stress.source", "must not be empty"),
         ("sources/mark_fig22", "dynamics.speed=0 rpm", "dynamics.speed", "greater than zero"),
-        (EXCITED, f"{EXCITATION}.speeds=[]", f"{EXCITATION}.speeds.values", "must not be empty"),
+        (EXCITED, f"{EXCITATION}.speeds=[]", f"{EXCITATION}.speeds", "must not be empty"),
         (EXCITED, f"{EXCITATION}.transmission_error={{}}", f"{EXCITATION}.transmission_error.pair",
             "specify pair, file or amplitude"),
         (

@@ -237,3 +237,14 @@ def test_override_values_are_toml_and_else_text():
     assert document["gear"]["a"]["teeth"] == 30
     assert document["gear"]["a"]["module"] == document["gear"]["b"]["module"] == "2 mm"
     assert document["accuracy"] == {"tolerance": 0.01}
+
+
+def test_a_list_for_a_table_is_named_as_it_was_written():
+    for given, key, rule in (("[]", "torques", "must not be empty"), ('["1 N*m", "1 mm"]', "torques[1]", "is not a"),
+                             ("{values=[]}", "torques.values", "must not be empty")):  # fmt: skip
+        with pytest.raises(InputError, match=rule) as refused:
+            scene_with(f"pair.I.torques={given}")
+        assert refused.value.key == f"pair.I.{key}"
+    with pytest.raises(InputError, match="must not be empty") as refused:
+        scene_with("dynamics.speeds=[]")
+    assert refused.value.key == "dynamics.speeds"

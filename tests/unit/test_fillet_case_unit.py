@@ -93,6 +93,7 @@ def test_points_of_a_file_are_those_of_the_lists(tmp_path):
         (case({**POINTED, "file": "no.csv"}), "contradicts x and y"),
         (case({"kind": "ellipse", "radii": ["1 mm"]}), "gear.p.fillet.radii"),
         (case({"kind": "ellipse", "scatter": "1 um"}), "gear.p.fillet.scatter"),
+        (case({**POINTED, "scatter": "0.5 mm"}), "gear.p.fillet.scatter = 0.5 mm: must be at most 0.2 mm"),
         (case({"kind": "arcs", "radii": ["1 mm", "0.5 mm"]}), "gear.p.fillet.form_diameter"),
         (case({"kind": "arcs", "radii": ["1 mm"], "form_diameter": "40 mm"}), "contradicts a single radius"),
         (case({"kind": "ellipse", "form_diameter": "30 mm"}), "base radius of 19.7335 mm"),

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.tooth_influence import seconds_of_gear
+from fegear.case.measurements import unused_measurements
 from fegear.case.reading import build_scene
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.outcome import Outcome
@@ -97,6 +99,17 @@ def test_effects_are_assigned_to_the_steps_that_use_them():
     plan = make_plan(scene("teeth", effects={"relief": True, "friction": True}), Workshop().stages)
     assert {step.task: step.effects for step in plan.steps}[Task("tooth", "a")] == ("relief",)
     assert plan.idle_effects == ("friction",)
+
+
+def test_measurements_that_nothing_is_compared_with_are_named():
+    gauge, encoders = {"g": {"gear": "a"}}, {"e": {"traces": [{"file": "none.csv"}]}}
+    dynamics = {"measured_frequencies": ["100 Hz"]}
+    found = make_plan(scene("teeth", gauge=gauge, encoders=encoders, dynamics=dynamics), Workshop().stages).remarks
+    unused = [one for one in found if "is not used by the requested results" in one]
+    assert [one.partition(" ")[0] for one in unused] == ["gauge.g", "encoders.e", "dynamics.measured_frequencies"]
+    assert all(class_of(one) is NoteClass.NEGLECTED for one in unused)
+    assert 'request "measured-transmission-error", or remove it.' in unused[1]
+    assert list(unused_measurements(scene("teeth", gauge=gauge).case, {"dynamic-strain"})) == []
 
 
 def test_unknown_results_show_the_nearest():

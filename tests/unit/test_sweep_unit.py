@@ -87,6 +87,7 @@ def fegear(*arguments: object, cwd, cache, points_here: bool = False):
         ("k=3:3:1", (3,), ""),
         ("k=0.1,0.25", (0.1, 0.25), ""),
         ("k=1 mm,2 mm", ("1 mm", "2 mm"), "mm"),
+        ("k=0.001,100:N*m", ("0.001 N*m", "100 N*m"), "N*m"),
         ('k="ISO 53 A","ISO 53 B"', ("ISO 53 A", "ISO 53 B"), ""),
         ("k=fe,cornell", ("fe", "cornell"), ""),
         ("k=[true, false]", (True, False), ""),
@@ -101,7 +102,7 @@ def test_axes_are_read_as_a_user_means_them(text, values, unit):
 @pytest.mark.parametrize(
     "text",
     ["k", "k=", "=1:2:3", "k=1:2", "k=1:2:0", "k=1:2:x", "k=a:b:3", "k=1 mm:2 cm:3", "k=1:2:1", "k=0:1:3:log",
-     "k=1,1", "k=[1, nan]", "k=1:2:3:4:5:6", "k=1:2:10000000"],
+     "k=1,1", "k=[1, nan]", "k=1:2:3:4:5:6", "k=1:2:10000000", "k=1,2:3,4"],
 )  # fmt: skip
 def test_axes_that_mean_nothing_are_refused(text):
     with pytest.raises(InputError, match="--over"):
