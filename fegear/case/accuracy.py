@@ -29,7 +29,7 @@ class _Tolerance(Part):
     source: Literal["solve", "atlas", "auto"] = Field(
         default="solve",
         description="Teeth of plane (2D) pairs: `solve` by finite elements, `atlas` interpolated from shipped "
-        "solutions (ISO 53 A to C, 12 to 400 teeth), `auto` from the atlas where its error is within the tolerance. "
+        "solutions (ISO 53 A to D, 12 to 400 teeth), `auto` from the atlas where its error is within the tolerance. "
         "Sweeps over gears: `auto` unless given.",
     )
 

@@ -46,8 +46,10 @@ def test_it_states_its_errors_and_is_found_by_gear():
     for rack in RACKS:
         for domain in domains_of(family_of(rack)):
             domain.check(family_of(rack))
+    deep = Tooth(31, BasicRack(1.0, 1.4, 0.39), 0.1)
+    assert atlas_of(Gear(deep, 3e-3, 1.5e-3 * deep.root_radius)) is shipped_atlas("D")
     with pytest.raises(InputError, match=r"python -m fegear\.atlas"):
-        shipped_atlas("D")
+        shipped_atlas("E")
     with pytest.raises(InputError, match="must be one of A, B, C, D"):
         family_of("E")
     assert main(["E"]) == 2
