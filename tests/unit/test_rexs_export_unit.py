@@ -140,7 +140,8 @@ def test_a_gear_that_drives_its_like_becomes_two():
 @pytest.mark.dear
 def test_the_command_writes_results_of_a_run(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    Path("box.toml").write_text(case_of(model_of(in_json(two_stages()), HERE)), "utf-8")
+    box = case_of(model_of(in_json(two_stages()), HERE))
+    Path("box.toml").write_text(box.replace('width = "solid"', 'width = "slices"'), "utf-8")
 
     def say(*arguments):
         monkeypatch.setattr(sys, "argv", ["fegear", *arguments])
