@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from fegear.case.part import LengthOrZero, Part, PositiveLength
+from fegear.case.part import LengthOrZero, Part, PositiveLength, refuse
 
 
 class FilletDesignPart(Part):
@@ -27,9 +27,23 @@ class FilletDesignPart(Part):
     minimum_radius: PositiveLength | None = Field(
         default=None, description="Minimum radius of curvature of the fillet. Default: 0.1 modules."
     )
+    generated: bool = Field(
+        default=False,
+        description="Only fillets that a rack (hob, rack-type cutter) generates; false: any, as for powder metal, "
+        "moulded and wire-cut gears.",
+    )
+    minimum_tool_radius: PositiveLength | None = Field(
+        default=None, description="Minimum radius of curvature of that rack's tip. Default: 0.1 modules."
+    )
     waves: Annotated[int, Field(ge=1, le=12)] = Field(
         default=7, description="Number of waves by which the fillet may differ from an ellipse."
     )
     searches: Annotated[int, Field(ge=1, le=3)] = Field(
         default=3, description="Number of searches; the second (other start) and third (other curves) verify the first."
     )
+
+    @model_validator(mode="after")
+    def _tool(self) -> Self:
+        if self.minimum_tool_radius is not None and not self.generated:
+            raise refuse("requires a generated fillet", "set generated = true", key="minimum_tool_radius")
+        return self

@@ -29,7 +29,7 @@ WORDS = frozenset({
     "spectrum_factors", "speeds", "spread", "stress", "stress_histogram", "stress_history", "stress_over_face",
     "stress_ratios", "stress_spread", "stress_study", "stress_teeth", "study", "summary", "surface",
     "surface_over_face", "te", "te_harmonics", "te_orders", "te_summary", "teeth", "tooth", "tooth_response",
-    "tooth_stiffness", "tooth_vibration", "topography", "trade_off", "unequal", "vibration", "waterfall",
+    "tool", "tooth_stiffness", "tooth_vibration", "topography", "trade_off", "unequal", "vibration", "waterfall",
 })  # fmt: skip
 
 

@@ -17,6 +17,8 @@ from fegear.design.fillet.fillet_limits import Limits
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.geometry.fillet_shapes import EllipseOnSpace
+from fegear.geometry.shaped_tooth import with_fillet
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.fillet_design_data import FilletDesignInputs
 from fegear.results.pair.fillet_design_sheet import FILLET_DESIGN_SHEET
@@ -116,6 +118,40 @@ def test_an_applied_fillet_has_the_stress_that_its_design_promises(outcome, cach
     assert found == pytest.approx(value(outcome, "root_stress_optimum").si, rel=3e-3)
 
 
+@pytest.mark.dear
+def test_a_generated_fillet_comes_with_its_tool(outcome, cache):
+    """With the designed tip ground on the rack; without `generated`, fillets may be that no rack makes."""
+    document = changed("fillet_design.generated", True)
+    scene, plan = plan_of(document)
+    found = run_plan(scene, plan, cache=cache).outcomes[Task("fillet-design", "I")]
+    assert found.data.design.kept
+    free, hobbed = (value(one, "root_stress_optimum").si for one in (outcome, found))
+    assert free * (1.0 - 1e-3) < hobbed < value(found, "root_stress_full_rounded").si
+    tip = table(found, "fillet_tool_I_b")
+    assert (tip["half_width"][0], tip["height"][0]) == (pytest.approx(0.0, abs=1e-6), pytest.approx(1.25 * 3.0))
+    assert np.all(np.diff(tip["half_width"]) > 0.0)
+    assert np.all(np.diff(tip["height"]) < 0.0)
+    flank = 0.25 * math.pi * 3.0 - tip["height"][-1] * math.tan(math.radians(20.0))
+    assert tip["half_width"][-1] == pytest.approx(flank, abs=1e-4)
+    assert value(found, "minimum_tool_radius").si >= 0.0999 * 3e-3
+    assert "a rack (hob) generates it" in found.answer.sentences[-1]
+    assert len(found.figures[0].panels) == 3
+
+
+@pytest.mark.dear
+def test_a_fillet_that_no_rack_makes_says_so(outcome):
+    bad = with_fillet(outcome.data.design.present.tooth, EllipseOnSpace(form_radius=1.001 * base(outcome)))
+    found = presented(outcome, best=replace(outcome.data.design.best, tooth=bad))
+    assert any("set fillet_design.generated = true" in note for note in found.remarks)
+    assert not any(one.name.startswith("fillet_tool") for one in found.tables)
+    assert not any(one.name.endswith("minimum_tool_radius") for one in found.values)
+
+
+def base(outcome):
+    """Base radius of the gear that gets the fillet [modules]."""
+    return outcome.data.design.present.tooth.base_radius
+
+
 def presented(outcome, inputs=None, **changes):
     """The same with another design."""
     data = replace(outcome.data, design=replace(outcome.data.design, **changes))
@@ -162,6 +198,8 @@ def test_alternating_is_said(outcome):
         ("fillet_design.searches", 4, "fillet_design.searches"),
         ("fillet_design.clearance", "-1 um", "fillet_design.clearance"),
         ("fillet_design.minimum_radius", "0 mm", "fillet_design.minimum_radius"),
+        ("fillet_design.minimum_tool_radius", "0.5 mm", "fillet_design.minimum_tool_radius"),
+        ("fillet_design.generated", "yes", "fillet_design.generated"),
         ("pair.I.width", "slices", "pair.I.width"),
         ("pair.I.compliance", {"source": "cornell"}, "pair.I.compliance.source"),
         ("gear.c", {"teeth": 20, **GEAR}, ""),

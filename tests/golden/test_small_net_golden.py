@@ -261,6 +261,7 @@ def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
 #: Cases that no cheap run takes, with what makes them as cheap as they get.
 FURTHER = {
     "calculix_pair": {"accuracy.tolerance": 0.1},
+    "fillet_design": {"accuracy.tolerance": 0.1, "fillet_design.searches": 1},
     "four_square_fe": {"accuracy.tolerance": 0.1},
     "helical_load": small_net.ROUGH,
     "helical_pair": small_net.ROUGH,

@@ -122,6 +122,9 @@ ROWS = {
     "FilletDesignPart.gear": (FILLET, "fillet_design.gear", "a"),
     "FilletDesignPart.clearance": (FILLET, "fillet_design.clearance", f"{0.02 * 3.0!r} mm"),
     "FilletDesignPart.minimum_radius": (FILLET, "fillet_design.minimum_radius", f"{0.1 * 3.0!r} mm"),
+    "FilletDesignPart.minimum_tool_radius": (
+        joined(FILLET, {"fillet_design": {"generated": True}}), "fillet_design.minimum_tool_radius",
+        f"{0.1 * 3.0!r} mm"),
     "FilletPart.form_diameter": (
         ELLIPSE, "gear.a.fillet.form_diameter", lambda s: metres(2.0 * s.gears["a"].form_radius)),
     "FilletPart.root_diameter": (

@@ -23,6 +23,7 @@ from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.fillet_shapes import FilletShape, FlankAbove
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
@@ -158,7 +159,10 @@ class FilletBench:
         return np.concatenate(found)
 
     def room(self, tooth: InvoluteTooth) -> Array:
-        """What is left of the clearance [modules] and of the smallest radius (relative), (2 P,); negative: broken."""
+        """What is left of the clearance [modules] and of the smallest radius (relative), (2 P,); negative: broken.
+
+        With `Limits.generated` also what is left of the tool's outline, relative, (P,).
+        """
         fillet = tooth.fillet
         u = np.linspace(fillet.start, fillet.end, _LOOKED_AT)
         x, y = fillet.points(u)
@@ -166,7 +170,8 @@ class FilletBench:
         share = (radius[-1] - radius) / (radius[-1] - radius[0])
         gap = (np.interp(radius, *self.corner, left=polar[0] + 1.0) - polar) * radius - self.limits.clearance * share
         sharp = 1.0 - self.limits.smallest_radius * np.abs(fillet.curvatures(u))
-        return np.concatenate([np.minimum(gap[:-1], 1.0), sharp])
+        made = [conjugate_rack(tooth).room(self.limits.smallest_tool_radius)] if self.limits.generated else []
+        return np.concatenate([np.minimum(gap[:-1], 1.0), sharp, *made])
 
 
 def mating_corner(e: Engagement, member: Member) -> tuple[Array, Array]:

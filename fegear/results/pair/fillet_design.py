@@ -81,6 +81,8 @@ def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
     limits = Limits(
         usual.clearance if part.clearance is None else part.clearance / module,
         usual.smallest_radius if part.minimum_radius is None else part.minimum_radius / module,
+        part.generated,
+        usual.smallest_tool_radius if part.minimum_tool_radius is None else part.minimum_tool_radius / module,
     )
     return FilletDesignInputs(
         part.objective, limits, part.waves, part.searches, member, gears["driver"] == gears["driven"],

@@ -13,6 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.design.fillet.fillet_limits import Limits
+from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.pair import GearPair, Member
 
 if TYPE_CHECKING:
@@ -85,6 +86,24 @@ class FilletPoints:
 
 
 @dataclass(frozen=True)
+class ToolTip:
+    """Half a tooth of the rack that generates a fillet, from the middle of its tip; arrays of shape (N,).
+
+    Parameters
+    ----------
+    role : str
+        Of its curve: that of the fillet.
+    """
+
+    role: str
+    half_width: Array = shown("mm", "distance from the centre line of the tool's tooth")
+    height: Array = shown(
+        "mm", "height above the tool's reference line, where its tooth is half a pitch wide",
+        label="height above the reference line",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
 class StressedFillet:
     """One fillet and the stress along it; arrays of shape (S,).
 
@@ -147,9 +166,27 @@ class FilletShown:
     @cached_property
     def fillets(self) -> list[StressedFillet]:
         """Present, that of a rack with a full radius where there is one, and the designed one."""
+        return [self._stressed(one) for one in self._rows]
+
+    @property
+    def _rows(self) -> list[Stressed]:
         design = self.design
-        rows = (design.present, design.full, design.best)
-        return [self._stressed(one) for one in rows if one is not None]
+        return [one for one in (design.present, design.full, design.best) if one is not None]
+
+    @cached_property
+    def tools(self) -> list[ToolTip]:
+        """Tips of the racks that generate these fillets, of those that one generates."""
+        found = [(one, conjugate_rack(one.tooth)) for one in self._rows]
+        return [
+            ToolTip(_ROLES[one.name], tip.half_width * self.module, tip.height * self.module)
+            for one, tip in found
+            if tip.exists
+        ]
+
+    @property
+    def tool(self) -> ToolTip | None:
+        """Of the designed fillet; None where no rack generates it."""
+        return self.tools[-1] if self.design.tool.exists else None
 
     @property
     def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -223,6 +260,13 @@ class FilletShown:
         fillet = self.design.best.tooth.fillet
         curvature = np.abs(fillet.curvatures(np.linspace(fillet.start, fillet.end, _MEASURED)))
         return float(self.module / curvature.max())
+
+    @property
+    @shows("mm", "minimum radius of curvature of the tip of the rack that generates the designed fillet")
+    def minimum_tool_radius(self) -> float | None:
+        """None where no rack generates it."""
+        tool = self.design.tool
+        return self.module * tool.smallest_radius if tool.exists else None
 
     @property
     @shows("mm", "root form diameter, where the designed fillet ends")

@@ -60,6 +60,11 @@ def _answer(seen: Seen) -> Iterator[str]:
             f"{subject}: {len(design.found)} searches {agree} {percent(shown.spread_of_searches)}; a fillet {off} off "
             f"at half its length has {_loss(shown)}."
         )
+    if (radius := shown.minimum_tool_radius) is not None:
+        yield (
+            f"{subject}: a rack (hob) generates it; its tip, table fillet_tool_{seen.name}_{seen.asked.gear}, has a "
+            f"radius of at least {figures(1e3 * radius, 3)} mm."
+        )
 
 
 def _difference(_seen: Seen) -> bool:
@@ -93,6 +98,11 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
             f"{subject}: the searches differ by {percent(shown.spread_of_searches)}, so that the minimum is not "
             "verified; increase fillet_design.waves."
         )
+    if shown.tool is None:
+        yield (
+            f"{subject}: no rack generates the designed fillet exactly (its tip would turn back near the flank); set "
+            "fillet_design.generated = true for the best fillet of a hob."
+        )
     if design.full is None:
         yield f"{subject}: comparison with a rack of full tip radius omitted (no such rack for this gear)."
     yield (
@@ -113,7 +123,8 @@ def _up(seen: Seen) -> Axis:
 def _caption(seen: Seen) -> str:
     return (
         f"Pair {seen.name}, gear {seen.asked.gear}: half a tooth from the middle of the tooth space (right) up the "
-        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh."
+        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh; half the tip of "
+        "each rack that generates one, in the colour of its fillet."
     )
 
 
@@ -126,6 +137,10 @@ FILLET_DESIGN_SHEET = Sheet(
         Rows(
             "designed_fillet_{name}_{asked.gear}", "Designed fillet of gear {asked.gear} in pair {name}",
             ("x", "y"), of="points",
+        ),
+        Rows(
+            "fillet_tool_{name}_{asked.gear}", "Tool tip for the designed fillet of gear {asked.gear} in pair {name}",
+            ("half_width", "height"), of="tool",
         ),
         Rows(
             "fillet_stress_{name}_{asked.gear}", "Root stress along fillets of gear {asked.gear} in pair {name}",
@@ -143,6 +158,7 @@ FILLET_DESIGN_SHEET = Sheet(
         Number("increase_if_deeper", owner=_OWNER),
         Number("increase_if_higher", owner=_OWNER),
         Number("minimum_radius", exact, owner=_OWNER),
+        Number("minimum_tool_radius", exact, owner=_OWNER),
         Number("form_diameter", exact, owner=_OWNER),
     ),
     figures=(
@@ -157,8 +173,13 @@ FILLET_DESIGN_SHEET = Sheet(
                     "arc", (Line("stress", each=_FILLETS, look=_PLAIN),), "stress", options={"zero": True},
                     title="Stress", panel={"height": 1.3},
                 ),
+                Over(
+                    "half_width",
+                    (Line("height", x="half_width", each=Family("tools", "", "{one.role}"), look=_PLAIN),),
+                    "height", title="Tool", panel={"height": 1.3, "equal": True}, of="tools", when="tools",
+                ),
             ),
-            of="fillets", columns=2, under=lambda seen: f"{seen.data.data.load:.5g} N",
+            of="fillets", columns=3, under=lambda seen: f"{seen.data.data.load:.5g} N",
         ),
     ),
     answer=Answer(_answer, figure="fillet_design_{name}"),
