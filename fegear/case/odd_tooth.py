@@ -1,4 +1,4 @@
-"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, with pits."""
+"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, pitted, ground."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.case.part import Angle, Length, LengthOrZero, Part, PositiveLength, PositiveNumber, Table, refuse
-from fegear.case.relief import several
+from fegear.case.relief import ReliefPart, ReliefTablePart, several
 
 #: Keys that say where a crack starts, and that say where it ends.
 STARTS = ("tangent_angle", "arc", "radius", "diameter")
@@ -143,23 +143,39 @@ class OddToothPart(Part):
     pits: Annotated[list[Table[PitPart]], several(PitPart)] = Field(
         default_factory=list, description="Pits or spalls of the loaded flank, a table for each."
     )
+    relief: Table[ReliefPart] | None = Field(
+        default=None,
+        description="Profile modification of the loaded flank of this tooth in place of that of the gear; active with "
+        "the effect `relief`.",
+    )
+    deviation: Annotated[list[Table[ReliefTablePart]], several(ReliefTablePart)] = Field(
+        default_factory=list,
+        description="Profile deviation of the loaded flank of this tooth, for example measured, in addition to the "
+        "modification; active with the effect `relief`.",
+    )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         outlines = [key for key in OUTLINES if getattr(self, key)]
-        if self.crack is None and not outlines and not self.pits:
+        if self.crack is None and not outlines and not self.pits and not self.profiled:
             raise refuse(
-                "is required, or missing, broken_at, tip_diameter or pits", 'set crack = { depth = "0.5 mm" }',
-                key="crack",
+                "is required, or missing, broken_at, tip_diameter, pits, relief or deviation",
+                'set crack = { depth = "0.5 mm" }', key="crack",
             )  # fmt: skip
         if len(outlines) > 1:
             raise refuse(f"contradicts {outlines[0]}", f"specify one of {', '.join(OUTLINES)}", key=outlines[1])
         if self.crack is not None and outlines:
             key, value = outlines[0], "true" if self.missing else None
             raise refuse("is not available for a cracked tooth", "remove it, or remove crack", key=key, value=value)
-        if self.missing and self.pits:
-            raise refuse("contradicts missing", "remove it: there is no flank", key="pits")
+        for key in ("pits", "relief", "deviation"):
+            if self.missing and getattr(self, key):
+                raise refuse("contradicts missing", "remove it: there is no flank", key=key)
         return self
+
+    @property
+    def profiled(self) -> bool:
+        """Whether its profile is another one."""
+        return self.relief is not None or bool(self.deviation)
 
     @property
     def reshaped(self) -> bool:

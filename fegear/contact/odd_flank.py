@@ -1,13 +1,20 @@
-"""Flanks of single teeth that differ from the others: none at all, a lower tip, pits and spalls."""
+"""Flanks of single teeth that differ from the others: none at all, a lower tip, pits and spalls, another profile."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.errors import InputError
+from fegear.geometry.relief import UNMODIFIED, Relief
+
+if TYPE_CHECKING:
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.relief_spec import ReliefSpec
 
 
 @dataclass(frozen=True)
@@ -45,11 +52,31 @@ class OddFlank:
     tip_radius : float
         Where it ends [m]; NaN for the gear's tip circle.
     pits : tuple of Pit
+    relief : Relief, optional
+        Its profile modification in place of that of the gear.
+    deviation : Relief
+        Its profile deviation beside either.
     """
 
     missing: bool = False
     tip_radius: float = math.nan
     pits: tuple[Pit, ...] = ()
+    relief: Relief | None = None
+    deviation: Relief = UNMODIFIED
+
+    @property
+    def profiled(self) -> bool:
+        """Whether its profile is another one."""
+        return self.relief is not None or self.deviation != UNMODIFIED
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Roll angles at which its own profile has kinks [rad]."""
+        return (*(() if self.relief is None else self.relief.kinks), *self.deviation.kinks)
+
+    def as_the_others(self) -> OddFlank:
+        """The same with the gear's profile."""
+        return replace(self, relief=None, deviation=UNMODIFIED)
 
     def gap(self, radius: Array) -> Array:
         """What pits over the whole face take off the flank at radii [m]."""
@@ -60,3 +87,46 @@ class OddFlank:
         """Share of the face width that is left at radii."""
         part = (np.where(pit.at(radius), 1.0 - pit.face_share, 1.0) for pit in self.pits if pit.face_share < 1.0)
         return np.min([np.ones(radius.shape), *part], axis=0)
+
+
+@dataclass(frozen=True)
+class ToothProfile:
+    """The profile of one tooth as drawn or measured, which becomes curves in a pair.
+
+    Parameters
+    ----------
+    relief : ReliefSpec, optional
+        In place of that of the gear.
+    deviation : ReliefSpec, optional
+        Beside either.
+    prefix : str
+        Of keys in messages.
+    """
+
+    relief: ReliefSpec | None = None
+    deviation: ReliefSpec | None = None
+    prefix: str = ""
+
+    @property
+    def wants_delta(self) -> bool:
+        """Whether an amount is given in Welbourn's Delta."""
+        return self.relief is not None and self.relief.wants_delta
+
+    def built_on(self, flank: OddFlank, pair: GearPair, member: Member, delta: float = math.nan) -> OddFlank:
+        """A flank with this profile, of a gear of a pair; `delta` is Welbourn's [m].
+
+        Raises
+        ------
+        InputError
+            If it does not fit the gear.
+        """
+        found = []
+        for key, spec in (("relief", self.relief), ("deviation", self.deviation)):
+            try:
+                found.append(None if spec is None else spec.built(pair, member, delta))
+            except InputError as error:
+                inside, point, rest = error.key.partition(".")
+                named = key + point + rest if inside == "relief" else error.key
+                raise error.under(self.prefix, {error.key: named}) from None
+        relief, deviation = found
+        return replace(flank, relief=relief, deviation=UNMODIFIED if deviation is None else deviation)

@@ -23,7 +23,7 @@ from fegear.geometry.relief import CombinedRelief, Relief
 from fegear.geometry.relief_spec import BiasSpec, ReliefSpec
 
 if TYPE_CHECKING:
-    from fegear.contact.odd_flank import OddFlank
+    from fegear.contact.odd_flank import OddFlank, ToothProfile
     from fegear.contact.wide.shaft_gaps import ShaftGaps
     from fegear.contact.wide_spec import WideSpec
 
@@ -59,6 +59,8 @@ class FlankSpec:
         Twist, for teeth with a width.
     odd : tuple of (int, OddFlank)
         Flanks that differ from the others, by the number of the tooth in the order of meshing, for plane teeth.
+    profiles : tuple of (int, ToothProfile)
+        Profile modifications and deviations of single teeth likewise.
     gear : str
         Name of the gear, for messages.
     key : str
@@ -74,6 +76,7 @@ class FlankSpec:
     face: tuple[FlankModification, ...] = ()
     bias: BiasSpec | None = None
     odd: tuple[tuple[int, OddFlank], ...] = ()
+    profiles: tuple[tuple[int, ToothProfile], ...] = ()
     gear: str = field(default="", compare=False)
     key: str = field(default="relief", compare=False)
     measured: bool = field(default=False, compare=False)
@@ -82,7 +85,8 @@ class FlankSpec:
     @property
     def wants_delta(self) -> bool:
         """Whether the relief's amount is given in Welbourn's Delta."""
-        return self.relief is not None and self.relief.wants_delta
+        own = (profile.wants_delta for _, profile in self.profiles)
+        return (self.relief is not None and self.relief.wants_delta) or any(own)
 
     @property
     def over_face(self) -> bool:
@@ -293,7 +297,8 @@ class PairSpec(ToothEffects, RootEffects, FaceEffects):
 
     def has_data(self, effect: str) -> bool:
         """Whether there is anything that an effect could count."""
-        modified = any(flank.relief or flank.over_face for flank in self.both) or bool(self.wide and self.wide.cutter)
+        own = any(flank.relief or flank.over_face or flank.profiles for flank in self.both)
+        modified = own or bool(self.wide and self.wide.cutter)
         in_delta = self.wide is not None and any(flank.wants_delta for flank in self.both)  # of plane teeth only
         given = {
             RELIEF.name: modified and not in_delta,

@@ -2,6 +2,7 @@
 
 import functools
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,13 +12,16 @@ import fegear
 from fegear.base.errors import InputError
 from fegear.case.built.odd_teeth import odd_teeth_of
 from fegear.case.reading import read_scene
+from fegear.contact.odd_flank import OddFlank
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.output.fmu import mesh_models
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.loaded_pair import ODD_PAIR, _odd_remarks
 
 CASE = Path(__file__).parents[2] / "cases" / "cracked_tooth.toml"
 COARSE = ("accuracy.tolerance=2e-2", "neglected=false")
+RELIEVED = ("gear.wheel.relief={ crowning = { amount = '1 um' } }", "effects.relief=true")
 REVOLUTION = 'results=["mesh-stiffness-revolution"]'
 
 
@@ -168,6 +172,24 @@ def planned(*changes):
             "missing = true, pits = [{ diameter = ['50 mm', '51 mm'], depth = '1 mm' }]",
             "pits = .*: contradicts missing",
         ),
+        (
+            "missing = true, deviation = [{ radii = ['25 mm', '27 mm'], removals = ['0 um', '1 um'] }]",
+            "contradicts miss",
+        ),
+        ("missing = true, relief = { crowning = { amount = '1 um' } }", "relief = .*: contradicts missing"),
+        (
+            "deviation = [{ radii = ['25 mm', '27 mm'], removals = ['0 um', '1 um', '2 um'] }]",
+            "removals = .*has 3 entries for 2 places",
+        ),
+        ("deviation = [{ file = 'none.csv' }]", r"odd_tooth\[0\]\.deviation\[0\]\.file"),
+        (
+            "relief = { tip = { amount = '20 um', start_radius = '29 mm' } }",
+            r"odd_tooth\[0\]\.relief",
+        ),
+        (
+            "deviation = [{ radii = ['25 mm', '27 mm'], removals = ['0 mm', '9 mm'] }]",
+            r"odd_tooth\[0\]\.deviation = 9000 um .*times the maximum",
+        ),
         ("tip_diameter = '55 mm'", r"tip_diameter = 55 mm: must be between .* and 54 mm, the tip diameter"),
         ("tip_diameter = '46 mm'", r"tip_diameter = 46 mm: must be between"),
         ("broken_at = '40 mm'", r"broken_at = 40 mm: must be between 45 and 54 mm"),
@@ -181,7 +203,7 @@ def planned(*changes):
 )
 def test_what_is_no_crack_is_refused_in_a_sentence(change, said):
     with pytest.raises(InputError, match=said) as refused:
-        planned(REVOLUTION, "gear.pinion.odd_tooth=[{ " + change + " }]")
+        planned(REVOLUTION, *RELIEVED, "gear.pinion.odd_tooth=[{ " + change + " }]")
     assert "\n" not in str(refused.value)
     assert "modules" not in str(refused.value)
 
@@ -239,6 +261,35 @@ def test_outlines_and_pits_of_a_case():
     assert sorted(found.by_number(25)) == [22, 23, 24]  # pits change no body
 
 
+def test_profiles_of_a_case(tmp_path):
+    """By lists and by a file, in place of the gear's and beside it; not where the effect or the flank is another."""
+    (tmp_path / "tooth.csv").write_text("radius [mm],relief [um]\n25,0\n26,3\n27,9\n")
+    relief = "tooth = 2, relief = { tip = { amount = '20 um', start_radius = '25.5 mm' } }"
+    deviation = f"tooth = 5, deviation = [{{ file = '{tmp_path / 'tooth.csv'}' }}, {{ radii = ['24 mm', '27 mm'], "
+    deviation += "removals = ['1 um', '1 um'] }]"
+    changes = (f"gear.pinion.odd_tooth=[{{ {relief} }}, {{ {deviation} }}]", "effects.relief=true", REVOLUTION)
+    scene = read_scene(CASE, (*COARSE, *changes))
+    make_plan(scene, STAGES)
+    found = odd_teeth_of(scene, "pinion")
+    assert found.described == "teeth 2, 5 with another profile"
+    assert found.numbers == (2, 5)
+    assert found.by_number(25) == {}  # profiles change no body
+    profiles = dict(found.profiles)
+    assert profiles[2].relief.tip[0].amount == pytest.approx(20e-6)
+    flank = profiles[5].built_on(OddFlank(), scene.pairs["I"], "driver")
+    roll = np.sqrt((26.5e-3 / scene.gears["pinion"].base_radius) ** 2 - 1.0)
+    assert float(flank.deviation.removal(roll)) == pytest.approx(1e-6 + 6e-6, rel=0.05)
+    assert found.on_other_flank().profiles == ()
+    (said,) = odd_remarks(read_scene(CASE, (*COARSE, changes[0], REVOLUTION)))
+    assert "profiles of single teeth ignored because effects.relief is off" in said
+
+
+def odd_remarks(scene):
+    """What the pair with odd teeth says of its inputs."""
+    seen = SimpleNamespace(asked=ODD_PAIR.inputs(scene, "I"))
+    return [str(sentence) for sentence in _odd_remarks(seen)]
+
+
 @pytest.mark.dear
 def test_a_missing_tooth_and_a_pit_in_a_case():
     """Of driver and driven gear; the missing one as of a prototype: 9.5 to 67.8 um."""
@@ -249,16 +300,16 @@ def test_a_missing_tooth_and_a_pit_in_a_case():
     load, tooth = (column(gone, "tooth_loads_revolution_I", name) for name in ("load", "driver_tooth"))
     assert 4 not in tooth[load > 0.0]
     assert "tooth 4 missing (driver)" in " ".join(gone.answer.sentences)
-    pit = "pits = [{ diameter = ['49 mm', '51 mm'], face_share = 0.4 }]"
-    pitted = run(
-        REVOLUTION,
-        "gear.pinion.odd_tooth=[]",
-        f"gear.wheel.odd_tooth=[{{ tooth = 7, {pit.replace('49', '59').replace('51', '61')} }}]",
-    )
+    pit = "pits = [{ diameter = ['59 mm', '61 mm'], face_share = 0.4 }]"
+    tip = "relief = { tip = { amount = '6 um', start_radius = '31 mm' } }"
+    both = f"gear.wheel.odd_tooth=[{{ tooth = 7, {pit} }}, {{ tooth = 20, {tip} }}]"
+    pitted = run(REVOLUTION, "gear.pinion.odd_tooth=[]", both, "effects.relief=true")
     residual = np.abs(pitches(pitted, "te_residual")).max(axis=1)
-    assert np.argmax(residual) == 7
+    assert set(np.flatnonzero(residual > 1e-12)) <= {6, 7, 8, 9, 19, 20, 21, 22}
     assert 0.05e-6 < residual[7] < 2e-6
-    assert residual[12] < 1e-12
+    assert np.argmax(residual[15:]) == 5  # on pair 0 of its own base pitch
+    assert 0.5e-6 < residual[20] < 6e-6
+    assert "tooth 7 pitted, tooth 20 with another profile (driven)" in " ".join(pitted.answer.sentences)
 
 
 @pytest.mark.dear

@@ -1,16 +1,18 @@
-"""Pairs with a missing tooth, a lower tip or pits on one tooth: laws of contact, and what nothing changes."""
+"""Pairs with one tooth missing, lower, pitted or ground otherwise: laws of contact, and what nothing changes."""
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.contact.load import load
-from fegear.contact.odd_flank import OddFlank, Pit
+from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
 from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
@@ -25,6 +27,8 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.relief import TabulatedRelief
+from fegear.geometry.relief_spec import ReliefSpec, TipReliefSpec
 
 
 def gear(teeth):
@@ -228,3 +232,143 @@ def test_solved_shorter_and_missing_teeth_are_kept_on_disk(tmp_path):
 def test_tips_that_no_tooth_has_are_refused(off):
     with pytest.raises(InputError, match="must be a radius above the root form circle"):
         solve_cracked_gear(ordinary("driver"), {0: OtherTip(PAIR.driver.tooth.tip_radius + off)})
+
+
+# ---- profiles of single teeth ----------------------------------------------------------------------------------------
+def roll_of(gear, radius):
+    return np.sqrt((np.asarray(radius) / gear.base_radius) ** 2 - 1.0)
+
+
+def toward_tip(member, amount, power=2.0):
+    """A deviation that grows from the pitch circle to the tip, in many straight pieces."""
+    one = PAIR.gear(member)
+    roll = roll_of(one, np.linspace(one.pitch_radius, one.involute_tip_radius, 9))
+    share = (roll - roll[0]) / (roll[-1] - roll[0])
+    return TabulatedRelief(roll, amount * share**power)
+
+
+def each_pitch(e, x, cycles):
+    return np.array([e.solve(e.grid(x), [LOAD], cycle).transmission_error[:, 0] for cycle in cycles])
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_a_profile_deviation_of_zero_changes_nothing_to_the_last_bit(member):
+    ground = {f"{one}_relief": toward_tip(one, 6e-6) for one in MEMBERS}
+    usual, x = engagement(**ground), np.linspace(PAIR.x_start, PAIR.x_start + PAIR.base_pitch, 23)[:-1]
+    for flank in (OddFlank(deviation=toward_tip(member, 0.0)), OddFlank()):
+        e = engagement(**ground, **{f"{member}_odd": {3: flank}})
+        assert np.array_equal(each_pitch(e, x, range(7)), np.broadcast_to(each_pitch(usual, x, [0]), (7, x.size)))
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize("as_deviation", [False, True])
+def test_the_same_profile_on_every_tooth_is_the_gears_own_relief(member, as_deviation):
+    own = [toward_tip(member, 8e-6) for _ in range(PAIR.gear(member).teeth)]  # alike, not the same
+    flanks = {n: OddFlank(deviation=one) if as_deviation else OddFlank(relief=one) for n, one in enumerate(own)}
+    other = {"driven": "driver", "driver": "driven"}[member]
+    ground = {f"{other}_relief": toward_tip(other, 5e-6)}
+    if not as_deviation:
+        ground[f"{member}_relief"] = toward_tip(member, 40e-6)  # of no tooth
+    found = over_revolution(engagement(**ground, **{f"{member}_odd": flanks}), LOAD, 12)
+    ground[f"{member}_relief"] = toward_tip(member, 8e-6)
+    usual = over_revolution(engagement(**ground), LOAD, 12)
+    assert found.solved == 1
+    assert te(found).shape[0] == PAIR.gear(member).teeth
+    at = np.searchsorted(found.x, usual.x)
+    assert found.x[at] == pytest.approx(usual.x, rel=1e-12)
+    assert te(found)[:, at] == pytest.approx(np.broadcast_to(te(usual), (te(found).shape[0], at.size)), rel=1e-13)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_an_even_profile_deviation_is_a_pitch_deviation_of_its_tooth(member):
+    """To the last bit; teeth that are counted the wrong way round, or from another one, are not."""
+    one, x = PAIR.gear(member), np.linspace(PAIR.x_start, PAIR.x_start + PAIR.base_pitch, 23)[:-1]
+    even = TabulatedRelief(roll_of(one, [one.pitch_radius, one.involute_tip_radius]), np.full(2, 3e-6))
+    spacing = np.zeros(one.teeth)
+    spacing[4] = 3e-6
+    spaced = each_pitch(engagement(**{f"{member}_spacing": spacing}), x, range(one.teeth))
+    found = each_pitch(engagement(**{f"{member}_odd": {4: OddFlank(deviation=even)}}), x, range(one.teeth))
+    assert np.array_equal(found, spaced)
+    for wrong in (one.teeth - 4, 3, 5):
+        off = each_pitch(engagement(**{f"{member}_odd": {wrong: OddFlank(deviation=even)}}), x, range(one.teeth))
+        assert np.abs(off - spaced).max() > 1e-6
+
+
+def by_two_pairs(cycle, x, member, tooth, deviation):
+    """Transmission error and loads of pairs 0 and 1 by hand: compliances of solved gears, Hertz's widths, a root."""
+    alpha, width, nu, young = math.radians(20.0), 20e-3, 0.3, 206e9
+    gears = PAIR.driver, PAIR.driven
+    solved = ordinary("driver"), ordinary("driven")
+    along = x + PAIR.base_pitch * np.arange(2)
+    lengths = [g.base_radius * math.tan(alpha) + sign * along for g, sign in zip(gears, (1.0, -1.0), strict=True)]
+    radii = [np.hypot(g.base_radius, length) for g, length in zip(gears, lengths, strict=True)]
+    relative = 1.0 / (1.0 / lengths[0] + 1.0 / lengths[1])
+    apart = np.zeros(2)
+    pair = cycle - tooth
+    if pair in (0, 1):
+        which = MEMBERS.index(member)
+        roll = lengths[which][pair] / gears[which].base_radius
+        apart[pair] = np.interp(roll, deviation.roll, deviation.values)
+    between = solved[0].neighbour(-1, radii[0][:1], radii[0][1:]) + solved[1].neighbour(1, radii[1][:1], radii[1][1:])
+
+    def deflections(first):
+        loads = np.array([first, LOAD - first]) / width
+        half = np.sqrt(np.maximum(8.0 * loads * relative * (1.0 - nu**2) / math.pi / young, 1e-18))
+        own = sum(one.self_compliance(r, half) for one, r in zip(solved, radii, strict=True))
+        return own * loads + between[0, 0] * loads[::-1] + apart
+
+    shared = brentq(lambda first: np.diff(deflections(first))[0], 1e-6 * LOAD, (1.0 - 1e-6) * LOAD, xtol=1e-9)
+    return float(deflections(shared)[0]), np.array([shared, LOAD - shared])
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_one_ground_tooth_beside_a_contact_of_two_pairs_by_hand(member):
+    deviation, tooth = toward_tip(member, 7e-6, power=1.0), 4
+    e = engagement(corner_contact=False, **{f"{member}_odd": {tooth: OddFlank(deviation=deviation)}})
+    two = PAIR.contact_ratio - 1.0  # of the base pitch
+    x = PAIR.x_start + PAIR.base_pitch * two * np.array([0.2, 0.8])
+    most = 0.0
+    for cycle in (4, 5):
+        state = e.solve(e.grid(x), [LOAD], cycle)
+        row = [int(np.flatnonzero(state.grid.contacts.number == n)[0]) for n in (0, 1)]
+        for n, place in enumerate(x):
+            wanted, loads = by_two_pairs(cycle, place, member, tooth, deviation)
+            assert state.transmission_error[n, 0] == pytest.approx(wanted, rel=3e-4)
+            assert state.loads[row, n, 0] == pytest.approx(loads, abs=1e-3 * LOAD)
+            plain, _ = by_two_pairs(3, place, member, tooth, deviation)
+            most = max(most, abs(wanted / plain - 1.0))
+    assert most > 0.05  # it shows
+
+
+def test_a_tooth_has_its_own_relief_in_place_of_the_gears_and_a_deviation_beside_it():
+    """By a spec: in which pitches, and nothing of it where the effect is off; Welbourn's Delta of the gear counts."""
+    tip = TipReliefSpec(amount_over_delta=1.0, normalised_length=1.0)
+    deviation = ReliefSpec(tables=(toward_tip("driver", 4e-6),))
+    profiles = (
+        (2, ToothProfile(relief=ReliefSpec())),
+        (5, ToothProfile(deviation=deviation)),
+        (9, ToothProfile(relief=ReliefSpec(tip=(tip,)))),
+    )
+    flank = FlankSpec(relief=ReliefSpec(tip=(tip,)), profiles=profiles)
+    spec = PairSpec(PAIR, loads=(LOAD,), relief=True, driver=flank)
+    loaded = load(spec, [ordinary("driver"), ordinary("driven")], estimates=False)
+    e, x = loaded.engagement, np.array([PAIR.x_end - 0.01 * PAIR.base_pitch])
+    contacts = e.grid(x).contacts
+    row = int(np.abs(contacts.x[:, 0] - x[0]).argmin())
+    pair = int(contacts.number[row])
+    off = {tooth: float(e.modification(contacts, tooth + pair)[row, 0]) for tooth in (0, 2, 5, 9)}
+    assert off[0] == off[9] > 5e-6
+    assert off[2] == 0.0
+    beside = toward_tip("driver", 4e-6).removal(contacts.roll_driver[row])
+    assert off[5] - off[0] == pytest.approx(float(beside[0])) != 0.0
+    assert e.unmodified().modification(contacts, 5 + pair).max() == 0.0
+    plain = load(replace(spec, relief=False), [ordinary("driver"), ordinary("driven")], estimates=False).engagement
+    assert plain.odd is None
+    assert e.breaks != plain.breaks
+
+
+def test_a_profile_that_no_tooth_has_is_refused_under_its_key():
+    deep = ToothProfile(deviation=ReliefSpec(tables=(toward_tip("driver", 5e-3),)), prefix="gear.a.odd_tooth[0]")
+    spec = PairSpec(PAIR, loads=(LOAD,), relief=True, driver=FlankSpec(profiles=((0, deep),)))
+    with pytest.raises(InputError, match=r"gear\.a\.odd_tooth\[0\]\.deviation = 5000 um .* times the maximum"):
+        load(spec, [ordinary("driver"), ordinary("driven")], estimates=False)

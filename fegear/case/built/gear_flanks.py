@@ -11,15 +11,19 @@ from fegear.base.effects import RELIEF, SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.case.csv_file import one_column, read_columns
 from fegear.case.part import Part, at
+from fegear.contact.odd_flank import ToothProfile
 from fegear.contact.pair_spec import FlankSpec
 from fegear.geometry.plausible_flanks import refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 from fegear.geometry.relief_spec import CrowningSpec, ReliefSpec, RootReliefSpec, TipReliefSpec
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.base.arrays import Array
+    from fegear.case.odd_tooth import OddToothPart
     from fegear.case.reading import Scene
-    from fegear.case.relief import ReliefTablePart
+    from fegear.case.relief import ReliefPart, ReliefTablePart
     from fegear.geometry.gear import Gear
 
 _S = TypeVar("_S")
@@ -43,11 +47,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
     relief: ReliefSpec | None = None
     spacing, wrong, measured = np.empty(0), {}, False
     if given is not None:
-        relief = ReliefSpec(
-            tuple(_spec(TipReliefSpec, tip) for tip in given.tip),
-            tuple(_spec(RootReliefSpec, root) for root in given.root),
-            tuple(_spec(CrowningSpec, crown) for crown in given.crowning),
-        )
+        relief = _ends(given)
     try:
         if part.measured is not None and not drawn:
             from fegear.case.built.measured_flanks import measured_gear
@@ -59,10 +59,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
                 relief, measured = ReliefSpec(tables=(found.relief,)), True
         if relief is not None and not measured:
             tables = given.table if given is not None else ()
-            read = (
-                _table_relief(scene, seen, table, f"gear.{gear}.{key}.table[{i}]") for i, table in enumerate(tables)
-            )
-            relief = replace(relief, tables=tuple(read))
+            relief = replace(relief, tables=_tables(scene, seen, tables, f"gear.{gear}.{key}.table"))
     except InputError as error:
         if effects.relief:
             raise
@@ -74,6 +71,35 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
             raise
         wrong[SPACING_ERRORS.name] = error
     return FlankSpec(relief, spacing, gear=gear, key=key, measured=measured, wrong=wrong)
+
+
+def _ends(given: ReliefPart) -> ReliefSpec:
+    """A relief without its tables."""
+    return ReliefSpec(
+        tuple(_spec(TipReliefSpec, tip) for tip in given.tip),
+        tuple(_spec(RootReliefSpec, root) for root in given.root),
+        tuple(_spec(CrowningSpec, crown) for crown in given.crowning),
+    )
+
+
+def _tables(scene: Scene, gear: Gear, tables: Sequence[ReliefTablePart], key: str) -> tuple[TabulatedRelief, ...]:
+    return tuple(_table_relief(scene, gear, table, f"{key}[{i}]") for i, table in enumerate(tables))
+
+
+def tooth_profile(scene: Scene, name: str, part: OddToothPart, prefix: str) -> ToothProfile:
+    """The profile of one tooth that is another than its gear's.
+
+    Raises
+    ------
+    InputError
+        If a table is none.
+    """
+    gear, relief, deviation = scene.gears[name], None, None
+    if part.relief is not None:
+        relief = replace(_ends(part.relief), tables=_tables(scene, gear, part.relief.table, f"{prefix}.relief.table"))
+    if part.deviation:
+        deviation = ReliefSpec(tables=_tables(scene, gear, part.deviation, f"{prefix}.deviation"))
+    return ToothProfile(relief, deviation, prefix)
 
 
 def relief_key(gear: Gear) -> str:

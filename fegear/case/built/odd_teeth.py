@@ -11,9 +11,10 @@ import numpy as np
 
 from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
+from fegear.case.built.gear_flanks import tooth_profile
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
-from fegear.contact.odd_flank import OddFlank, Pit
+from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
 
@@ -38,6 +39,7 @@ class OddTeeth:
     cracks : tuple of (int, Crack)
     outlines : tuple of (int, OtherTip or Missing)
     flanks : tuple of (int, OddFlank)
+    profiles : tuple of (int, ToothProfile)
     member : {"driver", "driven"}
         What it is in its pairs: its teeth mesh the other way round.
     name : str
@@ -46,6 +48,7 @@ class OddTeeth:
     cracks: tuple[tuple[int, Crack], ...]
     outlines: tuple[tuple[int, OtherTip | Missing], ...]
     flanks: tuple[tuple[int, OddFlank], ...]
+    profiles: tuple[tuple[int, ToothProfile], ...]
     member: Member
     name: str = field(compare=False)
 
@@ -56,7 +59,8 @@ class OddTeeth:
     def on_other_flank(self) -> OddTeeth:
         """The same teeth as the gear that they drive loads them, on the flank that is not said to be loaded.
 
-        Pits are of the loaded flank; cracks that one flank opens the other presses together: their faces may close.
+        Pits and profiles are of the loaded flank; cracks that one flank opens the other presses together: their faces
+        may close.
         """
         cracks = tuple((tooth, crack.mirrored()) for tooth, crack in self.cracks)
         flanks = tuple(
@@ -64,7 +68,12 @@ class OddTeeth:
             for tooth, flank in self.flanks
             if flank.missing or not math.isnan(flank.tip_radius)
         )
-        return OddTeeth(cracks, self.outlines, flanks, "driver", self.name)
+        return OddTeeth(cracks, self.outlines, flanks, (), "driver", self.name)
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Of all of them, rising."""
+        return tuple(sorted({tooth for tooth, _ in (*self.cracks, *self.flanks, *self.profiles)}))
 
     @property
     def described(self) -> str:
@@ -75,6 +84,7 @@ class OddTeeth:
             "missing": [tooth for tooth, flank in known.items() if flank.missing],
             "shorter": [tooth for tooth, flank in known.items() if not math.isnan(flank.tip_radius)],
             "pitted": [tooth for tooth, flank in known.items() if flank.pits],
+            "with another profile": [tooth for tooth, _ in self.profiles],
         }
         return ", ".join(
             f"{'tooth' if len(teeth) == 1 else 'teeth'} {', '.join(map(str, sorted(teeth)))} {what}"
@@ -133,7 +143,7 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
     InputError
         If a crack, a tip or a pit does not fit its tooth.
     """
-    gear, cracks, outlines, flanks = scene.gears[name], [], [], []
+    gear, cracks, outlines, flanks, profiles = scene.gears[name], [], [], [], []
     for n, part in enumerate(scene.case.gear[name].odd_tooth):
         prefix = f"gear.{name}.odd_tooth[{n}]"
         if part.crack is not None:
@@ -145,8 +155,11 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
         if outline is not None or pits:
             tip = outline.radius * gear.module if isinstance(outline, OtherTip) else math.nan
             flanks.append((part.tooth, OddFlank(isinstance(outline, Missing), tip, pits)))
+        if part.profiled:
+            profiles.append((part.tooth, tooth_profile(scene, name, part, prefix)))
     driven = any(name == part.driven for part in scene.case.pair.values())
-    return OddTeeth(tuple(cracks), tuple(outlines), tuple(flanks), "driven" if driven else "driver", name)
+    member: Member = "driven" if driven else "driver"
+    return OddTeeth(tuple(cracks), tuple(outlines), tuple(flanks), tuple(profiles), member, name)
 
 
 def _outline(gear: Gear, part: OddToothPart, prefix: str) -> OtherTip | Missing | None:

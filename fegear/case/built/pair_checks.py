@@ -109,8 +109,10 @@ def check_odd_teeth(scene: Scene, name: str) -> None:
 
 def check_relief(scene: Scene, name: str) -> None:
     """Refuse the effect relief where no gear of the case has any: other pairs may do without."""
-    part = scene.case.pair[name]
-    if scene.case.effects.relief and not any(gear.relieved for gear in scene.case.gear.values()):
+    part, effects = scene.case.pair[name], scene.case.effects
+    gears = scene.case.gear.values()
+    own = effects.odd_teeth and any(tooth.profiled for gear in gears for tooth in gear.odd_tooth)
+    if effects.relief and not own and not any(gear.relieved for gear in gears):
         raise InputError(
             "effects.relief", "true", "has no effect: no gear of this case has a relief",
             f"specify gear.{part.driver}.relief, or switch the effect off",

@@ -152,10 +152,12 @@ class Engagement(Brief):
 
     def unmodified(self) -> Engagement:
         """The same pair with perfect involutes at equal distances."""
-        none = np.empty(0)
+        none, odd = np.empty(0), (self.driver_odd, self.driven_odd)
+        driver, driven = ({tooth: one.as_the_others() for tooth, one in flanks.items()} for flanks in odd)
         return replace(
-            self, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED, driver_spacing=none, driven_spacing=none
-        )
+            self, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED, driver_spacing=none, driven_spacing=none,
+            driver_odd=driver, driven_odd=driven,
+        )  # fmt: skip
 
     def reversed(self) -> Engagement:
         """The same gears with driver and driven exchanged; x changes sign."""
@@ -172,13 +174,18 @@ class Engagement(Brief):
         at = np.atleast_1d(np.array(x, dtype=float))
         return self.grids.at(at) if again else self.grids.new(at)
 
-    def modification(self, contacts: Contacts) -> Array:
-        """m_j of both gears together, shape (n, P) [m]; a flank without modification is not asked."""
+    def modification(self, contacts: Contacts, cycle: int | None = None) -> Array:
+        """m_j of both gears together, shape (n, P) [m]; a flank without modification is not asked.
+
+        Of a base pitch with the profiles of its teeth where these differ; by default of ordinary ones.
+        """
         total = np.zeros(contacts.gap.shape)
         for relief, roll in ((self.driver_relief, contacts.roll_driver), (self.driven_relief, contacts.roll_driven)):
             if relief != UNMODIFIED:
                 total = total + relief.removal(roll)
-        return total
+        if cycle is None or self.odd is None:
+            return total
+        return self.odd.modified(total, contacts, cycle, (self.driver_relief, self.driven_relief))
 
     def spacing(self, contacts: Contacts, cycle: int) -> Array:
         """Spacing error of each pair, shape (n, 1) [m], in the base pitch number `cycle`.
@@ -210,7 +217,7 @@ class Engagement(Brief):
             for errors in (self.driver_spacing, self.driven_spacing)
             if errors.size
         )
-        flanks = () if self.odd is None else self.odd.on(number, cycle)
+        flanks = () if self.odd is None else self.odd.kinds(number, cycle)
         return (*self.compliance.pattern(number, cycle), *spacing, flanks)
 
     @property
@@ -221,7 +228,7 @@ class Engagement(Brief):
 
     def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
         """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
-        added = self.modification(contacts)
+        added = self.modification(contacts, cycle)
         if self.driver_spacing.size or self.driven_spacing.size:
             added = added + self.spacing(contacts, cycle)
         if self.odd is not None:

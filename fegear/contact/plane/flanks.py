@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
+from fegear.contact.odd_flank import OddFlank
 from fegear.contact.plane.engagement import Engagement
 from fegear.geometry.pair import MEMBERS
 
@@ -71,7 +72,14 @@ def relieved(spec: PairSpec, engagement: Engagement) -> Engagement:
         except InputError as error:
             raise error.under(spec.driver.prefix, {"relief.amount": "relief.tip.amount_over_delta"}) from None
     driver, driven = (flank.profile(pair, member, delta) for member, flank in zip(MEMBERS, spec.both, strict=True))
-    return replace(engagement, driver_relief=driver, driven_relief=driven)
+    found = replace(engagement, driver_relief=driver, driven_relief=driven)
+    if any(flank.profiles for flank in spec.both):
+        odd = [dict(engagement.driver_odd), dict(engagement.driven_odd)]
+        for flanks, member, flank in zip(odd, MEMBERS, spec.both, strict=True):
+            for tooth, profile in flank.profiles:
+                flanks[tooth] = profile.built_on(flanks.get(tooth, OddFlank()), pair, member, delta)
+        found = replace(found, driver_odd=odd[0], driven_odd=odd[1])
+    return found
 
 
 def with_flanks(spec: PairSpec, engagement: Engagement) -> Engagement:

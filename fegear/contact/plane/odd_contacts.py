@@ -1,4 +1,4 @@
-"""Contacts of a pair some of whose flanks differ from the others: missing, with a lower tip, with pits or spalls.
+"""Contacts of a pair some of whose flanks differ from the others: missing, with a lower tip, pits, another profile.
 
 They change which pairs touch, where, over how much of the face and after which gap; compliances of teeth are those of
 their sources. A pit over a share s of the face leaves a line load of w / (1 - s) on what is left of the contact line.
@@ -14,10 +14,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.base.arrays import same
 from fegear.base.errors import InputError
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.formulas.weber_banaschek import contact_approach
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
+    from fegear.geometry.relief import Relief
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,46 @@ class OddContacts:
             for order in orders
         )
         return found if any(flank is not None for both in found for flank in both) else ()
+
+    def kinds(self, number: Index, cycle: int) -> tuple[tuple[int, int], ...]:
+        """What tells such pairs from others: the first tooth with the same flank, -1 of ordinary ones."""
+        if not self.on(number, cycle):
+            return ()
+        z, (driver, driven) = (self.pair.driver.teeth, self.pair.driven.teeth), self._first
+        orders = [cycle - int(j) for j in number]
+        return tuple((driver.get(order % z[0], -1), driven.get(order % z[1], -1)) for order in orders)
+
+    @cached_property
+    def _first(self) -> tuple[dict[int, int], ...]:
+        """Of each odd tooth of both gears the first one that is as it is."""
+        found = []
+        for flanks in (self.driver, self.driven):
+            first: dict[int, int] = {}
+            for tooth, flank in flanks.items():
+                known = dict.fromkeys(first.values())
+                first[tooth] = next((one for one in known if same(flanks[one], flank)), tooth)
+            found.append(first)
+        return tuple(found)
+
+    def modified(self, removal: Array, contacts: Contacts, cycle: int, reliefs: tuple[Relief, Relief]) -> Array:
+        """Removals of both flanks together where their gears' reliefs give `removal`, shape (n, P) [m]."""
+        found = removal
+        for row, both in enumerate(self.on(contacts.number, cycle)):
+            if not any(flank is not None and flank.profiled for flank in both):
+                continue
+            if found is removal:
+                found = removal.copy()
+            rolls = contacts.roll_driver[row], contacts.roll_driven[row]
+            if any(flank is not None and flank.relief is not None for flank in both):
+                own = [
+                    usual if flank is None or flank.relief is None else flank.relief
+                    for usual, flank in zip(reliefs, both, strict=True)
+                ]
+                found[row] = sum(relief.removal(roll) for relief, roll in zip(own, rolls, strict=True))
+            for flank, roll in zip(both, rolls, strict=True):
+                if flank is not None:
+                    found[row] += flank.deviation.removal(roll)
+        return found
 
     def changed(self, contacts: Contacts, cycle: int) -> Contacts:
         """The contacts with the odd flanks of a base pitch; the same ones where only pits are odd."""
@@ -126,6 +169,7 @@ class OddContacts:
                     radii.append(_with_tip(self.pair.gear(member), flank.tip_radius).involute_tip_radius)
                 low, high = self.pair.gear(member).involute_radii
                 found += [float(self.pair.x_of_radius(radius, member)) for radius in np.clip(radii, low, high)]
+                found += [float(self.pair.x_of_roll(roll, member)) for roll in flank.kinks]
         return found
 
 

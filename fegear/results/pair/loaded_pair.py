@@ -10,11 +10,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import AT_REST
+from fegear.base.notes import neglecting
 from fegear.case.built.neglected_effects import whole_ratio_remarks
 from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_gears_of, odd_teeth_in, reshaped_gears
 from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
 from fegear.case.built.pair_notes import pair_notes
 from fegear.case.built.pair_spec import pair_spec
+from fegear.contact.odd_flank import OddFlank
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.citation import Citation
+    from fegear.geometry.pair import Member
 
 
 def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
@@ -133,8 +136,11 @@ def _odd_needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _odd_inputs(scene: Scene, name: str) -> AskedOfTeeth:
     spec, odd = pair_spec(scene, name), odd_gears_of(scene, name)
+    known = {gear: odd_teeth_in(scene, name, gear) for gear in odd}
     driver, driven = (
-        replace(flank, odd=odd_teeth_in(scene, name, flank.gear).flanks) if flank.gear in odd else flank
+        replace(flank, odd=known[flank.gear].flanks, profiles=known[flank.gear].profiles)
+        if flank.gear in odd
+        else flank
         for flank in spec.both
     )
     return replace(AskedOfTeeth.of(scene, replace(spec, driver=driver, driven=driven), ()), neglected=False)
@@ -154,6 +160,19 @@ def _check_odd(scene: Scene, name: str) -> None:
     for gear in odd_gears_of(scene, name):
         check_odd_gear(scene, gear)
     check_left_contact(scene, name)
+    if scene.case.effects.relief:
+        for gear in odd_gears_of(scene, name):
+            member: Member = "driver" if gear == scene.case.pair[name].driver else "driven"
+            for _, profile in odd_teeth_in(scene, name, gear).profiles:
+                profile.built_on(OddFlank(), scene.pairs[name], member, 0.0)  # Welbourn's Delta is not known yet
+
+
+def _odd_remarks(seen: Seen) -> Iterator[str]:
+    """Profiles of single teeth that do not count."""
+    spec = seen.asked.spec
+    for flank in spec.both if not spec.relief else ():
+        if flank.profiles:
+            yield neglecting(f"Gear {flank.gear}: profiles of single teeth ignored because effects.relief is off.")
 
 
 #: A pair of which a gear has odd teeth: results over a revolution read it, all others the ordinary one.
@@ -162,7 +181,7 @@ ODD_PAIR = Stage(
     needs=_odd_needs,
     inputs=_odd_inputs,
     compute=_compute_odd,
-    present=Sheet(settings=_settings).present,
+    present=Sheet(remarks=(_odd_remarks,), settings=_settings).present,
     check=_check_odd,
     cites=_cites,
     forecast=_forecast,

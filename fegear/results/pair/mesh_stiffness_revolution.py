@@ -181,7 +181,7 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     gears = part.driver, part.driven
     known = [(m, odd_teeth_in(scene, name, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
     cracked = tuple((member, tuple(sorted(tooth for tooth, _ in one.cracks))) for member, one in known)
-    teeth = tuple((member, tuple(sorted({tooth for tooth, _ in (*one.cracks, *one.flanks)}))) for member, one in known)
+    teeth = tuple((member, one.numbers) for member, one in known)
     return RevolutionInputs(teeth, cracked, tuple((member, one.described) for member, one in known), gears, name)
 
 
@@ -252,7 +252,9 @@ def _answer(seen: Seen) -> Iterator[str]:
         f"{percent(data.mesh_stiffness_loss)} below that of ordinary teeth "
         f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm)."
     )
-    yield f"Pair {seen.name}: the transmission error rises by up to {data.te_residual_max * 1e6:.3g} µm."
+    residual = data.found.residual
+    how = "rises" if residual.max() >= -residual.min() else "falls"
+    yield f"Pair {seen.name}: the transmission error {how} by up to {data.te_residual_max * 1e6:.3g} µm."
 
 
 _ANGLE = "Numbers of teeth in meshing order, tooth 0 on pair 0 of base pitch 0."
