@@ -36,12 +36,15 @@ class Panels:
         [m].
     breaks : ndarray
         Break points [m], first and last one period apart.
+    kinks : bool
+        Whether there may be kinks between break points, too: a parabola through three points beside one rises above it.
     """
 
     x: Array
     weights: Array
     period: float
     breaks: Array
+    kinks: bool = False
 
     def highest(self, values: Array) -> float:
         """Largest value of a function known at the points, shape (Q,), and between them where it turns smoothly.
@@ -62,7 +65,24 @@ class Panels:
         if not bend > 0.0:
             return top
         slope = (rises * after - falls * before) / (before + after)
-        return top + float(slope * slope / (4.0 * bend))
+        above = float(slope * slope / (4.0 * bend))
+        return top + (min(above, self._kink_above(values, i)) if self.kinks else above)
+
+    def _kink_above(self, values: Array, i: int) -> float:
+        """How far the lines through both points before and both behind a largest value meet above it, at least 0.
+
+        That is where a kink between them is, and above any smooth top; infinite where the lines do not meet there.
+        """
+        if not 1 < i < values.size - 2:
+            return math.inf
+        x, f = self.x[i - 2 : i + 3] - self.x[i], values[i - 2 : i + 3] - values[i]
+        if not (x[1] > x[0] and x[4] > x[3]):
+            return math.inf
+        rise, fall = (f[1] - f[0]) / (x[1] - x[0]), (f[4] - f[3]) / (x[4] - x[3])
+        if not rise > fall:
+            return math.inf
+        at = float(f[3] - f[1] + rise * x[1] - fall * x[3]) / (rise - fall)
+        return max(float(f[1] + rise * (at - x[1])), 0.0) if x[1] <= at <= x[3] else math.inf
 
 
 #: Distance from break points at which both sides of them are looked at [periods]: beyond the slack that a pair at the

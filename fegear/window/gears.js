@@ -67,6 +67,7 @@ const fegearGears = (() => {
       if (!data) return;
       more.allow(data.refused ?? {});
       if (JSON.stringify(data) === JSON.stringify(kept.data)) return draw();
+      if (kept.data) kept.old = kept.sent.field; // stress inside other teeth
       kept.data = data;
       const m = data.module * 1e3, wide = Math.max(6 * m, 1.3e3 * Math.max(-data.start, data.end)), tall = 3.2 * m;
       picture.replaceChildren();
@@ -115,7 +116,7 @@ const fegearGears = (() => {
       scrub.value = Math.round(kept.place * 1000);
       const layers = more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
-      const field = layers.deformed ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
+      const field = layers.deformed || kept.sent.field === kept.old ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
       fegearField.draw(inside, kept.room, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
       picture.classList.toggle("filled", !!field);
       fegearLayers.gears(canvas, kept.room, kept.view, layers);

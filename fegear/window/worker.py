@@ -28,7 +28,7 @@ from fegear.window.order import HarrisMaps, in_order, load_now_of
 from fegear.window.time_left import TimeLeft
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from multiprocessing.connection import Connection
 
     from fegear.base.notes import Note
@@ -82,6 +82,7 @@ class Worker:
         self._cache = SolutionCache(store, check=lambda: self._inbox.look(), at_leisure=True)
         self._meshes: dict[str, object] = {}
         self._assemblies: dict[str, object] = {}
+        self._drawn: Mapping[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
         self._maps = HarrisMaps()
@@ -209,17 +210,20 @@ class Worker:
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
-                self._assemblies = {}
+                self._assemblies, self._drawn = {}, {}
                 self._maps = HarrisMaps()
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
-            on_gears = dict.fromkeys(map(str, more), 0.0)  # what is switched on there follows a value that moves
+            # What is switched on there follows a value that moves; stress inside, whose gears are solved, does not.
+            on_gears = dict.fromkeys((str(one) for one in more if not (asked.moving and one in inside)), 0.0)
             plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears}, beside)
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             self._later.append(("hands", lambda: self._tell_hands(scene)))
             if not asked.moving:
                 self._tell_later()
+            elif scene.pairs != self._drawn:  # gears follow at once; what else is in the hand the page moves itself
+                self._tell_later("hands")
             for content in () if asked.moving else at_once_told:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
@@ -252,9 +256,12 @@ class Worker:
         """Tell what is changed by hand."""
         pairs = hands_of(scene)
         meshes = {name: one["mesh"] for name, one in pairs.items()}
+        self._drawn = scene.pairs
         for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
             if self._meshes.get(name) == one["mesh"]:
                 one["mesh"] = None
+            else:  # what is shown on other teeth is not shown on these: it is sent again, though it may be known
+                self._on_gears = {task: data for task, data in self._on_gears.items() if task.subject != name}
         self._say("hands", pairs=pairs)
         self._meshes = meshes
         if (drawn := assemblies_of(scene)) != self._assemblies:

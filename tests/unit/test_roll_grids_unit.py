@@ -2,17 +2,26 @@
 
 import pickle
 from dataclasses import dataclass, fields, is_dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.pair_history import followed
 from fegear.contact.plane.roll_grids import _KEPT, _STATES, RollGrids
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.stress_rows import StressRows
-from fegear.contact.plane.transmission_error import pair_stiffness, quick_transmission_errors, transmission_error
+from fegear.contact.plane.transmission_error import (
+    pair_stiffness,
+    quick_points,
+    quick_transmission_errors,
+    thinned,
+    transmission_error,
+)
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -189,6 +198,48 @@ def test_a_transmission_error_in_the_hand_keeps_its_points_and_is_near_that_at_r
             assert moving.mean == pytest.approx(rest.mean, rel=1e-4)
             assert moving.peak_to_peak == pytest.approx(rest.peak_to_peak, rel=1e-2)
             assert rest.loaded.grid is not known  # contact changes between the geometric jumps, so the two differ
+
+
+def loaded_pair(corner_contact=True, exact=False):
+    relief = tip_relief(PAIR.driver, 5e-6, length=0.6e-3)
+    e = Engagement(compliance(hertz="load-dependent"), relief, corner_contact=corner_contact)
+    return LoadedPair(e, (), SimpleNamespace(loads=(300.0, 3000.0), nominal=3000.0), ("a", "b"), exact=exact)
+
+
+@pytest.mark.parametrize("corner_contact", [True, False])
+def test_while_a_value_moves_a_pair_is_followed_by_the_state_of_its_transmission_error(corner_contact, monkeypatch):
+    pair, counted = loaded_pair(corner_contact), []
+    e, share = pair.engagement, PairMatrices.share
+    monkeypatch.setattr(PairMatrices, "share", lambda *given: counted.append(1) or share(*given))
+    found, error = pair.history().found, pair.transmission_error()
+    assert len(counted) == 2  # as it is, and perfect flanks
+    again, _ = followed(replace(e, grids=None), pair.loads, found.x)
+    assert (np.diff(found.x) >= 0.0).all()
+    inside = slice(1, -1)  # at the ends a pair may stand in the base pitch before or behind
+    for one in fields(found):
+        scale = np.abs(getattr(again, one.name)).max()
+        np.testing.assert_allclose(
+            getattr(found, one.name)[inside], getattr(again, one.name)[inside], atol=1e-9 * scale
+        )
+    rest = loaded_pair(corner_contact, exact=True)
+    at_rest = rest.transmission_error()
+    np.testing.assert_allclose(error.te_mean, at_rest.te_mean, rtol=1e-4)
+    np.testing.assert_allclose(error.te_peak_to_peak, at_rest.te_peak_to_peak, rtol=3e-3)
+    assert pair.history().largest_share == pytest.approx(rest.history().largest_share, rel=5e-3)
+    assert error.mesh_compliance_mean == pytest.approx(at_rest.mesh_compliance_mean, rel=1e-5)
+
+
+def test_a_state_at_some_positions_is_what_would_be_solved_there():
+    e = Engagement(compliance(hertz="load-dependent"), tip_relief(PAIR.driver, 5e-6, length=0.6e-3))
+    points = quick_points(e)
+    which = thinned(points)
+    assert set(np.flatnonzero(points.weights == 0.0)) <= set(which)
+    assert which.size < 0.6 * points.x.size
+    part = e.solve(e.grid(points.x), (300.0, 3000.0)).at(which)
+    anew = replace(e, grids=None)
+    there = anew.solve(anew.grid(points.x[which]), (300.0, 3000.0))
+    for one in ("x", "pair_x", "loads", "transmission_error", "deflection", "local_stiffness"):
+        np.testing.assert_allclose(getattr(part, one), getattr(there, one), rtol=1e-12, atol=1e-18)
 
 
 def test_perfect_flanks_are_loaded_once_while_a_relief_moves(monkeypatch):

@@ -1,10 +1,12 @@
 """Rules of quadrature that are written out: their places and weights by what they integrate exactly."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fegear.contact.fourier import panels
 from fegear.dynamics.planetary import cycle_extremes, planet_loads, set_cycle
 from fegear.dynamics.planetary.cycle_extremes import _highest
 
@@ -23,6 +25,23 @@ def test_lobatto_s_rules_integrate_what_they_can(rule, degree, lower):
             assert fewer @ places**n == pytest.approx(exact, abs=1e-14)
     assert abs(weights @ places ** (degree + 1) - 2.0 / (degree + 2)) > 1e-3
     assert (fewer[1::2] == 0.0).all()
+
+
+def test_a_kink_between_points_is_no_top_of_a_parabola():
+    points = panels(0.0, 1.0, [0.3], waves=12, ends=True)
+    kinked = replace(points, kinks=True)
+    for top in np.linspace(0.4, 0.9, 41):
+        kink = 2.0 - np.where(points.x > top, 1.5 * (points.x - top), top - points.x)
+        assert kink.max() <= kinked.highest(kink) <= 2.0 + 1e-12
+        wave = np.cos(5.0 * (points.x - top))
+        assert kinked.highest(wave) == points.highest(wave) == pytest.approx(1.0, abs=1e-5)
+    steep = [2.0 - np.where(points.x > at, 20.0 * (points.x - at), at - points.x) for at in np.linspace(0.4, 0.9, 41)]
+    assert max(map(points.highest, steep)) > 2.01  # what is prevented
+    assert max(map(kinked.highest, steep)) <= 2.0 + 1e-12
+    jump = np.where(points.x > 0.3, 1.0 - points.x, points.x)
+    assert kinked.highest(jump) == points.highest(jump)
+    flat = np.zeros_like(points.x)
+    assert kinked.highest(flat) == 0.0
 
 
 def test_loads_of_planets_lie_on_the_same_places():

@@ -991,7 +991,8 @@ def test_root_stress_while_a_value_moves_is_that_of_the_positions(tmp_path):
     largest = [one.name for one in whole.values if ".largest_root_" in one.name]
     assert len(largest) == 4
     for name in largest:
-        assert 0.99 < quick.values[name].si / whole.values[name].si < 1.0 + 1e-12, name
+        # its positions are others: one may be nearer to a peak than the search of the run at rest comes
+        assert 0.99 < quick.values[name].si / whole.values[name].si < 1.0 + 1e-6, name
 
 
 @pytest.mark.dear

@@ -131,6 +131,40 @@ def test_what_comes_behind_an_answer_is_told_once_and_by_kind(working):
     assert told == ["load_now", "hands", "hands"]
 
 
+def test_gears_that_are_moved_are_drawn_before_the_answers_and_stress_inside_when_they_stand_still(working):
+    text = """
+results = ["load-sharing"]
+gear.a = { teeth = 20, module = "3 mm", face_width = "20 mm" }
+gear.b = { teeth = 33, module = "3 mm", face_width = "20 mm" }
+pair.I = { driver = "a", driven = "b", torque = "50 N*m" }
+accuracy.tolerance = 0.05
+"""
+
+    def answered(number, text, moving):
+        del working.said[:]
+        working.answer(Compute(number, Asked(text, "c", ".", moving=moving, laid=1, pictures=("load",), field=True)))
+        return [(what, content.get("task", "")) for _, what, content in working.said]
+
+    assert ("meshed", "stress-inside of I") in answered(1, text, True)  # nothing moves on
+
+    def moves_on(_seconds):
+        raise Unwanted
+
+    working.inbox.wait = moves_on
+    told = answered(2, text.replace("teeth = 20", "teeth = 21"), True)
+    assert [what for what, _ in told[:3]] == ["plan", "hands", "found"]
+    assert ("found", "load-sharing of I") in told
+    assert ("meshed", "stress-inside of I") not in told
+    (hands,) = (content for _, what, content in working.said if what == "hands")
+    assert hands["pairs"]["I"]["mesh"] is not None
+    assert "an atlas" in next(content["draft"] for _, what, content in working.said if what == "found")
+    told = answered(3, text.replace("teeth = 20", "teeth = 21").replace("50 N", "60 N"), True)
+    assert "hands" not in [what for what, _ in told]  # only the load has moved: the page knows where it is
+    working.inbox.wait = lambda _seconds: None
+    told = answered(4, text, True)  # these teeth are known, and those of others are on the page
+    assert ("meshed", "stress-inside of I") in told
+
+
 def test_progress_is_told_to_who_waits_and_not_to_who_moves(working, monkeypatch):
     clock = SimpleNamespace(now=50.0)
     monkeypatch.setattr(worker.time, "monotonic", lambda: clock.now)

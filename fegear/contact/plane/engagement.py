@@ -18,7 +18,7 @@ from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.odd_contacts import OddContacts, on_less_face, refuse_no_contact
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.contact.plane.roll_grids import RollGrid, RollGrids
+from fegear.contact.plane.roll_grids import RollGrid, RollGrids, columns_of
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import UNMODIFIED, Relief
 
@@ -53,6 +53,15 @@ class Loaded:
         one, shared = slice(number, number + 1), self.shared
         alone = SharedLoad(shared.loads[..., one], shared.transmission_error[:, one], shared.steps)
         return Loaded(self.grid, self.load[one], alone, self.separation, self.cycle)
+
+    def at(self, which: Index) -> Loaded:
+        """The same at some of the roll positions."""
+        shared = self.shared
+        loads, error = shared.loads[:, which], shared.transmission_error[which]
+        return Loaded(
+            columns_of(self.grid, which), self.load, SharedLoad(loads, error, shared.steps), self.separation[:, which],
+            self.cycle,
+        )  # fmt: skip
 
     @property
     def x(self) -> Array:

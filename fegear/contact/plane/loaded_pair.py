@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,19 +33,22 @@ from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.largest_on_pair import largest_on_pair
 from fegear.contact.plane.neglected_effects import neglected_effects
 from fegear.contact.plane.over_revolution import OverRevolution, over_revolution
-from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with
+from fegear.contact.plane.pair_history import PairHistory, pair_history, pair_history_with, quick_history
 from fegear.contact.plane.peaks import PASSES
 from fegear.contact.plane.shifted_loads import load_shift, transmission_error_shift
-from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress, with_peaks
+from fegear.contact.plane.tooth_stress import ToothStress, alike_states, loaded_states, tooth_stress, with_peaks
 from fegear.contact.plane.transmission_error import (
     pair_stiffness,
+    quick_points,
     quick_transmission_errors,
     revolution,
+    thinned,
     transmission_error,
 )
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
+    from fegear.contact.fourier import Panels
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
 
@@ -117,16 +121,30 @@ class LoadedPair:
         part of their errors which every tooth pair has by itself.
         """
         e = self.engagement
+        where = ", corner contact outside it" if e.corner_contact else ""
+        if self._quick is not None:
+            found = quick_history(e, e.solve(e.grid(self._quick.x), self.loads))
+            largest = largest_on_pair(e, (), self.nominal, found, self._at, 0)
+            return LoadHistory(found, self._at, None, self._off_path(found), where, found.x.size, largest)
         path = self.pair.x_start, self.pair.x_end
         found, apart = pair_history_with(
             e, self.loads, POSITIONS, 0, lambda state: independent_errors(state, self.shifted, path).load
         )
         shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
         error = np.maximum(np.sum(shifts, axis=0), apart) if shifts else None
-        where = ", corner contact outside it" if e.corner_contact else ""
         passes = PASSES if self.exact else 1
         largest = largest_on_pair(e, self.shifted, self.nominal, found, self._at, passes)
         return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS, largest)
+
+    @cached_property
+    def _quick(self) -> Panels | None:
+        """Points at which all is read while a value is being moved, of gears whose teeth are alike."""
+        return None if self.exact or self.engagement.uneven else quick_points(self.engagement)
+
+    @property
+    def _positions(self) -> Array:
+        """Roll positions of curves over the base pitch [m]."""
+        return roll_positions(self.engagement, POSITIONS) if self._quick is None else self._quick.x
 
     def _off_path(self, found: PairHistory) -> Array:
         return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)
@@ -138,8 +156,9 @@ class LoadedPair:
         for number, load in enumerate(self.loads if self.exact else ()):
             exact.append(transmission_error(e, load, HARMONICS))
             progress((number + 1) / (len(self.loads) + 2))
-        curve = e.solve(e.grid(roll_positions(e, POSITIONS)), self.loads)
-        bridged = e.pair.contact_ratio >= 1.0  # else perfect flanks have positions without any pair on the path
+        curve = e.solve(e.grid(self._positions), self.loads)
+        # with a contact ratio below 1 perfect flanks have positions without any pair on the path
+        perfect = pair_stiffness(e, self.nominal, HARMONICS, self._quick) if e.pair.contact_ratio >= 1.0 else None
         te_mean, peak_to_peak, effective, local = (
             np.array([getattr(te, key) for te in exact])
             for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
@@ -164,7 +183,7 @@ class LoadedPair:
             te_effective=effective,
             local_stiffness_mean=local,
             mesh_stiffness_mean=mean_secant_stiffness(exact[i]),
-            mesh_compliance_mean=pair_stiffness(e, self.nominal, HARMONICS).mean_compliance if bridged else None,
+            mesh_compliance_mean=None if perfect is None else perfect.mean_compliance,
             rotational=self._rotational(),
             cycles=e.cycles,
         )
@@ -202,10 +221,13 @@ class LoadedPair:
     ) -> RootStressInMesh:
         """See `LoadedTeeth`; with estimates its positions have the peaks of every source."""
         e = self.engagement
-        x = roll_positions(e, POSITIONS)
-        if estimates:
-            x = with_peaks(e, self.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
-        states = loaded_states(e, self.shifted, self.loads, x)
+        if self._quick is not None:
+            states = alike_states(e.solve(e.grid(self._quick.x), self.loads).at(thinned(self._quick)))
+        else:
+            x = self._positions
+            if estimates:
+                x = with_peaks(e, self.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
+            states = loaded_states(e, self.shifted, self.loads, x)
         stress: dict[Member, dict[str, ToothStress]] = {}
         for number, member in enumerate(MEMBERS):
             stress[member] = {

@@ -83,11 +83,48 @@ def pair_history_with(
         ``more(loaded)`` -> that of all pairs at the roll positions of a state, shape (n, P, L).
     """
     found, further = followed(engagement, load, path_positions(engagement, positions), cycle, more)
-    touched = np.flatnonzero((found.load > 0.0).any(axis=1))
-    keep = slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
-    if not engagement.corner_contact:
-        keep = slice(0, found.x.size)
+    keep = _touched(engagement, found)
     return PairHistory(*(getattr(found, one.name)[keep] for one in fields(found))), further[keep]
+
+
+def quick_history(engagement: Engagement, loaded: Loaded) -> PairHistory:
+    """One tooth pair followed by a state over the base pitch, of gears whose teeth are alike: where each pair stands.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    loaded : Loaded
+        At roll positions with both sides of every jump.
+    """
+    contacts = loaded.grid.contacts
+    first, last = _path(engagement)
+    here = np.nonzero((contacts.x >= first) & (contacts.x <= last))
+    here = tuple(one[np.argsort(contacts.x[here], kind="stable")] for one in here)
+    load, deflection = loaded.loads[here], loaded.deflection[here]
+    pressure = engagement.compliance.pressure(load, contacts.relative_radius[here][:, None])
+    error = loaded.transmission_error[here[1]]
+    found = PairHistory(
+        contacts.x[here], contacts.roll_driver[here], load, load / loaded.load, deflection, pressure, error
+    )
+    keep = _touched(engagement, found)
+    return PairHistory(*(getattr(found, one.name)[keep] for one in fields(found)))
+
+
+def _path(engagement: Engagement) -> tuple[float, float]:
+    """Ends of the path, and of what tip corners may add to it [m]."""
+    pair, pitch = engagement.pair, engagement.pair.base_pitch
+    before, after = 0.0, 0.0
+    if engagement.corner_contact:
+        before, after = (min(c.reach, pitch) for c in engagement.meshing.corners)
+    return pair.x_start - before, pair.x_end + after
+
+
+def _touched(engagement: Engagement, found: PairHistory) -> slice:
+    """Positions from the last before a corner touches to the first after it has left; all where none can."""
+    if not engagement.corner_contact:
+        return slice(0, found.x.size)
+    touched = np.flatnonzero((found.load > 0.0).any(axis=1))
+    return slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
 
 
 def path_positions(engagement: Engagement, positions: int) -> Array:
@@ -95,11 +132,8 @@ def path_positions(engagement: Engagement, positions: int) -> Array:
 
     Where tip corners may touch they begin before the path and end after it.
     """
-    pair, pitch = engagement.pair, engagement.pair.base_pitch
-    before, after = 0.0, 0.0
-    if engagement.corner_contact:
-        before, after = (min(c.reach, pitch) for c in engagement.meshing.corners)
-    first, last = pair.x_start - before, pair.x_end + after
+    pitch = engagement.pair.base_pitch
+    first, last = _path(engagement)
     places = [b + k * pitch for b in engagement.breaks for k in range(-2, 6)]
     near = BESIDE * pitch
     beside = [b + side for b in places if first + near < b < last - near for side in (-near, near)]

@@ -176,6 +176,11 @@ class RollGrids:
         return _joined(x, best, column, self.new(x[~known]), known)
 
 
+def columns_of(grid: RollGrid, which: NDArray[np.intp]) -> RollGrid:
+    """A grid at some of its positions."""
+    return _joined(grid.x[which], grid, which, None, np.ones(which.size, dtype=bool))
+
+
 def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | None, known: Mask) -> RollGrid:
     """Columns of two grids, those of the old one where they are known."""
 

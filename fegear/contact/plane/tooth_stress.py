@@ -161,6 +161,12 @@ def loaded_states(
     return LoadedStates(rows, each, [apart(state) for state in rows])
 
 
+def alike_states(state: Loaded) -> LoadedStates:
+    """What `loaded_states` returns of gears whose teeth are alike, of one state and without its errors."""
+    teeth = state.grid.contacts.number.size + 2
+    return LoadedStates([state] * teeth, [[]] * teeth, [np.zeros_like(state.loads)] * teeth)
+
+
 def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Sequence[RootStressInfluence]]) -> Array:
     """Roll positions and, in addition, those where a tooth's root stress is largest, ascending [m].
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _PASSES = 4
 #: Share of the load below which a pair carries nothing: what is left of one that touches without load.
 _NO_SHARE = 1e-9
+#: Harmonics that the points are laid for while a value is being moved: some three points to a wave of the 64th.
+_QUICK_WAVES = 24
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,18 @@ def transmission_error(
     return TransmissionError(load, points, loaded, fourier_series(points, loaded.transmission_error[:, 0], harmonics))
 
 
+def quick_points(engagement: Engagement) -> Panels:
+    """Points over the base pitch while a value is being moved: curves, loads and root stress are read there, too."""
+    pair = engagement.pair
+    return replace(panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=_QUICK_WAVES, ends=True), kinks=True)
+
+
+def thinned(points: Panels) -> NDArray[np.intp]:
+    """Every other point, and those beside break points: root stress is much work at each."""
+    beside = points.weights == 0.0
+    return np.flatnonzero(beside | (np.cumsum(~beside) % 2 == 1))
+
+
 def quick_transmission_errors(
     engagement: Engagement, loads: tuple[float, ...], harmonics: int = 64
 ) -> list[TransmissionError]:
@@ -158,8 +172,7 @@ def quick_transmission_errors(
     harmonics : int
         N of the series.
     """
-    pair = engagement.pair
-    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics, ends=True)
+    points = quick_points(engagement)
     every = engagement.solve(engagement.grid(points.x), loads)
     series = fourier_series(points, every.transmission_error, harmonics)
     return [
@@ -198,11 +211,14 @@ class PairStiffness:
         return float((1.0 / self.mesh) @ self.points.weights / self.points.period)
 
 
-def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> PairStiffness:
+def pair_stiffness(
+    engagement: Engagement, load: float, harmonics: int = 64, points: Panels | None = None
+) -> PairStiffness:
     """Effective tooth-pair stiffness K_Sj = sum_j' k_jj', k the inverse of c_jj'.
 
     By Maxwell's theorem it is the load on pair j, per unit approach, of a pair without modifications or errors (A.11);
-    with a load-dependent contact it is the secant stiffness under `load` [N].
+    with a load-dependent contact it is the secant stiffness under `load` [N]. `points` are those of the quadrature
+    where they have been laid already.
 
     Raises
     ------
@@ -217,7 +233,7 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
                                                                "is on the path of contact",
             'set transmission_error.method = "quadrature" (includes corner contact)',
         )  # fmt: skip
-    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
+    points = points or panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
     grid = engagement.grid(points.x)
     e = np.where(grid.contacts.gap == 0.0, 0.0, np.inf)
     shared = engagement.grids.share(grid, e, np.array([load]))

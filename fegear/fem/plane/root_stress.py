@@ -408,7 +408,8 @@ def _smoothing(points: bytes) -> tuple[csr_array, csr_array]:
     place = (arc - middle) / half
     values = chebyshev.chebvander(place, degree)
     derived = np.stack([chebyshev.chebval(place, chebyshev.chebder(one)) for one in np.eye(degree + 1)], axis=1)
-    row = np.broadcast_to(np.arange(arc.size)[:, None], column.shape)
+    # By rows as they are, in whole numbers that need no look at their size: made anew for each gear that is moved.
+    columns, rows = column.ravel().astype(np.int32), np.arange(arc.size + 1, dtype=np.int32) * np.int32(count)
     weights = (np.einsum("nd,ndk->nk", basis, fit) for basis in (values, derived / half[:, None]))
-    one, other = (csr_array((w.ravel(), (row.ravel(), column.ravel())), shape=(arc.size,) * 2) for w in weights)
+    one, other = (csr_array((w.ravel(), columns, rows), shape=(arc.size,) * 2) for w in weights)
     return one, other
