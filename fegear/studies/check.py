@@ -145,7 +145,7 @@ def check_gear(scene: Scene, name: str, positions: int) -> Checked:
 
 def compare_solvers(known: GearInfluence) -> Solvers:
     """Solve a gear on its own mesh by nested dissection and by scikit-fem (`accuracy.solver`)."""
-    from fegear.fem.plane.influence import solve_influence
+    from fegear.fem.plane.solved_ring import solve_influence
 
     fine, settings = known.fine, known.settings
     found, seconds = [], []

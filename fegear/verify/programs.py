@@ -32,8 +32,8 @@ def _ring_of_60() -> tuple[Estimate, dict[str, Any], Array]:
     from dataclasses import replace
 
     from fegear.fem.plane.estimate import Estimate
-    from fegear.fem.plane.influence import solve_influence
     from fegear.fem.plane.settings import settings_at
+    from fegear.fem.plane.solved_ring import solve_influence
     from fegear.fem.plane.tooth_meshing import mesh_sector
     from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from fegear.fem.plane.elasticity import assemble
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import influence_of_shape
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import loaded_flank
 from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank

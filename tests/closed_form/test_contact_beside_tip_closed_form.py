@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.table import stiffness_table
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import lagrange

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.fem.plane.influence import SIDES, solve_influence
+from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd import odd_influence
 from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
@@ -16,6 +16,7 @@ from fegear.fem.plane.odd.stress_intensity import RINGS
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import shape_codec
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack

@@ -11,8 +11,8 @@ import pytest
 from fegear.contact.plane.edge_law import edge_law, room_slope
 from fegear.contact.plane.shifted_compliance import _TIP
 from fegear.fem.plane.contact_width import corner_angles, wedge_slope
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter

@@ -11,10 +11,10 @@ from fegear.base.errors import FegearError
 from fegear.fem.plane.condensation import condense
 from fegear.fem.plane.contact_width import curvature_slope, log_slope
 from fegear.fem.plane.elasticity import assemble
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.plane.ring_closure import close_ring, coupling_by_doubling, coupling_by_harmonics
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack

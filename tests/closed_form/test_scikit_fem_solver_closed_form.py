@@ -13,9 +13,10 @@ from fegear.base.errors import FegearError, InputError
 from fegear.fem.plane.condensation import condense
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.elements import sector_elements
-from fegear.fem.plane.influence import Influence, solve_influence
+from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.scikit_fem_solver import between_kept
 from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid

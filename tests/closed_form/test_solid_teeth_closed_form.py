@@ -10,7 +10,7 @@ import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
 from fegear.base.errors import RangeError
-from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.trace import lagrange
 from fegear.fem.solid.bands import bands, hats, loads_of

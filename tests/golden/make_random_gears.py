@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from fegear.base.errors import FegearError
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack

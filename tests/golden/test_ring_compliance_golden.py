@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.table import stiffness_table
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.external_tooth import Tooth

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from fegear.fem.plane.estimate import Estimate
-from fegear.fem.plane.influence import Influence, solve_influence
+from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.scikit_fem_alone import solve_alone
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.verify.kept import kept

@@ -134,7 +134,7 @@ def test_both_solvers_are_compared_on_the_gear_s_own_mesh_kind_by_kind(known, mo
                     for k in (0, 1) for side in ("tension", "compression")},
         )  # fmt: skip
 
-    monkeypatch.setattr("fegear.fem.plane.influence.solve_influence", solve)
+    monkeypatch.setattr("fegear.fem.plane.solved_ring.solve_influence", solve)
     found = check.compare_solvers(solved)
     # 0.02 of 4 of compliances, 0.3 of 20 of compressions.
     assert found.difference == pytest.approx(max(0.02 / 4.0, 0.3 / 20.0))

@@ -10,10 +10,10 @@ from scipy.sparse.linalg import splu
 from fegear.base.errors import FegearError
 from fegear.case.reading import read_scene
 from fegear.fem.plane.elasticity import assemble
-from fegear.fem.plane.influence import solve_influence
 from fegear.fem.plane.rim import _outer, rigid_motions
 from fegear.fem.plane.sector_sides import _matching_sides
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.tooth_on_pins import over_the_teeth, tooth_on_pins
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter

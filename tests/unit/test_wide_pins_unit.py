@@ -9,7 +9,7 @@ from scipy.sparse.linalg import splu
 
 import fegear
 from fegear.base.errors import InputError, RangeError
-from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.tooth_on_pins import tooth_on_pins
 from fegear.fem.solid.bands import bands, loads_of

@@ -9,7 +9,7 @@ import fegear
 from fegear.base.errors import RangeError
 from fegear.case.built.solid_influence import check_solid_gear
 from fegear.case.reading import read_scene
-from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.face import face_functions, function_counts, solid_unknowns

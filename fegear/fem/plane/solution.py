@@ -18,7 +18,7 @@ from fegear.fem.plane.bore import check_bore
 from fegear.fem.plane.boundary import fillet_edges
 from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence, Round
-from fegear.fem.plane.influence import Influence, solve_influence
+from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.rim import PinForces
 from fegear.fem.plane.root_stress import FilletStrain
@@ -31,6 +31,7 @@ from fegear.fem.plane.settings import (
     level_for,
     settings_at,
 )
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.supported_section import supported_sector
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.geometry.gear import Gear, Plane

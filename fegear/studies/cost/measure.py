@@ -22,7 +22,8 @@ from fegear.case.built.tooth_influence import gear_to_solve, needed_reach, solve
 from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.on_shafts import gaps_of_even_loads
 from fegear.fem.plane.gear import GearInfluence
-from fegear.fem.plane.influence import Influence, solve_influence
+from fegear.fem.plane.influence import Influence
+from fegear.fem.plane.solved_ring import solve_influence
 from fegear.fem.plane.supported_section import supported_sector
 from fegear.fem.solid.slices import solve_slices, solve_thin_slices
 from fegear.fem.solid.solution import solve_solid
