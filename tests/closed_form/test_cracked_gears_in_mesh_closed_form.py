@@ -20,8 +20,9 @@ from fegear.contact.plane.over_revolution import over_revolution, stress_over_re
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.odd_gear import OddGearInfluence, solve_cracked_gear
+from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
+from fegear.fem.plane.odd.solution import solve_cracked_gear
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
@@ -139,7 +140,7 @@ def test_the_third_teeth_from_a_crack_are_ordinary(monkeypatch):
     assert max(off[-2], off[2]) > 1e-3
     assert max(off[-3], off[3]) < 6e-4
     one = over_revolution(engagement(known, corner=False), LOAD, 12)
-    monkeypatch.setattr("fegear.fem.plane.odd.odd_gear._TOUCHED", 3)
+    monkeypatch.setattr("fegear.fem.plane.odd.odd_gear.TOUCHED", 3)
     other = over_revolution(engagement(farther, corner=False), LOAD, 12)
     assert (one.solved, other.solved) == (7, 9)
     assert one.transmission_error == pytest.approx(other.transmission_error, rel=4e-4)
