@@ -20,7 +20,7 @@ from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve
 from fegear.engine.figure.panel import Panel
 from fegear.fem.plane.odd.crack import Crack, mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.formulas import potential_energy

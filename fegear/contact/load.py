@@ -36,7 +36,7 @@ def load(
     spec : PairSpec
     gears : sequence
         Driver and driven: `fegear.fem.plane.solution.solve_gear` of each for plane teeth, of one with cracked teeth
-        `fegear.fem.plane.odd.solution.solve_cracked_gear`, or any sources of compliance; none where the spec's
+        `fegear.fem.plane.odd.odd_solution.solve_cracked_gear`, or any sources of compliance; none where the spec's
         compliances are those of a formula or of a table. For teeth with a width,
         `fegear.fem.solid.influence.SolidInfluence` of each.
     cache : SolutionCache, optional

@@ -13,7 +13,7 @@ from fegear.fem.plane.odd.crack import Crack, fillet_point, mouth_at_tangent, st
 from fegear.fem.plane.odd.crack_faces import opening_rows, pressed
 from fegear.fem.plane.odd.cracked_sector import FACES, cracked_sector
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear

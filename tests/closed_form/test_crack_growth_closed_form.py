@@ -9,7 +9,7 @@ import pytest
 from fegear.contact.plane.growing_crack import growing_crack
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.growth import LEVEL, equivalent, grow, turning
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.paris import ParisLaw, cycles_to, length_at

@@ -22,7 +22,7 @@ from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.tooth_kind import OddTooth
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear

@@ -13,7 +13,7 @@ from fegear.base.printed import percent
 from fegear.case.built.tooth_influence import rollers_that_pull
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.scikit_fem_alone import solve_alone
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import influence_of_shape, solve_gear

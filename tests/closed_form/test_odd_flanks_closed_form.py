@@ -19,8 +19,8 @@ from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance
 from fegear.contact.plane.over_revolution import over_revolution, stress_over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.other_outline import Missing, OtherTip
-from fegear.fem.plane.odd.solution import solve_cracked_gear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth

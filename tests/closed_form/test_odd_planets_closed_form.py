@@ -17,7 +17,7 @@ from fegear.dynamics.planetary.set_revolution import SetRevolution, with_ordinar
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.gear import Gear, Material

@@ -20,7 +20,7 @@ from fegear.dynamics.train import mesh_excitation as springs
 from fegear.dynamics.train.mesh_excitation import mesh_excitation
 from fegear.dynamics.train.train import Body, Mesh, Torque, Train
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
-from fegear.fem.plane.odd.solution import solve_cracked_gear
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth

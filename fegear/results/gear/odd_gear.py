@@ -63,7 +63,7 @@ def odd_solution_of(upstream: Upstream, gear: str) -> OddGearInfluence:
 
 
 def _compute(asked: OddTeeth, upstream: Upstream, work: Work) -> OddGearInfluence:
-    from fegear.fem.plane.odd.solution import solve_cracked_gear
+    from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 
     ordinary = solution_of(upstream, asked.name)
     return solve_cracked_gear(ordinary, asked.by_number(ordinary.gear.teeth), cache=work.cache)
