@@ -262,6 +262,17 @@ class InvoluteSide(ABC):
         middle = math.pi / self.teeth
         return Arc((0.0, 0.0), self.side * self.root_radius, middle, middle - self.root_land_half_angle)
 
+    @property
+    def root_land_length(self) -> float:
+        """Length of that part [modules]."""
+        return self.root_radius * self.root_land_half_angle
+
+    @property
+    def space_middle(self) -> tuple[float, float]:
+        """Bottom of the middle of the tooth space on the right [modules]."""
+        half = math.pi / self.teeth
+        return self.root_radius * math.sin(half), self.root_radius * math.cos(half)
+
     @cached_property
     def tip_edge(self) -> Arc | Line | None:
         """Rounding or chamfer between flank and tip circle, or None."""

@@ -16,9 +16,10 @@ from scipy.integrate import solve_ivp
 from smooth_tooth import SmoothTooth
 
 from fegear.contact.contact_law import ContactLaw
+from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.neglected_effects import corners_bear
-from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import steady_state

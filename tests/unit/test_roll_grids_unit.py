@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.loaded_pair import LoadedPair
-from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.pair_history import followed
 from fegear.contact.plane.roll_grids import _KEPT, _STATES, RollGrids
 from fegear.contact.plane.root_stress_history import root_stress_history

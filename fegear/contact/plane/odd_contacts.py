@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Index
     from fegear.contact.odd_flank import OddFlank
-    from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+    from fegear.contact.plane.coupled_teeth import PairMatrices
+    from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
     from fegear.geometry.relief import Relief

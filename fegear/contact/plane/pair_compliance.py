@@ -4,73 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from fegear.base.brief import Brief
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.base.tally import tallied
-from fegear.contact.contact_law import LINEAR, ContactLaw
-from fegear.contact.plane.edge_law import EdgeContacts
-from fegear.contact.plane.load_sharing import SharedLoad, share_load
-from fegear.fem.teeth import together
-from fegear.formulas.palmgren import EXPONENT
-from fegear.geometry.pair import MEMBERS
+from fegear.contact.plane.coupled_teeth import CoupledTeeth, Hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import GearCompliance
-    from fegear.contact.plane.meshing import Contacts
-    from fegear.geometry.pair import GearPair, Member
-
-Hertz = Literal["load-dependent", "linear", "none"]
-
-#: Line load at which the diagonal of a load-dependent compliance is stated [N/m]; any would do.
-_REFERENCE_LINE_LOAD = 1e5
-
-
-@dataclass(frozen=True, slots=True)
-class PairMatrices:
-    """Compliances of n pairs at P roll positions, for the whole face, ready for `share_load`.
-
-    Parameters
-    ----------
-    compliance : ndarray, shape (n, n, P)
-        c_jj' [m/N], the diagonal at the reference load; zero in rows of pairs that are absent.
-    law : ContactLaw
-        What the loads change of the diagonal.
-    """
-
-    compliance: Array
-    law: ContactLaw = LINEAR
-
-    def at_load(self, loads: Array) -> Array:
-        """Secant compliances at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
-        return self._with_diagonal(loads, ContactLaw.secant)
-
-    def tangent(self, loads: Array) -> Array:
-        """Derivatives d u_j / d W_j' at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
-        return self._with_diagonal(loads, ContactLaw.tangent)
-
-    def share(self, separation: ArrayLike, load: ArrayLike) -> SharedLoad:
-        """Loads of the pairs at separations [m] under loads [N]; see `share_load`."""
-        return share_load(self.compliance, separation, load, self.law)
-
-    def _with_diagonal(self, loads: Array, of: Callable[[ContactLaw, Array, Array], Array]) -> Array:
-        each = np.arange(loads.shape[0])
-        c = np.broadcast_to(self.compliance[..., None], (each.size, *loads.shape)).copy()
-        c[each, each] = of(self.law.each(lambda values: values[..., None]), c[each, each], loads)
-        return c
+    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)
-class PairCompliance(Brief):
+class PairCompliance(CoupledTeeth, Brief):
     """Compliance of a gear pair from the sources of its two gears.
 
     Parameters
@@ -107,19 +54,9 @@ class PairCompliance(Brief):
             raise InputError("effects.hertz", '"linear"', "requires a load for the contact width")
 
     @property
-    def both(self) -> tuple[GearCompliance, GearCompliance]:
-        """Of driver and driven."""
-        return self.driver, self.driven
-
-    @property
     def face_width(self) -> float:
         """Common face width [m]."""
         return self.pair.face_width
-
-    @property
-    def log_slope(self) -> float:
-        """kappa of both gears for the whole face [m/N]."""
-        return (self.driver.log_slope + self.driven.log_slope) / self.face_width
 
     @property
     def contact_modulus(self) -> float:
@@ -127,22 +64,9 @@ class PairCompliance(Brief):
         return 1.0 / (1.0 / self.pair.driver.plane_modulus + 1.0 / self.pair.driven.plane_modulus)
 
     @property
-    def cycles(self) -> int:
-        """Base pitches after which the same teeth meet again, as far as they differ: 1 where all are alike."""
-        return math.lcm(self.driver.period, self.driven.period)
-
-    def tooth(self, member: Member, number: int, cycle: int) -> int:
-        """Number of a gear's tooth on a pair in a base pitch; see `fegear.fem.teeth`.
-
-        Parameters
-        ----------
-        member : {"driver", "driven"}
-        number : int
-            Of the pair: pair j + 1 is ahead of pair j.
-        cycle : int
-            Number of the base pitch: pair j is on the teeth of pair j - 1 in the base pitch before.
-        """
-        return number - cycle if member == "driver" else cycle - number
+    def middle_of_path(self) -> float:
+        """Before it the driven tip is the nearer one [m]."""
+        return 0.5 * (self.pair.x_start + self.pair.x_end)
 
     def refuse_unequal(self, asker: str) -> None:
         """Refuse gears whose teeth differ where one tooth stands for all.
@@ -154,133 +78,6 @@ class PairCompliance(Brief):
         if self.cycles > 1:
             raise InputError("pair", "teeth that differ", f"are not known to {asker}", "take gears of equal teeth")
 
-    def pattern(self, number: NDArray[np.int64], cycle: int) -> tuple[int, int]:
-        """Which teeth of driver and driven gear are on successive pairs: the same where they answer alike."""
-        first, last = int(number[0]), int(number[-1])
-        return (
-            self.driver.same_as(self.tooth("driver", first, cycle), number.size),
-            self.driven.same_as(self.tooth("driven", last, cycle), number.size),
-        )
-
     def reversed(self) -> PairCompliance:
         """The same gears with driver and driven exchanged."""
         return replace(self, pair=self.pair.reversed(), driver=self.driven, driven=self.driver)
-
-    def source(self, member: Member) -> GearCompliance:
-        """Driver's or driven's."""
-        return self.driver if member == "driver" else self.driven
-
-    @tallied("Hertz widths")
-    def half_width(self, load: Array, relative_radius: Array) -> Array:
-        """Hertzian half-width b = sqrt(4 w R / (pi E*)) [m] under loads [N]."""
-        w = np.asarray(load) / self.face_width
-        return np.asarray(np.sqrt(4.0 * w * relative_radius / (math.pi * self.contact_modulus)))
-
-    def pressure(self, load: Array, relative_radius: Array) -> Array:
-        """Largest Hertzian pressure sqrt(w E* / (pi R)) [Pa]."""
-        w = np.asarray(load) / self.face_width
-        return np.asarray(np.sqrt(w * self.contact_modulus / (math.pi * relative_radius)))
-
-    def matrices(self, at: Contacts, cycle: int = 0) -> PairMatrices:
-        """Compliances of all pairs at all roll positions, with the teeth of a base pitch."""
-        n, positions = at.x.shape
-        face, present = self.face_width, at.present
-        c = np.zeros((n, n, positions))
-        slope = np.zeros((n, positions))
-        reference, follows = _REFERENCE_LINE_LOAD * face, self.hertz == "load-dependent"
-        for j in range(n):
-            here = present[j]
-            if not here.any():
-                c[j, j] = 1.0
-                continue
-            relative = at.relative_radius[j, here]
-            parts = [
-                part
-                for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True)
-                for part in self.own_parts(
-                    member,
-                    self.tooth(member, int(at.number[j]), cycle),
-                    radius[j, here],
-                    relative,
-                    self.contact_load,
-                    power=not follows,
-                )
-            ]
-            own = np.asarray(sum(parts))
-            c[j, j, here] = own / face
-            c[j, j, ~here] = 1.0
-            if follows:
-                slope[j, here] = self.log_slope
-        if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
-            self._couple(c, at, cycle)
-        edges = None
-        if follows and at.edge.max() > -np.inf and self.log_slope > 0.0:
-            edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
-        q = self.driver.power + self.driven.power if follows else 0.0
-        return PairMatrices(c, ContactLaw(slope, reference, edges, q * face**-EXPONENT))
-
-    @property
-    def contact_load(self) -> float:
-        """Load at which the diagonal of `matrices` holds, and all of a contact that does not follow its load [N]."""
-        return self.nominal_load if self.hertz == "linear" else _REFERENCE_LINE_LOAD * self.face_width
-
-    def own_parts(
-        self, member: Member, i: int, radius: Array, relative_radius: Array, load: ArrayLike, *, power: bool = True
-    ) -> tuple[Array, ...]:
-        """What a tooth's own compliance per line load adds up from, its contact that of a load [m^2/N].
-
-        Parameters
-        ----------
-        member : {"driver", "driven"}
-        i : int
-            Number of the tooth.
-        radius, relative_radius : ndarray, shape (P,)
-            Of points of the flank, and of curvature there [m].
-        load : array_like, shape () or (P,)
-            [N].
-        power : bool
-            Whether Palmgren's contact counts.
-        """
-        source = self.source(member)
-        parts = [source.own(i, radius)]
-        if power and source.power > 0.0:
-            parts.append(np.asarray(source.power * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
-        if self.hertz != "none" and source.log_slope > 0.0:
-            b = self.half_width(np.asarray(load), relative_radius)
-            parts.append(source.log_slope * np.log(source.reference_half_width(radius) / b))
-        return tuple(parts)
-
-    def _edges(self, at: Contacts, half_width: Array) -> EdgeContacts:
-        """Contacts near the tips: that of the driven gear touches at the start of the path, the driver's at its end."""
-        early = at.x < 0.5 * (self.pair.x_start + self.pair.x_end)
-        (soft1, least1), (soft2, least2) = (
-            (softer * source.log_slope / self.log_slope / self.face_width, least)
-            for source in self.both
-            for softer, least in (source.tip_wedge,)
-        )
-        wedge, least = np.where(early, soft2, soft1), np.where(early, least2, least1)
-        return EdgeContacts(at.edge / half_width, wedge, least / half_width)
-
-    @tallied("neighbours")
-    def _couple(self, c: Array, at: Contacts, cycle: int) -> None:
-        """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell)."""
-        for k in range(1, at.number.size):
-            for rows in self._alike(at.number, k, cycle):
-                both = at.present[rows] & at.present[rows + k]
-                if not both.any():
-                    continue
-                first = int(at.number[rows[0]])
-                driver, driven = (
-                    self.source(member).between(
-                        self.tooth(member, first, cycle), self.tooth(member, first + k, cycle),
-                        radius[rows][both], radius[rows + k][both],
-                    )
-                    for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True)
-                )  # fmt: skip
-                value = driver + driven
-                j, p = np.nonzero(both)
-                c[rows[j], rows[j] + k, p] = c[rows[j] + k, rows[j], p] = value / self.face_width
-
-    def _alike(self, number: NDArray[np.int64], k: int, cycle: int) -> list[NDArray[np.intp]]:
-        """Rows j of pairs such that pairs j and j + k are on like teeth: all of them at once where all teeth are."""
-        return together(self.pattern(number[j : j + k + 1], cycle) for j in range(number.size - k))

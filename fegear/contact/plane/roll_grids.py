@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Mask
 from fegear.contact.contact_law import ContactLaw
+from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad
 from fegear.contact.plane.meshing import Contacts, Meshing
-from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.geometry.pair import GearPair
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.

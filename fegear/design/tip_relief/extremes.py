@@ -18,8 +18,8 @@ from functools import cached_property
 import numpy as np
 
 from fegear.base.arrays import Array, Floats, Index, Mask
+from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.edge_law import EdgeContacts
-from fegear.contact.plane.pair_compliance import PairMatrices
 from fegear.design.relief_bench import Bench
 from fegear.design.tip_relief.between_positions import Bends, HandOver, Places, State, solved
 from fegear.design.tip_relief.kinks import Kinks, Positions

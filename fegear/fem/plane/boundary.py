@@ -19,6 +19,7 @@ from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.curves import Curve, arc_length
 from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.outline import turned
+from fegear.geometry.tooth_side import ToothSide
 
 Law = Callable[[Array], Array]
 
@@ -185,34 +186,10 @@ def sector_boundary(
         If the bore lies so near the centre or the outline that elements cannot resolve what is left.
     """
     check_bore(tooth, bore_radius)
-    pieces, side = tooth.outline, tooth.side
+    side = tooth.side
     pitch_angle = 2.0 * math.pi / tooth.teeth
-    beside = max(float(_fillet_size(one, settings)(np.zeros(1))[0]) for one in (tooth, tooth.back))
-    short = tooth.root_radius * tooth.root_land_half_angle < max(_SHORTEST_LAND, _LEAST_LAND * beside)
-    land = (
-        []
-        if tooth.root_land is None or short
-        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings), side=side)]
-    )
-    front_laws = front_sizes(tooth, settings, contacts)
-    fewest = _fewest_edges(tooth, settings)
-    short_fillet = _length(tooth.fillet) < _SHORT_FILLET
-    front = [
-        _on_curve(
-            _boundary(piece, tooth),
-            pieces[piece],
-            law,
-            fewest if piece == "fillet" else 1,
-            dense=short_fillet and piece == "flank",
-            side=side,
-        )
-        for piece, law in front_laws.items()
-        if piece in pieces
-    ]
-    if not land:
-        front[0] = _from_the_side(front[0], tooth)
-    back = _back(tooth, settings, short=not land)
-    top = (land + front)[0].vertices
+    above, back = tooth_chains(tooth, settings, contacts)
+    top = above[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
     outer = float(np.hypot(*top[:, 0]))
 
@@ -235,12 +212,44 @@ def sector_boundary(
         by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
         bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
         bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
-    chains = [bore, side_b, *land, *front, *back, side_a]
+    chains = [bore, side_b, *above, *back, side_a]
     # Round the sector of a ring gear, which lies outside its outline, this runs clockwise.
     return chains if side > 0 else [_reversed(chain) for chain in reversed(chains)]
 
 
-def _back(tooth: InvoluteSide, settings: MeshSettings, *, short: bool) -> list[Chain]:
+def tooth_chains(
+    tooth: ToothSide, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+) -> tuple[list[Chain], list[Chain]]:
+    """Edges from the middle of the right tooth space up to the middle of the tip land, and down to the left space."""
+    pieces, side = tooth.outline, tooth.side
+    beside = max(float(_fillet_size(one, settings)(np.zeros(1))[0]) for one in (tooth, tooth.back))
+    short = tooth.root_land_length < max(_SHORTEST_LAND, _LEAST_LAND * beside)
+    land = (
+        []
+        if tooth.root_land is None or short
+        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings), side=side)]
+    )
+    front_laws = front_sizes(tooth, settings, contacts)
+    fewest = _fewest_edges(tooth, settings)
+    short_fillet = _length(tooth.fillet) < _SHORT_FILLET
+    front = [
+        _on_curve(
+            _boundary(piece, tooth),
+            pieces[piece],
+            law,
+            fewest if piece == "fillet" else 1,
+            dense=short_fillet and piece == "flank",
+            side=side,
+        )
+        for piece, law in front_laws.items()
+        if piece in pieces
+    ]
+    if not land:
+        front[0] = _from_the_side(front[0], tooth)
+    return land + front, _back(tooth, settings, short=not land)
+
+
+def _back(tooth: ToothSide, settings: MeshSettings, *, short: bool) -> list[Chain]:
     """The other side of the sector from the middle of the tip land to that of the tooth space, whose land is short."""
     back, laws = tooth.back, _back_sizes(tooth, settings)
     pieces, side = back.outline, tooth.side
@@ -263,15 +272,14 @@ def _reversed(chain: Chain) -> Chain:
     return Chain(chain.name, chain.vertices[:, ::-1], chain.middles[:, ::-1], -chain.tangents[:, ::-1])
 
 
-def _from_the_side(fillet: Chain, tooth: InvoluteSide) -> Chain:
+def _from_the_side(fillet: Chain, tooth: ToothSide) -> Chain:
     """Fillet that starts in the middle of the tooth space, on the side of the sector."""
     vertices = fillet.vertices.copy()
-    half = math.pi / tooth.teeth
-    vertices[:, 0] = tooth.root_radius * math.sin(half), tooth.root_radius * math.cos(half)
+    vertices[:, 0] = tooth.space_middle
     return Chain(fillet.name, vertices, fillet.middles, fillet.tangents)
 
 
-def _boundary(piece: str, tooth: InvoluteSide) -> str:
+def _boundary(piece: str, tooth: ToothSide) -> str:
     """Name of the boundary that a piece of the outline belongs to; a rounding carries load as the flank does."""
     if piece == "tip_edge" and tooth.tip_rounding > 0.0:
         return "tip_rounding"
@@ -282,14 +290,14 @@ def _length(curve: Curve) -> float:
     return float(arc_length(curve)[1][-1])
 
 
-def _land_size(tooth: InvoluteSide, settings: MeshSettings) -> Law:
+def _land_size(tooth: ToothSide, settings: MeshSettings) -> Law:
     """Edges on the root land grow away from the fillet."""
-    length = tooth.root_radius * tooth.root_land_half_angle
+    length = tooth.root_land_length
     first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
     return lambda s: first + settings.growth * (length - s)
 
 
-def _fewest_edges(tooth: InvoluteSide, settings: MeshSettings) -> int:
+def _fewest_edges(tooth: ToothSide, settings: MeshSettings) -> int:
     """Least number of edges along a fillet."""
     if _length(tooth.fillet) >= _SHORT_FILLET:
         return _FEWEST_FILLET_EDGES
@@ -308,7 +316,7 @@ def fillet_edges(tooth: InvoluteSide, settings: MeshSettings) -> float:
     return float(edges.sum() ** 2 / (edges**2).sum())
 
 
-def _fillet_size(tooth: InvoluteSide, settings: MeshSettings) -> Law:
+def _fillet_size(tooth: ToothSide, settings: MeshSettings) -> Law:
     """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
     parameter, length = arc_length(tooth.fillet)
     radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
@@ -322,7 +330,7 @@ def _fillet_size(tooth: InvoluteSide, settings: MeshSettings) -> Law:
     return lambda s: np.interp(s, length, sizes)
 
 
-def _back_sizes(tooth: InvoluteSide, settings: MeshSettings) -> dict[str, Law]:
+def _back_sizes(tooth: ToothSide, settings: MeshSettings) -> dict[str, Law]:
     """Edge lengths along the other side from its fillet to the middle of the tip land.
 
     Nothing is loaded there: edges grow away from the fillet, from that middle, where they are as long as the loaded
@@ -350,7 +358,7 @@ def _back_sizes(tooth: InvoluteSide, settings: MeshSettings) -> dict[str, Law]:
 
 
 def front_sizes(
-    tooth: InvoluteSide, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+    tooth: ToothSide, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
 ) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
     grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.geometry.gear import Plane
-from fegear.geometry.involute_side import InvoluteSide
+from fegear.geometry.tooth_side import ToothSide
 
 #: A contact's usual half-width [modules], at which what depends on it is reported.
 REFERENCE_HALF_WIDTH = 0.02
@@ -125,7 +125,7 @@ def wedge_slope(angle: float) -> float:
     return 2.0 * (along / (angle + math.sin(angle)) + across / (angle - math.sin(angle)))
 
 
-def corner_angles(tooth: InvoluteSide) -> tuple[float, float]:
+def corner_angles(tooth: ToothSide) -> tuple[float, float]:
     """Angles inside the material where the flank starts and where it ends [rad]; pi where the outline goes on smoothly.
 
     A tip rounding counts as the corner that it rounds off.

@@ -37,6 +37,8 @@ class SectorMesh:
     tip : int
         Vertex at the tip of a crack, -1 without one. The middle nodes of its edges lie at a quarter of them, so that
         displacements hold the root of the distance from it, and the elements' determinants vanish there.
+    pitch : float
+        Of a rack's teeth, which stand side by side along x [modules]; 0 of a gear's, which stand about its axis.
     """
 
     points: Array
@@ -47,6 +49,7 @@ class SectorMesh:
     seconds: float = field(default=0.0, compare=False)
     bends: Mapping[str, Array] = field(default_factory=dict)
     tip: int = -1
+    pitch: float = 0.0
 
     def __post_init__(self) -> None:
         """Freeze the arrays and refuse inverted elements."""
@@ -71,6 +74,10 @@ class SectorMesh:
         nodes = self.points[:, self.triangles]
         a, b = np.einsum("cim,iq->cqm", nodes, du), np.einsum("cim,iq->cqm", nodes, dv)
         return a[0] * b[1] - a[1] * b[0]
+
+    def outward(self, points: Array) -> Array:
+        """How far out points are, shape (2, ...) to (...): from the axis, on a rack above its reference line."""
+        return points[1] if self.pitch else np.hypot(*points)
 
     @property
     def vertex_count(self) -> int:

@@ -37,8 +37,8 @@ class FilletStrain:
     strain : ndarray, shape (points, n)
         Tangential strain per displacement [1/modules].
     radius, angle, arc, tangent_angle : ndarray, shape (points,)
-        Distance from the gear's centre [modules], clockwise angle from the tooth's centre line [rad], arc length from
-        the root land [modules], angle between the fillet's tangent and the tooth's centre line [rad] (30 deg at the
+        Distance from the gear's centre, of a rack height above its reference line [modules]; clockwise angle from the
+        tooth's centre line [rad], arc length from the root land [modules], angle between the fillet's tangent and the tooth's centre line [rad] (30 deg at the
         point that ISO 6336-3 looks at).
     length : float
         Of the whole fillet [modules].
@@ -90,7 +90,7 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str, sid
     return FilletStrain(
         dofs=unknowns,
         strain=strain.reshape(n * q, -1),
-        radius=np.hypot(*flat),
+        radius=mesh.outward(flat),
         angle=np.arctan2(*flat),
         arc=arc.reshape(-1),
         tangent_angle=lean,

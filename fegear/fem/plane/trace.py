@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.involute_side import InvoluteSide
+    from fegear.geometry.tooth_side import ToothSide
 
 _GAUSS = np.polynomial.legendre.leggauss(6)
 
@@ -186,12 +187,7 @@ class LoadedFlank:
         """Unit vectors into the material at places of edges, shape (2, *xi.shape)."""
         on_flank = (edge >= self.first_flank_edge) & (edge < self.after_flank_edge)
         normal = np.empty((2, *xi.shape))
-        # The involute's own: tangent to the base circle, so that a load's torque is exactly the base radius times it.
-        e = edge[on_flank] - self.first_flank_edge
-        along = xi[on_flank]
-        low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (e, e + 1))
-        phi = self.base_half_angle - self.side * np.sqrt(np.maximum(low + (high - low) * along, 0.0))
-        normal[0, on_flank], normal[1, on_flank] = -np.cos(phi), np.sin(phi)
+        normal[:, on_flank] = self._normal_on_flank(edge[on_flank] - self.first_flank_edge, xi[on_flank])
         if not on_flank.all():
             off = ~on_flank
             beside = xi[off]
@@ -199,6 +195,12 @@ class LoadedFlank:
             tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge[off]], slope)
             normal[:, off] = self.side * np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
         return normal
+
+    def _normal_on_flank(self, edge: Index, along: Array) -> Array:
+        """The involute's: tangent to the base circle, so that a load's torque is exactly the base radius times it."""
+        low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (edge, edge + 1))
+        phi = self.base_half_angle - self.side * np.sqrt(np.maximum(low + (high - low) * along, 0.0))
+        return np.stack([-np.cos(phi), np.sin(phi)])
 
     @cached_property
     def _normal_at_end(self) -> Array:
@@ -308,8 +310,26 @@ class BoundaryUnknowns(Protocol):
         """Order of the elements."""
 
 
-def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: InvoluteSide, margin: float) -> LoadedFlank:
-    """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
+@dataclass(frozen=True)
+class LoadedRun:
+    """The run of edges of a loaded flank, whatever curve the flank is; fields as of `LoadedFlank`."""
+
+    dofs: Index
+    points: Array
+    arc: Array
+    first_flank_edge: int
+    after_flank_edge: int
+    upper_corner: bool
+
+    @property
+    def vertices(self) -> Array:
+        """Ends of the flank's edges from the fillet to the tip, shape (2, n_flank + 1) [modules]."""
+        first, after = self.first_flank_edge, self.after_flank_edge
+        return np.concatenate([self.points[:, :1, first], self.points[:, 1, first:after]], axis=1)
+
+
+def loaded_run(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: ToothSide, margin: float) -> LoadedRun:
+    """Collect the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
 
     def upward(name: str) -> tuple[Index, Index, Array]:
         edges, dofs = toward_tip(mesh, elasticity.edge_dofs[name], name, tooth.side)
@@ -332,19 +352,24 @@ def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: Involute
     run = np.concatenate([dofs[:, :1, 0], dofs[:, 1:, :].transpose(0, 2, 1).reshape(2, -1)], axis=1)
     _, tangent = quadratic_edge(points, 0.5 + 0.5 * _GAUSS[0])
     lengths = (np.hypot(*tangent) * 0.5 * _GAUSS[1]).sum(axis=1)
-    vertices = np.hypot(*np.concatenate([points[:, :1, first], points[:, 1, first:after]], axis=1))
-    rb = tooth.base_radius
+    arc = np.concatenate([[0.0], np.cumsum(lengths)])
+    return LoadedRun(run.reshape(-1), points, arc, first, after, upper_corner=not rounded)
+
+
+def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: InvoluteSide, margin: float) -> LoadedFlank:
+    """Collect the loaded run of a gear's tooth, as `loaded_run`."""
+    run, rb = loaded_run(mesh, elasticity, tooth, margin), tooth.base_radius
     return LoadedFlank(
-        dofs=run.reshape(-1),
-        points=points,
-        arc=np.concatenate([[0.0], np.cumsum(lengths)]),
-        first_flank_edge=first,
-        after_flank_edge=after,
-        roll_squared=np.maximum(vertices**2 / rb**2 - 1.0, 0.0),
+        dofs=run.dofs,
+        points=run.points,
+        arc=run.arc,
+        first_flank_edge=run.first_flank_edge,
+        after_flank_edge=run.after_flank_edge,
+        roll_squared=np.maximum(np.hypot(*run.vertices) ** 2 / rb**2 - 1.0, 0.0),
         base_radius=rb,
         order=elasticity.order,
         lower_corner=tooth.undercut,
-        upper_corner=not rounded,
+        upper_corner=run.upper_corner,
         side=tooth.side,
     )
 
@@ -352,7 +377,7 @@ def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: Involute
 def toward_tip(mesh: SectorMesh, along: NDArray[Scalar], name: str, side: int) -> tuple[Index, NDArray[Scalar]]:
     """Edges of a boundary from the root to the tip, and what is known along them, (c, nodes, n), in the same order."""
     edges = mesh.edges[name]
-    first, second, middle = (side * np.hypot(*mesh.points[:, ends]) for ends in edges)
+    first, second, middle = (side * mesh.outward(mesh.points[:, ends]) for ends in edges)
     # The middle node decides for edges whose ends lie on the root circle alike.
     onward, order = first < second, np.argsort(middle)
     edges = np.where(onward, edges, edges[[1, 0, 2]])[:, order]

@@ -1,0 +1,1 @@
+"""A rack: equal sectors side by side, with two ends."""
