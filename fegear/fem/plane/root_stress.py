@@ -38,8 +38,8 @@ class FilletStrain:
         Tangential strain per displacement [1/modules].
     radius, angle, arc, tangent_angle : ndarray, shape (points,)
         Distance from the gear's centre, of a rack height above its reference line [modules]; clockwise angle from the
-        tooth's centre line [rad], arc length from the root land [modules], angle between the fillet's tangent and the tooth's centre line [rad] (30 deg at the
-        point that ISO 6336-3 looks at).
+        tooth's centre line [rad], arc length from the root land [modules], angle between the fillet's tangent and the
+        tooth's centre line [rad] (30 deg at the point that ISO 6336-3 looks at).
     length : float
         Of the whole fillet [modules].
     """
