@@ -175,6 +175,12 @@ def test_what_is_not_proven_or_not_within_the_limits_is_said(outcome):
     none = presented(outcome, found={name: broken})
     assert any(class_of(n) is NoteClass.FAILS for n in none.remarks)
     assert "no fillet" in none.answer.sentences[0]
+    assert not any("generated = false" in n for n in none.remarks)
+    hobbed = presented(outcome, asked(limits=Limits(generated=True)), found={name: broken})
+    assert any("generated = false" in n for n in hobbed.remarks)
+    above = presented(outcome, full=replace(design.full, stress=0.99 * design.best.stress))
+    assert any("the full fillet of a rack is less stressed by 1.0 %" in n for n in above.remarks)
+    assert not any("full fillet of a rack is less" in n for n in outcome.remarks)
     worse = presented(outcome, best=replace(design.best, stress=1.2 * design.present.stress))
     assert any("does not exceed" in n for n in worse.remarks)
     alone = presented(outcome, full=None, off=(math.nan, math.nan))

@@ -82,14 +82,21 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
     shown: FilletShown = seen.data
     design, subject = shown.design, f"Pair {seen.name}, gear {seen.asked.gear}"
     if not design.kept:
+        made = ", or set fillet_design.generated = false" if seen.asked.limits.generated else ""
         yield failing(
             f"{subject}: no fillet within the limits was found; reduce fillet_design.minimum_radius or "
-            "fillet_design.clearance."
+            f"fillet_design.clearance{made}."
         )
     elif shown.gain <= shown.gain_error:
         yield exceeding(
             f"{subject}: the gain of {percent(shown.gain)} does not exceed its estimated error of "
             f"{percent(shown.gain_error)}; reduce accuracy.tolerance or keep the present fillet."
+        )
+    over_full = shown.gain_over_full_rounded
+    if design.kept and over_full is not None and over_full < 0.0:
+        yield exceeding(
+            f"{subject}: the full fillet of a rack is less stressed by {percent(-over_full)}, so that the search was "
+            "too coarse; increase fillet_design.waves and fillet_design.searches."
         )
     if shown.spread_of_searches is None:
         yield f"{subject}: the minimum by a single search is not verified; set fillet_design.searches = 3."
