@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.case.gear import GearPart
+    from fegear.case.gear_material import MaterialPart
     from fegear.case.model import Case
     from fegear.geometry.thickness import ToothNumbers
 
@@ -165,7 +166,19 @@ def _generating_shift(part: GearPart, numbers: ToothNumbers, m: float) -> float:
     return numbers.shift_of_chord_at(chord, part.chordal_height / m, 0.5 * (part.tip_diameter or math.nan) / m)
 
 
+def _modulus(material: MaterialPart) -> str:
+    """With which modulus a plastic is computed, and what it is for."""
+    said = f"E = {material.modulus * 1e-9:.4g} GPa"
+    if material.creep_modulus is not None:
+        return f"{said} (creep_modulus) for lasting loads; vibration depends on the short-term modulus"
+    if material.modulus_over_temperature is not None:
+        return f"{said} at {material.temperature:g} degC (modulus_over_temperature), for loads that do not last"
+    return ""
+
+
 def _material(part: GearPart, _name: str) -> tuple[GearPart, str]:
+    if soft := _modulus(part.material):
+        return part, soft
     found = None if part.material.name is None else named_material(part.material.name)
     if found is None:
         return part, ""

@@ -18,6 +18,17 @@ _STIFFEST_IRON = 190e9
 _SOFTEST_STEEL, _SOFTEST_METAL = 170e9, 60e9
 
 
+def refuse_plastic(scene: Scene, gear: str) -> None:
+    """Refuse to rate a gear that is neither steel nor iron and has no strength: no stress number would help it."""
+    modulus = scene.gears[gear].material.young_modulus
+    if modulus < _SOFTEST_METAL and scene.case.gear[gear].strength is None:
+        raise InputError(
+            f"gear.{gear}.material", f"{modulus * 1e-9:.4g} GPa",
+            "is no steel or iron: ISO 6336 and AGMA do not rate plastic gears (VDI 2736 applies)",
+            "remove rating from results; root-stress-history and load-sharing are valid for any material",
+        )  # fmt: skip
+
+
 def _refuse_soft(scene: Scene, gear: str, material: str, said: list[str]) -> None:
     """Refuse plastics under the name of a steel, whatever their own stress limits; a soft steel is `said`."""
     modulus = scene.gears[gear].material.young_modulus

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fegear.base.errors import InputError
 from fegear.base.notes import assuming
 from fegear.case.built.gear_quality import gear_quality
-from fegear.case.built.gear_strength import gear_strength
+from fegear.case.built.gear_strength import gear_strength, refuse_plastic
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_alignment import pair_alignment
 from fegear.case.built.rated_body import gear_body
@@ -119,7 +119,10 @@ def check_pair_to_rate(scene: Scene, name: str) -> None:
         With the key that is missing.
     """
     part = scene.case.pair[name]
-    for gear in dict.fromkeys((part.driver, part.driven)):
+    gears = dict.fromkeys((part.driver, part.driven))
+    for gear in gears:
+        refuse_plastic(scene, gear)
+    for gear in gears:
         for key, why, example in (
             (
                 "strength",
