@@ -35,6 +35,17 @@ def helical(section, degrees=20.0):
     return extruded(section, stations, math.tan(math.radians(degrees)) / TOOTH.pitch_radius)
 
 
+def test_stations_along_the_face_are_as_many_as_their_law_wants():
+    """Evenly where the finest layer is the thickest, one layer where the ends of a band are near each other."""
+    assert graded_stations(4.0, (), 0.5, 0.5, 0.5) == pytest.approx(np.linspace(-2.0, 2.0, 9))
+    assert graded_stations(4.0, (0.1, 0.2), 1.0, 0.0, 1.0) == pytest.approx([-2.0, -0.95, 0.1, 0.2, 1.1, 2.0])
+    found = np.diff(graded_stations(4.0, (), 0.1, 0.5, 10.0))
+    assert found == pytest.approx(found[::-1])
+    # a layer of h(s) = 0.1 + 0.5 s: ln(1 + 0.5 * 2 / 0.1) / 0.5 of them on either half
+    assert found.size == round(2.0 * math.log(11.0) / 0.5)
+    assert found[1] / found[0] == pytest.approx(math.exp(0.5 * 2.0 * math.log(11.0) / 0.5 / found.size), rel=2e-3)
+
+
 def test_the_solid_has_no_seams(section):
     """Every inner face belongs to two elements, and those of one alone make a closed surface: a torus."""
     mesh = helical(section)

@@ -51,6 +51,7 @@ def test_uncoupled_modes_cross_and_keep_their_shapes(count):
     assert len(met) == 1
     assert met[0].value == pytest.approx(axial_and_bending_meet(), rel=1e-5)
     assert met[0].gap == 0.0
+    assert met[0].first < met[0].second
     assert not any(BENDING in (meeting.first, meeting.second) for meeting in found.veerings)
 
 
@@ -72,6 +73,7 @@ def test_a_coupling_however_weak_makes_them_veer_with_the_gap_of_perturbation_th
         assert np.diff(np.sort(found.ratio, axis=1)[:, ::-1] - found.ratio, axis=0) == pytest.approx(0.0, abs=1e-12)
         met = [meeting for meeting in found.veerings if BENDING in (meeting.first, meeting.second)]
         assert len(met) == 1
+        assert met[0].first < met[0].second
         assert not found.crossings
         assert met[0].value == pytest.approx(meet, rel=max(3e-3, 20.0 * kappa**2))
         # The trail passes the narrowest place within a fraction of its width.

@@ -30,6 +30,15 @@ def displaced(planets, n, tangential, radial=0.0):
     return errors
 
 
+def test_a_mirrored_set_has_its_planets_on_the_other_side():
+    found = unshifted(20, 20, 4)
+    one, other = model(found), model(found, mirrored=True)
+    np.testing.assert_array_equal(one.angles, found.angles)
+    np.testing.assert_array_equal(other.angles, -found.angles)
+    # the motion of the planets, and what it does at the meshes, is the mirror image
+    assert np.sort(np.abs(one.mesh_rows), axis=None) == pytest.approx(np.sort(np.abs(other.mesh_rows), axis=None))
+
+
 @pytest.mark.parametrize("planets", [3, 4, 5, 6])
 @pytest.mark.parametrize("floating", [True, False])
 @pytest.mark.parametrize("pin", [PIN, math.inf])

@@ -246,6 +246,20 @@ def test_wimmer_over_the_face_is_brute_force_and_ends_in_both_limits():
     assert wimmer(whole) == pytest.approx(overlapping(whole), rel=1e-9)
 
 
+def test_the_approach_factor_falls_from_one_to_six_tenths():
+    """X_Q over the ratio of the contact ratios of approach and recess, 1 up to 1.5, 0.6 from 3 on."""
+    found = []
+    for shifts in ((0.6, -0.5), (0.3, -0.2), (0.0, 0.0), (-0.2, 0.2), (-0.3, 0.4), (-0.4, 0.6), (-0.4, 0.75)):
+        gears = (Gear(Tooth(26, profile_shift=shift), 3e-3, 0.02, face_width=0.02) for shift in shifts)
+        one = rated(GearPair(*gears))
+        first, second = part21_integral.contact_ratios(one.pair)[::-1]
+        found.append(first / second)
+        assert part21_integral.integral_temperature(one).approach == pytest.approx(
+            float(np.interp(first / second, [1.5, 3.0], [1.0, 0.6])), rel=1e-12
+        )
+    assert min(found) < 1.5 < found[-3] < found[-2] < 3.0 < max(found)
+
+
 def test_a_pair_and_its_reverse_warm_alike_but_for_the_shock_of_approach():
     """Whichever gear drives: friction, geometry at the pinion's tip, film and mirrored flash temperatures."""
     for pair in (fzg_type_a(), fzg_type_c()):
