@@ -1,0 +1,234 @@
+"""Small parts by what they stand for: peaks, loads that change places, motions over revolutions, lists of defaults."""
+
+import math
+import os
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.atlas.shipped import shipped_atlas
+from fegear.base.errors import GeometryError
+from fegear.case.crack_growth import CrackGrowthPart
+from fegear.case.flank_design import FlankDesignPart
+from fegear.contact.plane.neglected_effects import _load_change
+from fegear.contact.wide import spots
+from fegear.dynamics.motion import motion_over_revolution as over_revolution
+from fegear.dynamics.train.tooth_strain import ToothStrain
+from fegear.engine import processes
+from fegear.engine.stage import Task
+from fegear.fem.plane.estimate import Estimate
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.results.gear import stiffness
+from fegear.results.pair import crack_path
+from fegear.results.relief.flank_design_data import FlanksShown
+from fegear.studies.cost import knobs
+
+
+def test_the_peak_of_a_strain_is_in_the_sense_of_the_largest_static_one():
+    peak = ToothStrain._peak.fget
+    total = np.array([5.0, -3.0, 1.0])
+    assert peak(SimpleNamespace(static=np.array([0.1, -2.0, 1.0]), total=total)) == 1
+    assert peak(SimpleNamespace(static=np.array([-0.1, -0.2, 1.0]), total=total)) == 0
+    assert peak(SimpleNamespace(static=np.array([0.0, -2.0, 0.5]), total=-total)) == 0
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_largest_change_of_a_load_is_of_pairs_with_one_number(turned):
+    def state(numbers, loads):
+        grid = SimpleNamespace(contacts=SimpleNamespace(number=np.array(numbers)))
+        return SimpleNamespace(grid=grid, loads=np.array(loads, dtype=float)[:, None, None])
+
+    less, more = state([0, 1], [60.0, 40.0]), state([-1, 0, 1, 2], [7.0, 50.0, 35.0, 8.0])
+    after, before = (less, more) if turned else (more, less)
+    change = _load_change(lambda x: [after, before], np.zeros(1))
+    assert change.tolist() == [[10.0 if turned else -10.0]]
+
+
+@pytest.mark.parametrize(("cycles", "duration", "averaged"), [(3, 6.0, 2), (3, 3.0, 1), (4, 1.0, 1)])
+def test_a_motion_over_a_revolution_is_the_mean_of_its_repetitions(monkeypatch, cycles, duration, averaged):
+    """A mesh once a second from phase 0.25 on; every other revolution is higher by two."""
+    asked = []
+
+    def signal(at, order):
+        asked.append(order)
+        high = 2.0 * (np.floor((at + 0.25 + 1e-9) / cycles) % 2.0)
+        own = (order + 1.0) * np.cos(2.0 * np.pi * (at + 0.25) / cycles) + high
+        return np.stack([np.zeros_like(at), own], axis=1)
+
+    path = SimpleNamespace(duration=duration, approach=signal, mesh_forces=lambda at: signal(at, 4))
+    model = SimpleNamespace(parts=lambda: SimpleNamespace(frequency=np.array([9.0, 1.0])))
+    state = SimpleNamespace(trajectory=lambda: path, model=model, repeats=True)
+    monkeypatch.setattr(over_revolution, "without_mesh_harmonics", lambda te, n: te * n)
+    pair = SimpleNamespace(driver=SimpleNamespace(teeth=20))
+    found = over_revolution.motion_over_revolution(state, 1, pair, cycles, 0.25)
+    samples = 128 * cycles
+    assert found.averaged == averaged
+    assert found.te.shape == (samples,)
+    assert sorted(asked) == [0, 2, 4]
+    s = np.arange(samples) / 128
+    assert found.time == pytest.approx(s)
+    assert found.driver_angle == pytest.approx(2.0 * math.pi * s / 20)
+    assert (found.cycles, found.frequency, found.repeats) == (cycles, 1.0, True)
+    assert found.te_residual == pytest.approx(found.te * cycles)
+    if duration == 6.0:
+        wave = np.cos(2.0 * np.pi * s / cycles)
+        for values, times in ((found.te, 1.0), (found.acceleration, 3.0), (found.force, 5.0)):
+            assert values == pytest.approx(times * wave + 1.0, abs=1e-9)
+
+
+def test_misalignment_scatters_over_more_than_one_place():
+    for size, scattered in ((1, False), (2, True), (3, True)):
+        task = SimpleNamespace(scatter=SimpleNamespace(over_face=np.zeros(size)))
+        data = SimpleNamespace(design=SimpleNamespace(task=task))
+        assert FlanksShown.scattered.fget(data) is scattered
+
+
+def test_spots_of_several_loads_are_put_together_with_the_most_steps(monkeypatch):
+    from fegear.base.errors import ConvergenceError
+    from fegear.contact.wide.complementarity import Contact
+
+    def solve(known, gap, load, *more, **_):
+        raise ConvergenceError("never together")
+
+    def own(known, gap, load):
+        at = float(load[0, 0])
+        parts = (np.full((1, 1), value * at) for value in (1.0, 2.0, 3.0, 4.0))
+        return SimpleNamespace(spot=None if at == 3.0 else np.array([at])), Contact(*parts, int(10 - at))
+
+    monkeypatch.setattr(spots, "solve_contact", solve)
+    monkeypatch.setattr(spots, "_own_width", own)
+    known = SimpleNamespace(fixed_half_width=None, line_half_width=1.0)
+    widest, found = spots.solve_spots(known, np.zeros((1, 1)), np.array([[1.0, 3.0, 2.0]]), None)
+    assert widest.spot == 2.0
+    assert found.steps == 9
+    for name, times in (("force", 1.0), ("approach", 2.0), ("stiffness", 3.0), ("residual", 4.0)):
+        assert getattr(found, name).tolist() == [[times, 3.0 * times, 2.0 * times]]
+
+
+def test_neighbours_of_fourth_order_err_no_less_than_usual_and_no_more_than_it():
+    """The least is a share of the usual difference, which grows with the width of the pressure up to a limit."""
+    from fegear.fem.plane import estimate
+
+    def least(order, share):
+        one = SimpleNamespace(
+            _neighbour_at_samples=lambda k: np.full((99, 99), 2.0), common_errors=(0.0, 0.5),
+            _for_width=lambda *_: share, fine=SimpleNamespace(flank=SimpleNamespace(order=order)),
+        )  # fmt: skip
+        (kept,) = Estimate._neighbour_estimate(one, 1, np.zeros(1))
+        return (kept - 0.5) / 2.0
+
+    most = estimate._MOST_USUAL_NEIGHBOUR
+    assert least(4, 0.5 * most) == pytest.approx(0.5 * most)
+    assert least(4, 2.0 * most) == pytest.approx(most)
+    assert least(2, 0.5 * most) == pytest.approx(most)
+
+
+def test_a_pair_may_jam_by_what_rounded_profile_shifts_are_off_and_by_no_more():
+    gear = Gear(Tooth(24, BasicRack(1.0, 1.25, 0.38)), 2e-3, 0.01)
+    tight = GearPair(gear, gear).tight_centre_distance
+    GearPair(gear, gear, tight - 4.9e-4 * 2e-3)
+    with pytest.raises(GeometryError, match="leaves no backlash"):
+        GearPair(gear, gear, tight - 5.1e-4 * 2e-3)
+
+
+def test_a_gear_of_the_atlas_states_nothing_that_all_teeth_have_in_common():
+    gear = Gear(Tooth(31, BasicRack(1.0, 1.25, 0.38), 0.1), 3e-3, 0.02)
+    assert shipped_atlas("A").gear(gear).common_errors() == (0.0, 0.0)
+
+
+def test_a_count_as_a_knob_has_no_floor_of_its_own():
+    knob = knobs._counted("te", "positions", "here", (2, 4, 8), lambda n: 1.0 / n)
+    assert knob.floor == 0.0
+    assert knob.step.tolist() == knob.error.tolist() == [0.5, 0.25, 0.125]
+    assert knob.order.slope == pytest.approx(1.0)
+    assert knobs._counted("te", "positions", "here", (2, 4), lambda n: 1.0 / n, 0.3).floor == 0.3
+
+
+def test_the_deflection_that_an_answer_says_is_of_a_hundred_newtons_a_millimetre(monkeypatch):
+    at_pitch = {"c_self": SimpleNamespace(compliance=4e-11, error=1e-15)}
+    monkeypatch.setattr(stiffness, "_at_pitch", lambda seen: at_pitch)
+    (said,) = stiffness._at_a_load(SimpleNamespace(name="pinion"))
+    assert said == "Gear pinion: 100 N/mm deflect the loaded tooth by 4 µm." or said.startswith(
+        "Gear pinion: 100 N/mm deflect the loaded tooth by 4.0"
+    )
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+def test_a_folder_is_removed_as_soon_as_the_process_that_held_it_has_ended(tmp_path):
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    read, write = os.pipe()
+    if not (child := os.fork()):
+        processes._remove_after_the_end(str(folder))
+        os.read(read, 1)  # of the process itself, or of the one that waits for its end
+        os._exit(0)
+    time.sleep(0.05)
+    assert folder.exists()
+    os.write(write, b"xx")
+    os.waitpid(child, 0)
+    ends = time.monotonic() + 20.0
+    while folder.exists() and time.monotonic() < ends:
+        time.sleep(0.01)
+    assert not folder.exists()
+    os.close(read)
+    os.close(write)
+
+
+def test_lists_that_are_defaults_are_those_of_the_pages():
+    assert FlankDesignPart().map.load_factors == [0.25, 0.5, 0.75, 1.0, 1.25]
+    from fegear.case.design import RobustnessPart
+    from fegear.case.sizing import SizingPart
+
+    assert RobustnessPart().load_factors == [0.7, 0.85, 1.0, 1.15, 1.3]
+    assert RobustnessPart().relief_errors == [-0.2, 0.0, 0.2]
+    assert SizingPart.model_fields["pinion_teeth"].default_factory() == [15, 40]
+
+
+def test_a_crack_of_either_gear_is_followed_under_the_loads_of_its_own_tooth(monkeypatch):
+    """A fifth of a module a step of its own, a tenth else; loads where there are any, from the pitch point on."""
+    tooth = Tooth(20, BasicRack(1.0, 1.25, 0.38))
+    gear = Gear(tooth, 2e-3, 0.01)
+    pair = GearPair(gear, gear)
+    ordinary = SimpleNamespace(lowest_radius=gear.base_radius, highest_radius=0.0219)
+    known = SimpleNamespace(gear=gear, ordinary=ordinary)
+    angle, load = np.array([-0.05, 0.0, 0.04, 0.3]), np.array([0.0, 100.0, 200.0, 300.0])
+    asked, calls = [], []
+    monkeypatch.setattr(crack_path, "odd_solution_of", lambda upstream, name: known)
+    monkeypatch.setattr(crack_path, "over_revolution", lambda *given: given)
+    monkeypatch.setattr(
+        crack_path, "crack_in_mesh",
+        lambda *given: asked.append(given) or SimpleNamespace(gear_angle=angle, load=load),
+    )  # fmt: skip
+    found = SimpleNamespace(length=np.array([1e-3, 4e-3]), cycles_to_fracture=5e6)
+    monkeypatch.setattr(crack_path, "growing_crack", lambda *given, **more: calls.append((given, more)) or found)
+    engagement = SimpleNamespace(compliance=SimpleNamespace(face_width=0.02))
+    loaded = SimpleNamespace(engagement=engagement, nominal=500.0, pair=pair)
+    for step, toughness in ((None, None), (0.4e-3, 50.0)):
+        part = SimpleNamespace(
+            step=step, steps=7, law="law", toughness=toughness, load_factors=[1.0, 2.0], shares=(0.5, 0.5)
+        )
+        given = SimpleNamespace(
+            revolution=SimpleNamespace(name="I", gears=("a", "b")), part=part, cracks=(("a", 3, "x"), ("b", 4, "y"))
+        )
+        progress = []
+        work = SimpleNamespace(progress=progress.append)
+        data = crack_path._compute(given, {Task(crack_path.ODD, "I"): loaded}, work)
+        assert progress == [0.5, 1.0]
+        first, second = data.paths
+        assert (first.gear, first.tooth, first.final_length, first.cycles) == ("a", 3, 4e-3, 5e6)
+        assert (second.gear, second.tooth) == ("b", 4)
+    assert [one[2] for one in asked[:2]] == ["driver", "driven"]
+    at_pitch = math.tan(pair.working_pressure_angle)
+    for (call, more), way in zip(calls[:2], (1.0, -1.0), strict=True):
+        radius = gear.base_radius * np.hypot(1.0, at_pitch + way * angle[1:])
+        assert call[2][0] == pytest.approx(np.clip(radius, gear.base_radius, 0.0219))
+        assert call[2][1] == pytest.approx(load[1:] / 0.02)
+        assert more == {"step": pytest.approx(0.2e-3), "steps": 7, "law": "law", "toughness": None,
+                        "factors": [1.0, 2.0], "shares": (0.5, 0.5)}  # fmt: skip
+    assert (calls[2][1]["step"], calls[2][1]["toughness"]) == (0.4e-3, 50e6)
+    assert CrackGrowthPart().shares == (1.0,)
