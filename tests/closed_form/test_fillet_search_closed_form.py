@@ -36,6 +36,7 @@ class Bench:
 
     def __init__(self, stress, room, most=math.inf):
         self.stress, self.room, self.most, self.tried = stress, room, most, 0
+        self.limits = SimpleNamespace(generated=False)
 
     def tooth(self, numbers):
         if numbers[1] > self.most:
@@ -114,11 +115,12 @@ def test_final_numbers_are_those_of_the_pair_with_that_tooth(loaded, alike):
     """Both gears are solved anew where one meshes with its like; half the range where both flanks are loaded."""
     pair, solved = loaded
     tooth = replace(TOOTH, rack=BasicRack(1.0, 1.25, 0.38))
-    calls = []
+    calls, made = [], []
 
     def solve(gear, tolerance, *, reach):
         calls.append((gear.tooth, tolerance, reach))
-        return solve_gear(gear, settings_at(-5.0), reach=reach)
+        made.append(solve_gear(gear, settings_at(-5.0), reach=reach))
+        return made[0]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fillet_design, "solve_to_tolerance", solve)
@@ -126,7 +128,8 @@ def test_final_numbers_are_those_of_the_pair_with_that_tooth(loaded, alike):
         final = fillet_design._Final(pair, SPEC, (solved, solved), "driven", objective, 0.02, alike)
         found = final.stressed("new", tooth)
     assert calls == [(tooth, 0.02, 1)]
-    new = solve_gear(replace(GEAR, tooth=tooth), settings_at(-5.0), reach=1)
+    (new,) = made
+    assert new.gear == replace(GEAR, tooth=tooth)
     gears = (new, new) if alike else (solved, new)
     e = load_plane(replace(SPEC, pair=GearPair(gears[0].gear, new.gear)), gears, estimates=False).engagement
     known = tooth_stress(e, loaded_states(e, (), (LOAD,), roll_positions(e, 48)), "driven")
@@ -218,6 +221,27 @@ def test_starts_are_tried_in_turn_until_one_can_be():
     for most, start in ((0.1, [0.2, 0.0]), (0.3, [0.4, 0.0]), (0.6, [0.7, 0.0]), (0.8, [0.9, 0.1])):
         assert fillet_design._start(Few(None, None, most), family, 0.05, 0.3)[:2].tolist() == start
     assert fillet_design._start(Few(None, None, 0.95), family, 0.05, 0.3) is None
+
+
+def test_starts_that_a_rack_is_to_make_come_nearer_to_the_ellipse_until_one_can(monkeypatch):
+    family, bench, made = SimpleNamespace(count=3, shape=lambda numbers: numbers), Bench(None, None), {}
+    bench.limits = SimpleNamespace(generated=True, smallest_tool_radius=0.1)
+
+    def rack(numbers):
+        return SimpleNamespace(room=lambda radius: np.array([made["up to"] - numbers[1], 10.0 * radius]))
+
+    monkeypatch.setattr(fillet_design, "conjugate_rack", rack)
+    for most, start in (
+        (0.5, [0.2, 0.4]),
+        (0.3, [0.1, 0.2]),
+        (0.11, [0.05, 0.1]),
+        (0.06, [0.025, 0.05]),
+        (0.04, [0, 0]),
+    ):
+        made["up to"] = most
+        assert fillet_design._start(bench, family, 0.2, 0.4)[:2] == pytest.approx(start)
+    made["up to"] = -1.0  # none: the first that is a fillet
+    assert fillet_design._start(bench, family, 0.2, 0.4)[:2] == pytest.approx([0.2, 0.4])
 
 
 def test_higher_waves_move_less_and_bumps_alike():
