@@ -389,6 +389,10 @@ class Bench:
         """Give a pair another load or torque, a quantity with its unit."""
         self._put(with_value(self._on_desk().text, ("pair", pair, key), literal(text)), moving=moving)
 
+    def move_value(self, path: KeyPath, value: str | None, *, moving: bool) -> None:
+        """Give a key of the case another value, as TOML writes it."""
+        self._put(with_value(self._on_desk().text, path, value), moving=moving)
+
     def drop_relief(self, gear: str) -> None:
         """Leave a gear without relief."""
         desk = self._on_desk()

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 from functools import cache
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Literal
 
+from fegear.base.code_version import code_version
 from fegear.case.changed_text import as_typed, literal, value_at
 from fegear.case.known_keys import help_of
 from fegear.case.schema import case_schema
 from fegear.case.schema_nodes import SchemaNodes
+from fegear.output.report.kept import kept
 from fegear.results.catalogue import STAGES
 
 if TYPE_CHECKING:
@@ -46,6 +50,8 @@ class Field:
     required : bool
     about : str
         What it means, in one sentence.
+    whole : bool
+        Whether it takes whole numbers only.
     """
 
     path: Path
@@ -57,6 +63,7 @@ class Field:
     choices: Mapping[str, str]
     required: bool
     about: str = ""
+    whole: bool = False
 
     @property
     def key(self) -> str:
@@ -109,9 +116,10 @@ class Section:
 
 @cache
 def _nodes() -> SchemaNodes:
-    return SchemaNodes(
-        case_schema({name: entry.about for entry in STAGES.with_added.entries for name in entry.results})
-    )
+    """Of the schema of cases, which takes a quarter of a second to make and depends on no case."""
+    results = {name: entry.about for entry in STAGES.with_added.entries for name in entry.results}
+    made_of = json.dumps([version("pydantic"), code_version("case"), results])
+    return SchemaNodes(json.loads(kept(f"schema {made_of}", lambda: json.dumps(case_schema(results)).encode())))
 
 
 def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
@@ -248,7 +256,7 @@ def _field(path: Path, node: Mapping[str, Any], document: Mapping[str, Any], *, 
     return Field(
         path, _kind(kinds), value is not None, default if value is None else value, shown,
         "; ".join(dict.fromkeys(filter(None, map(_nodes().hint, kinds)))), _nodes().choices(kinds), required,
-        help_of(node).replace("`", ""),
+        help_of(node).replace("`", ""), {one.get("type") for one in kinds} == {"integer"},
     )  # fmt: skip
 
 

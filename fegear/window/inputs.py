@@ -192,6 +192,8 @@ class Inputs:
             made.props("outlined dense hide-hint hide-bottom-space autocomplete=off").style("width: 100%")
             if field.default:
                 made.props("stack-label")
+            if _NUMBER.fullmatch(field.shown or field.default):
+                made.classes("scrubs whole" if field.whole else "scrubs")  # by its arrow (scrub.js)
             made.on("keydown.enter", commit).on("blur", commit)
             for key, way in (("up", 1), ("down", -1)):
                 made.on(f"keydown.{key}.prevent", partial(self._step, field, way), args=["shiftKey"])
@@ -238,6 +240,21 @@ class Inputs:
         if text is not None:
             element.set_value(text)
             self._set(field, text)
+
+    def move(self, key: str, text: str, *, moving: bool) -> None:
+        """Give a field the number that its arrow is dragged to.
+
+        Raises
+        ------
+        InputError
+            If there is no such field, or what it is given does not begin with a number.
+        """
+        path = next((one for one, field in self._held.items() if field.key == key and field.kind in _TYPED), None)
+        if path is None or _NUMBER.fullmatch(check_text(text, key)) is None:
+            raise InputError(key, f'"{text}"', "is not a number of this form", "reload the page")
+        if (element := self._elements.get(path)) is not None:
+            element.set_value(text)
+        self._bench.move_value(path, self._held[path].written(text), moving=moving)
 
     def _set(self, field: Field, text: str) -> None:
         now = self._held[field.path]

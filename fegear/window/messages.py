@@ -51,6 +51,7 @@ EVENTS: dict[str, dict[str, type]] = {
     "design": {"pair": str, "how": str},
     "shows": {"pair": str, "kind": str, "on": bool},
     "sight": {"tasks": list},
+    "value": {"field": str, "text": str, "moving": bool},
 }
 #: What parts may be where that is not free.
 _ONE_OF = {

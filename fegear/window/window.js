@@ -161,9 +161,10 @@ const fegear = (() => {
     if (words === "Stop") offering = setTimeout(show, LONG); else show();
   }
   const LONG = 700; // ms
+  const early = () => $("first-gears")?.remove(); // what stood in the page before it could draw
   const say = (words) => { if ($("state") && $("state").textContent !== words) Object.assign($("state"), { textContent: words, title: words }); };
   const heard = {
-    hands(content) { return fegearHands.show(content, { made, sections }); },
+    hands(content) { const shown = fegearHands.show(content, { made, sections }); early(); return shown; },
     harris(content) {
       loadsNow.clear(); // of places on the way to where it stands now
       return fegearHands.harris(content, { paint, sections });
@@ -312,6 +313,7 @@ const fegear = (() => {
       sections.delete("compared");
     },
     laid() {
+      early();
       fegearMiddle.clear();
       sections.clear();
       unpainted.clear();

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
+import re
 import tomllib
 from pathlib import Path
 from types import SimpleNamespace
@@ -23,6 +25,9 @@ from fegear.window.bar import Bar, exports
 from fegear.window.beginnings import JOBS, examples
 from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
+from fegear.window.drag_handles import hands_of
+from fegear.window.first_drawing import first_drawing
+from fegear.window.glance import View
 from fegear.window.inputs import Inputs, stepped
 from fegear.window.messages import Messages, _moved, checked
 from fegear.window.page import Page
@@ -189,6 +194,48 @@ def test_arrow_keys_step_by_one_unit_of_the_last_digit_and_by_ten(client, bench)
     assert stepped("2", 10) == "12"
     assert stepped("-1.05e-3 mm", 1) == stepped("-1.05e-3 mm", 1)
     assert stepped("gear", 1) is None
+
+
+def test_a_number_that_is_dragged_is_one_stroke_and_what_is_none_is_not_taken(client, tmp_path):
+    bench = Bench(None)
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    inputs = Inputs(bench)
+    teeth = inputs._elements[TEETH]
+    assert {"scrubs", "whole"} <= set(teeth.classes)
+    assert "scrubs" in inputs._elements[LOAD].classes
+    assert "whole" not in inputs._elements[LOAD].classes
+    for text in ("29", "30", "31"):
+        inputs.move("gear.a.teeth", text, moving=text != "31")
+        assert teeth.value == text
+    assert "teeth = 31     # z" in bench.desk.text
+    inputs.hear("changed", {})
+    press(teeth, "blur")  # confirms what is there already
+    assert "teeth = 31     # z" in bench.desk.text
+    bench.desk.undo()
+    assert bench.desk.text == TEXT
+    inputs.move("pair.I.load", "5.5 kN", moving=False)
+    assert tomllib.loads(bench.desk.text)["pair"]["I"]["load"] == "5.5 kN"
+    before = bench.desk.text
+    for key, text in (("gear.a.teeth", ""), ("gear.a.teeth", "x"), ("gear.b.teeth", "3"), ("results", "3"),
+                      ("effects.neighbour_coupling", "3"), ("gear.a.teeth", "3" * 4_000_000)):  # fmt: skip
+        with pytest.raises(InputError):
+            inputs.move(key, text, moving=True)
+    assert bench.desk.text == before
+
+
+def test_the_gears_stand_in_the_page_that_is_served(tmp_path):
+    pairs = hands_of(Desk(TEXT, "c", tmp_path).scene)
+    mesh = pairs["I"]["mesh"]
+    drawn = first_drawing(pairs, View())
+    assert drawn.count("<path") == 2
+    x, y = re.search(r'class="driver" d="M([-.\d]+),([-.\d]+)L', drawn).groups()
+    assert (float(x), float(y)) == pytest.approx([1e3 * mesh["driver"][0][0], 1e3 * mesh["driver"][1][0]], abs=6e-4)
+    turned = float(re.search(r"rotate\(([-.\d]+) 0 -42", drawn).group(1))
+    assert turned == pytest.approx(-math.degrees(mesh["start"] / mesh["driver_base"]), abs=1e-4)
+    assert "folded" in first_drawing(pairs, View(folded=True))
+    assert first_drawing(pairs, View(middle="I")) == drawn
+    assert first_drawing(pairs, View(middle="set P")) == first_drawing(pairs, View(report=True)) == ""
+    assert first_drawing({}, View()) == ""
 
 
 def test_a_refusal_stands_at_its_field_and_goes_with_its_cause(client, bench):
@@ -632,19 +679,26 @@ def test_files_of_the_page_are_asked_for_anew_and_served_once(monkeypatch):
     app = SimpleNamespace(
         routes=[], on_shutdown=ends.append,
         add_static_file=lambda **how: served.update({how.pop("url_path"): how}),
+        add_api_route=lambda path, answer: made.update({path: answer()}),
     )  # fmt: skip
+    made = {}
     messages = SimpleNamespace(install=lambda: ends.append("installed"), end="messages end")
     monkeypatch.setattr(pages, "app", app)
     monkeypatch.setattr(pages, "Messages", lambda: messages)
     pages._serve_files(SimpleNamespace(end="bench end"))
     assert ends == ["installed", "messages end", "bench end"]
-    own = {f"/fegear/{script}.js" for script in pages._SCRIPTS}
-    assert set(served) == own | {f"/fegear/{name}" for name in ("plotly.js", "figure.js", "page.css", "window.css")}
+    assert set(served) == {f"/fegear/{name}" for name in ("plotly.js", "page.css", "window.css")}
+    (scripts,) = made.values()
+    assert scripts.headers["cache-control"] == "public, max-age=0"
+    begun = [scripts.body.decode().index(f"const fegear{name} =") for name in ("Figure", "", "Gears", "Scrub")]
+    assert begun == sorted(begun)  # each uses what stands before it
+    folder = Path(pages.__file__).parent
+    assert {path.stem for path in folder.glob("*.js")} == set(pages._SCRIPTS)
     assert all(Path(how["local_file"]).is_file() for how in served.values())
     assert {name: how.get("max_cache_age") for name, how in served.items() if how.get("max_cache_age") != 0} == {
         "/fegear/plotly.js": None
     }
-    app.routes = [SimpleNamespace(path=path) for path in ("/", *served)]
+    app.routes = [SimpleNamespace(path=path) for path in ("/", *served, *made)]
     served.clear()
     pages._serve_files(SimpleNamespace(end="bench end"))
     assert (served, len(ends)) == ({}, 3)
