@@ -134,6 +134,11 @@ class FiniteElementCompliance(AlikeTeeth):
         return self.influence.reach
 
     @property
+    def states_error(self) -> bool:
+        """Whether its errors are estimated."""
+        return self.influence.states_error
+
+    @property
     def log_slope(self) -> float:
         """kappa [m^2/N]."""
         return self.influence.log_slope

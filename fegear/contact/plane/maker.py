@@ -6,21 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard
 
 from fegear.base.errors import InputError
-from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, SolvedTeeth, finite_element_compliance
 from fegear.contact.plane.flanks import as_specified, with_flanks
 from fegear.contact.plane.loaded_pair import LoadedPair
-from fegear.contact.plane.odd_compliance import (
-    OddCompliance,
-    odd_compliance,
-    odd_neighbours_shifted_by_error,
-    odd_shifted_by_error,
-)
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
-from fegear.contact.plane.table_compliance import table_sources
-from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -29,6 +20,8 @@ if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.compliance import GearCompliance
+    from fegear.contact.plane.odd_compliance import OddCompliance
+    from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 
     Sources = tuple[GearCompliance, GearCompliance]
     Solved = SolvedTeeth | OddGearInfluence
@@ -72,14 +65,18 @@ def compliance_sources(spec: PairSpec, gears: Sequence[Solved | GearCompliance])
     InputError
         If a table or a formula does not fit the gears, or gears that are to be solved are not.
     """
-    if gears and not isinstance(gears[0], (SolvedTeeth, OddGearInfluence)):
+    if gears and not _is_solved(gears[0]):
         first, second = gears
         return first, second  # type: ignore[return-value]  # both are sources where the first is
     pair = spec.pair
     try:
         if spec.table is not None:
+            from fegear.contact.plane.table_compliance import table_sources  # late: as what no solved gear needs
+
             return table_sources(pair, *spec.table)
         if spec.compliance != "fe":
+            from fegear.contact.plane.closed_form_compliance import closed_form_compliance  # late: all formulas
+
             driver, driven = (closed_form_compliance(pair.gear(member), spec.compliance) for member in MEMBERS)
             return driver, driven
     except InputError as error:
@@ -89,13 +86,25 @@ def compliance_sources(spec: PairSpec, gears: Sequence[Solved | GearCompliance])
             "gears", f"{len(gears)} given", "must be both solved gears, driver and driven",
             "give solve_gear(pair.driver) and solve_gear(pair.driven), or a formula as compliance",
         )  # fmt: skip
-    solved = {id(gear): _tabulated(gear) for gear in gears if isinstance(gear, (SolvedTeeth, OddGearInfluence))}
+    solved = {id(gear): _tabulated(gear) for gear in gears if _is_solved(gear)}
     first, second = (solved[id(gear)] for gear in gears)
     return first, second
 
 
+def _is_solved(gear: Solved | GearCompliance) -> TypeGuard[Solved]:
+    if isinstance(gear, SolvedTeeth):
+        return True
+    from fegear.fem.plane.odd.odd_gear import OddGearInfluence  # late: cracks, which most gears do not have
+
+    return isinstance(gear, OddGearInfluence)
+
+
 def _tabulated(gear: Solved) -> FiniteElementCompliance | OddCompliance:
-    return odd_compliance(gear) if isinstance(gear, OddGearInfluence) else finite_element_compliance(gear)
+    if isinstance(gear, SolvedTeeth):
+        return finite_element_compliance(gear)
+    from fegear.contact.plane.odd_compliance import odd_compliance  # late: as above
+
+    return odd_compliance(gear)
 
 
 def shifted_sources(first: GearCompliance, second: GearCompliance, *, coupling: bool) -> tuple[Sources, ...]:
@@ -112,16 +121,20 @@ def shifted_sources(first: GearCompliance, second: GearCompliance, *, coupling: 
 
 
 def _states_error(source: GearCompliance) -> TypeGuard[FiniteElementCompliance | OddCompliance]:
-    if isinstance(source, OddCompliance):
-        return source.influence.fine.lower is not None and source.influence.ordinary.estimate is not None
-    return isinstance(source, FiniteElementCompliance) and source.influence.states_error
+    return getattr(source, "states_error", False)
 
 
 def _shifted(source: FiniteElementCompliance | OddCompliance) -> GearCompliance:
-    return odd_shifted_by_error(source) if isinstance(source, OddCompliance) else shifted_by_error(source)
+    if isinstance(source, FiniteElementCompliance):
+        return shifted_by_error(source)
+    from fegear.contact.plane.odd_compliance import odd_shifted_by_error  # late: as above
+
+    return odd_shifted_by_error(source)
 
 
 def _neighbours_shifted(source: FiniteElementCompliance | OddCompliance) -> GearCompliance:
-    if isinstance(source, OddCompliance):
-        return odd_neighbours_shifted_by_error(source)
-    return neighbours_shifted_by_error(source)
+    if isinstance(source, FiniteElementCompliance):
+        return neighbours_shifted_by_error(source)
+    from fegear.contact.plane.odd_compliance import odd_neighbours_shifted_by_error  # late: as above
+
+    return odd_neighbours_shifted_by_error(source)

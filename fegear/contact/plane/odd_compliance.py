@@ -80,6 +80,11 @@ class OddCompliance:
         return np.minimum(length, self.own_splines[near].x[-1]) if near in self.own_splines else length
 
     @property
+    def states_error(self) -> bool:
+        """Whether its errors are estimated, and those of ordinary teeth."""
+        return self.influence.fine.lower is not None and self.influence.ordinary.estimate is not None
+
+    @property
     def reach(self) -> int:
         """K of the ordinary gear."""
         return self.ordinary.reach

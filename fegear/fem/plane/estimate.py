@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,6 +80,15 @@ _SAMPLES = 17
 _BESIDE_ENDS = (0.005, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1)
 
 
+class _Stress(NamedTuple):
+    """Largest stress of a fillet, where it sits, its difference from the other solution's, and its scatter, (P,)."""
+
+    value: Array
+    place: Array
+    difference: Array
+    scatter: Array
+
+
 @dataclass(frozen=True)
 class Estimate:
     """Values of a solution with their errors, from what another one of the same shape gives; module 1, E = 1.
@@ -122,9 +132,8 @@ class Estimate:
     def root_stress(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
-        value, place, difference = self._stress_difference(k, side, radius, half_width)
-        scatter = 0.0 if k < 0 else self.fine.root_stress_scatter(k, side, radius, place, half_width)
-        return value, place, self._stress_estimate(k, side, value, difference, scatter)
+        value, place, difference, scatter = self._stress_of(k, side, radius, half_width)
+        return value, place, self._stress_estimate(k, side, value, difference, 0.0 if k < 0 else scatter)
 
     @cached_property
     def largest(self) -> Mapping[str, float]:
@@ -240,15 +249,36 @@ class Estimate:
             least = min(self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), least)
         return np.asarray(np.maximum(difference, least * usual)) + self.common_errors[1]
 
-    def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
-        value, place = self.fine.largest_root_stress(k, side, radius, half_width)
-        difference = np.abs(value - self.coarse.largest_root_stress(k, side, radius, half_width)[0])
-        if k:
-            difference = np.maximum(difference, self._curves_apart_beside_ends(k, side, radius, half_width, place))
-        return value, place, difference
+    def _stress_of(self, k: int, side: Side, radius: Array, half_width: Array) -> _Stress:
+        """The loaded tooth by itself; neighbours all at once, for whoever asks for one asks for the others."""
+        if k == 0:
+            return self._stresses_of((0,), side, radius, half_width)[0]
+        key = side, radius.tobytes(), np.asarray(half_width).tobytes()
+        if key not in self._neighbours_asked:
+            self._neighbours_asked.clear()
+            self._neighbours_asked[key] = self._stresses_of(self._beside, side, radius, half_width)
+        return self._neighbours_asked[key][k]
 
-    def _curves_apart_beside_ends(self, k: int, side: Side, radius: Array, half_width: Array, place: Array) -> Array:
-        """How far both solutions' curves are apart beside places near an end of the fillet, shape (P,); elsewhere 0."""
+    def _stresses_of(self, teeth: Sequence[int], side: Side, radius: Array, half_width: Array) -> dict[int, _Stress]:
+        fine, coarse = (one.stress_below(teeth, side, radius, half_width) for one in (self.fine, self.coarse))
+        curve = self.fine.fillet_curve(side)
+        value, place = curve.largest_below(*fine)
+        difference = np.abs(value - self.coarse.fillet_curve(side).largest_below(*coarse)[0])
+        if 0 not in teeth:
+            difference = np.maximum(difference, self._apart_beside_ends(side, fine[0], coarse[0], place))
+        found = _Stress(value, place, difference, curve.scatter_below(fine[0], place, *fine[1:]))
+        each = (one.reshape(len(teeth), -1) for one in found)
+        return {k: _Stress(*one) for k, one in zip(teeth, zip(*each, strict=True), strict=True)}
+
+    def _apart_beside_ends(self, side: Side, fine: Array, coarse: Array, place: Array) -> Array:
+        """How far both solutions' curves are apart beside places near an end of the fillet, shape (P,); elsewhere 0.
+
+        Parameters
+        ----------
+        fine, coarse : ndarray, shape (points, P)
+            Stress along the fillet.
+        place : ndarray, shape (P,)
+        """
         fillet, order = self.fine.fillets[side], self.fine.flank.order
         arc, length = fillet.arc, fillet.length
         # Gauss points stand alike from both ends of an edge.
@@ -257,12 +287,11 @@ class Estimate:
         near = np.minimum(place, length - place) <= _FROM_END * edge
         found = np.zeros(place.shape)
         if near.any():
-            width = half_width if np.ndim(half_width) == 0 else half_width[near]
             at = place[near] + _BESIDE_PLACE * edge[near] * np.array([[-1.0], [0.0], [1.0]])
             at = np.clip(at, 0.0, length)
             curves = [
-                smooth_at(one.fillet_stress(k, side, radius[near], width), one.fillets[side].arc, at)
-                for one in (self.fine, self.coarse)
+                smooth_at(stress[:, near], one.fillets[side].arc, at)
+                for one, stress in ((self.fine, fine), (self.coarse, coarse))
             ]
             found[near] = np.abs(curves[0] - curves[1]).max(axis=0)
         return found
@@ -270,13 +299,17 @@ class Estimate:
     def _stress_at_samples(self, k: int) -> dict[Side, tuple[Array, Array]]:
         """Value of each side, and its difference from the other solution's."""
         if k not in self._stresses:
-            r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
-            self._stresses[k] = {}
-            for side in SIDES:
-                value, place, difference = self._stress_difference(k, side, r, b)
-                self._stresses[k][side] = value, difference
-                self._scatter[k, side] = self.fine.root_stress_scatter(k, side, r, place, b)
+            r, b, teeth = self._samples, np.asarray(REFERENCE_HALF_WIDTH), self._beside if k else (0,)
+            sides = {side: self._stresses_of(teeth, side, r, b) for side in SIDES}
+            self._scatter.update({(tooth, side): of[tooth].scatter for side, of in sides.items() for tooth in teeth})
+            for tooth in teeth:
+                self._stresses[tooth] = {side: (of[tooth].value, of[tooth].difference) for side, of in sides.items()}
         return self._stresses[k]
+
+    @property
+    def _beside(self) -> tuple[int, ...]:
+        """The neighbours of the loaded tooth that are known."""
+        return tuple(k for k, side in self.fine.stress if k and side == "tension")
 
     def _stress_estimate(
         self, k: int, side: Side, value: Array, difference: Array, scatter: Array | float = 0.0
@@ -326,6 +359,10 @@ class Estimate:
 
     @cached_property
     def _stresses(self) -> dict[int, dict[Side, tuple[Array, Array]]]:
+        return {}
+
+    @cached_property
+    def _neighbours_asked(self) -> dict[tuple[Side, bytes, bytes], dict[int, _Stress]]:
         return {}
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from fegear.fem.plane.sector_rows import SectorRows
 from fegear.fem.plane.trace import LoadedFlank
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
     from scipy.sparse import csr_array
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from fegear.geometry.involute_side import InvoluteSide
     from fegear.geometry.rim_support import RimSupport
 
+T = TypeVar("T")
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
 #: The narrower of the two pressures that load the mesh, as a share of the wider one.
@@ -49,6 +50,8 @@ MOSTLY_TURNED = 0.8
 _BESIDE_TIP = 0.15
 #: How far down the flank its compliance is compared, at most [modules] and as a share of the distance from the tip.
 _STEP, _STEP_SHARE = 0.05, 0.25
+#: Loads at so many sets of places are kept: errors are asked for at a contact's own place and at samples in turn.
+_KEPT = 4
 #: Mean distance of two points of a semi-elliptic pressure over its half-width.
 _MEAN = 256.0 / (45.0 * np.pi**2)
 
@@ -138,15 +141,14 @@ class Influence:
         The last ones are kept: both neighbours are asked for at the same radii. With a share their pressures are so
         much narrower, beside the flank's ends as well.
         """
-        key = np.asarray(radius, dtype=float).tobytes(), patch, share
-        kept: tuple[object, Array] | None = self._last.get("remote")
-        if kept is not None and kept[0] == key:
-            return kept[1]
-        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
-        found = self._remote_at(arc, patch, share)
-        found.flags.writeable = False
-        self._last["remote"] = key, found
-        return found
+        r = np.asarray(radius, dtype=float)
+
+        def loads() -> Array:
+            found = self._remote_at(np.atleast_1d(self.flank.arc_of_radius(r)), patch, share)
+            found.flags.writeable = False
+            return found
+
+        return self._kept("remote", (r.tobytes(), patch, share), loads)
 
     def _remote_at(self, arc: Array, patch: float, share: float = 1.0) -> Array:
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
@@ -166,19 +168,28 @@ class Influence:
         same radii.
         """
         r, half = np.atleast_1d(np.asarray(radius, dtype=float)), np.asarray(half_width, dtype=float)
-        key = r.tobytes(), half.tobytes()
-        if self._last.get("key") == key:
-            return self._last["loads"]
-        arc = np.atleast_1d(self.flank.arc_of_radius(r))
-        above = arc - self.flank.flank_start
-        width = contact_width(half, above, self.flank.flank_end - arc)
-        low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
-        loads = self.flank.few_patches(np.clip(arc, low, high), width), above, width
-        self._last.update(key=key, loads=loads)
-        return loads
+
+        def loads() -> tuple[csr_array, Array, Array]:
+            arc = np.atleast_1d(self.flank.arc_of_radius(r))
+            above = arc - self.flank.flank_start
+            width = contact_width(half, above, self.flank.flank_end - arc)
+            low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
+            return self.flank.few_patches(np.clip(arc, low, high), width), above, width
+
+        return self._kept("fillet", (r.tobytes(), half.tobytes()), loads)
+
+    def _kept(self, kind: str, key: object, make: Callable[[], T]) -> T:
+        """What was made for one of the last keys of its kind, or is made now."""
+        known = self._last.get(kind, {})
+        if key in known:
+            found: T = known[key]
+            return found
+        made = make()
+        self._last[kind] = {**dict([*known.items()][1 - _KEPT :]), key: made}
+        return made
 
     @cached_property
-    def _last(self) -> dict[str, Any]:
+    def _last(self) -> dict[str, dict[object, Any]]:
         return {}
 
     def self_compliance(self, radius: ArrayLike, patch: float, half_width: ArrayLike | None = None) -> Array:
@@ -350,22 +361,25 @@ class Influence:
         That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
         of a fillet that this would leave less than half of, that of its lower half (`search_end`).
         """
-        stress, above, width = self._below(k, side, radius_q, half_width)
-        return self.fillet_curve(side).largest_below(stress, above, width)
+        return self.fillet_curve(side).largest_below(*self.stress_below((k,), side, radius_q, half_width))
 
-    def root_stress_scatter(
-        self, k: int, side: Side, radius_q: ArrayLike, place: Array, half_width: ArrayLike = REFERENCE_HALF_WIDTH
-    ) -> Array:
-        """How far stress at the points of the edges scatters beside those arc lengths of a fillet, shape (Q,)."""
-        stress, above, width = self._below(k, side, radius_q, half_width)
-        return self.fillet_curve(side).scatter_below(stress, place, above, width)
+    def stress_below(
+        self, teeth: Sequence[int], side: Side, radius_q: ArrayLike, half_width: ArrayLike
+    ) -> tuple[Array, Array, Array]:
+        """Stress along the fillets of teeth, beside how far above them contacts stand, infinitely on other flanks.
 
-    def _below(self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array, Array]:
-        """Stress along a fillet, how far above it contacts stand, infinitely where on another flank; their widths."""
+        Returns
+        -------
+        stress : ndarray, shape (points, K Q)
+            Tooth after tooth [1/module].
+        above, width : ndarray, shape (K Q,)
+            And half-widths of the contacts [modules].
+        """
         loads, above, width = self.fillet_loads(radius_q, half_width)
-        if k or side == "compression":
-            above = np.full(above.shape, math.inf)
-        return (loads @ self.stress[k, side].T).T, above, width
+        stress = np.concatenate([(loads @ self.stress[k, side].T).T for k in teeth], axis=1)
+        far = np.full(above.shape, math.inf)
+        beside = [above if k == 0 and side == "tension" else far for k in teeth]
+        return stress, np.concatenate(beside), np.tile(width, len(teeth))
 
     def fillet_curve(self, side: Side, module: float = 1.0) -> FilletCurve:
         """Where the largest stress of a fillet is looked for, radii and places in the unit of the module given."""
