@@ -23,9 +23,15 @@ class Answered:
         compared.
     among : str
         Clause at the end of the first sentence where it is the first of several, with ``{count}``.
+    covers : tuple of str
+        Results that it sums up: their own sentences are not needed beside it.
+    background : bool
+        Whether it describes what is given, not what follows: behind the others, whatever the order asked for.
     """
 
     sentences: tuple[str, ...]
     figure: str = ""
     rank: float | None = None
     among: str = ""
+    covers: tuple[str, ...] = ()
+    background: bool = False

@@ -1,8 +1,9 @@
 """What the wanted results of a run come to: a few sentences with rounded numbers, and one figure.
 
 The page of a run begins with it, the terminal ends with it, the window and Python show the same sentences. Every wanted
-result has at least one; a result without an answer of its own says its first single values. Of results that several
-pairs or gears have, the one to act on comes first and says among how many it is.
+result has at least one, unless another wanted one sums it up; a result without an answer of its own says its first
+single values. What describes the gears comes behind what follows from them. Of results that several pairs or gears
+have, the one to act on comes first and says among how many it is.
 """
 
 from __future__ import annotations
@@ -48,9 +49,39 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     steps = [step for step in plan.steps if step.wanted and step.task in outcomes]
     # a result that is asked for by the name it had before stands behind the others
     former = [step.stage.results[0] for step in steps if not set(step.stage.results) & set(wanted)]
-    by_result = [_of_result(result, steps, outcomes) for result in dict.fromkeys((*wanted, *former))]
-    said = _within([one.sentences for one in by_result])
-    return RunAnswer(said, next((one.figure for one in by_result if one.figure), ""))
+    by_result = {result: _of_result(result, steps, outcomes) for result in dict.fromkeys((*wanted, *former))}
+    covered = {result for one in by_result.values() for result in one.covers}
+    found = [one for result, one in by_result.items() if result not in covered]
+    found.sort(key=lambda one: one.background)
+    front = _within([one.sentences for one in found if not one.background])
+    room = 1 if front else MOST  # what describes the gears says no more than that beside an answer
+    described = tuple(sentence for one in found if one.background for sentence in one.sentences[:room])
+    return RunAnswer(
+        tuple(dict.fromkeys((*front, *described))), next((one.figure for one in found if one.figure), "")
+    )  # fmt: skip
+
+
+def in_order(tasks: Iterable[Task], plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence[str]) -> list[Task]:
+    """Tasks as a reader wants them: those of the wanted results in their order, what describes the gears behind.
+
+    Parameters
+    ----------
+    tasks : iterable of Task
+    plan : Plan
+    outcomes : mapping of Task to Outcome
+    wanted : sequence of str
+        Results that the case asks for, in its order.
+    """
+    steps = {step.task: step for step in plan.steps if step.wanted}
+
+    def place(task: Task) -> tuple[bool, bool, int]:
+        if (step := steps.get(task)) is None:
+            return True, False, 0
+        answer = outcomes[task].answer
+        first = min((wanted.index(one) for one in step.stage.results if one in wanted), default=len(wanted))
+        return False, answer is not None and answer.background, first
+
+    return sorted(tasks, key=place)
 
 
 def _within(groups: Sequence[Sequence[str]]) -> tuple[str, ...]:
@@ -76,7 +107,10 @@ def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outco
         every = [outcome for of in by_stage.values() for outcome in of]
         figure = next((one.figures[0].key for one in every if one.figures), "")
         return Answered(plain_sentences(value for one in every for value in one.values), figure)
-    return Answered(_within([one.sentences for one in found])[:MOST], next((o.figure for o in found if o.figure), ""))
+    return Answered(
+        _within([one.sentences for one in found])[:MOST], next((one.figure for one in found if one.figure), ""),
+        covers=tuple(result for one in found for result in one.covers), background=all(o.background for o in found),
+    )  # fmt: skip
 
 
 def joined(answers: Sequence[Answered]) -> Answered:
@@ -89,7 +123,7 @@ def joined(answers: Sequence[Answered]) -> Answered:
     if first.among and rows[0] and first.rank is not None:
         clause = first.among.format(count=_counted(len(answers)))
         rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
-    return Answered(_within(rows)[:MOST], first.figure)
+    return Answered(_within(rows)[:MOST], first.figure, covers=first.covers, background=first.background)
 
 
 def plain_sentences(values: Iterable[Value]) -> tuple[str, ...]:

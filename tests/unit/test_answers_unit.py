@@ -1,7 +1,7 @@
 """What a run comes to: rounded numbers, sentences of sheets, the wanted results put together."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import pytest
@@ -10,7 +10,7 @@ from fegear.base.printed import rounded
 from fegear.base.shown import shown
 from fegear.engine.answered import MOST, Answered
 from fegear.engine.outcome import Outcome
-from fegear.engine.run_answer import answer_of_run, joined, plain_sentences
+from fegear.engine.run_answer import answer_of_run, in_order, joined, plain_sentences
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.seen import Seen
@@ -130,6 +130,24 @@ def test_a_run_says_one_sentence_of_every_wanted_result_and_five_in_all():
     assert found.figure == "b_I"
     many = [(f"s{n}", f"R{n}", True, (f"{n}.", "more.")) for n in range(7)]
     assert answer_of_run(*run_of(*many), [f"R{n}" for n in range(7)]).sentences == tuple(f"{n}." for n in range(7))
+
+
+def test_what_describes_the_gears_stands_behind_and_what_another_sums_up_is_left_out():
+    plan, outcomes = run_of(
+        ("drawn", "geometry", True, ("25 teeth.", "1 kg.")), ("a", "A", True, ("a1.",)),
+        ("whole", "box", True, ("w1.", "w2.", "w3.", "w4.", "w5.")),
+    )  # fmt: skip
+    drawn, whole = Task("drawn", "I"), Task("whole", "I")
+    outcomes[drawn] = replace(outcomes[drawn], answer=replace(outcomes[drawn].answer, background=True))
+    wanted = ("geometry", "box", "A")
+    found = answer_of_run(plan, outcomes, wanted)
+    assert found.sentences == ("w1.", "w2.", "w3.", "w4.", "a1.", "25 teeth.")
+    assert found.figure == "whole_I"
+    assert [task.stage for task in in_order(outcomes, plan, outcomes, wanted)] == ["whole", "a", "drawn"]
+    outcomes[whole] = replace(outcomes[whole], answer=replace(outcomes[whole].answer, covers=("A",)))
+    assert answer_of_run(plan, outcomes, wanted).sentences == ("w1.", "w2.", "w3.", "w4.", "w5.", "25 teeth.")
+    alone = answer_of_run(plan, {drawn: outcomes[drawn]}, ("geometry",))
+    assert alone.sentences == ("25 teeth.", "1 kg.")
 
 
 def test_a_result_without_an_answer_and_one_by_its_former_name_are_said_too():

@@ -55,9 +55,13 @@ def values_of(*counts):
     steps, outcomes = [], {}
     for name, count, wanted, error in counts:
         task = Task(name, "")
-        steps.append(SimpleNamespace(task=task, stage=SimpleNamespace(title=name.upper()), wanted=wanted))
-        outcomes[task] = SimpleNamespace(values=tuple(Value(f"{name}{k}", 1.0, "", error) for k in range(count)))
-    case = SimpleNamespace(accuracy=SimpleNamespace(tolerance=1e-2))
+        steps.append(
+            SimpleNamespace(task=task, stage=SimpleNamespace(title=name.upper(), results=(name,)), wanted=wanted)
+        )
+        outcomes[task] = SimpleNamespace(
+            values=tuple(Value(f"{name}{k}", 1.0, "", error) for k in range(count)), answer=None
+        )
+    case = SimpleNamespace(accuracy=SimpleNamespace(tolerance=1e-2), results=sorted(one[0] for one in counts if one[2]))
     return SimpleNamespace(plan=SimpleNamespace(steps=steps), outcomes=outcomes, scene=SimpleNamespace(case=case))
 
 
@@ -83,13 +87,15 @@ def test_sixteen_values_are_open_and_the_others_folded():
     assert told(values_of(("a", 16, True, 0.1))) == [("A", 16)]
 
 
-def test_wanted_values_come_before_those_that_serve_and_estimated_before_exact_ones():
+def test_wanted_values_come_in_the_order_of_the_results_before_those_that_serve():
     found = told(
-        values_of(("serving", 1, False, 0.1), ("exact", 1, True, None), ("known", 1, True, 0.1), ("none", 0, True, 0.1))
+        values_of(
+            ("serving", 1, False, 0.1), ("second", 1, True, 0.1), ("first", 1, True, None), ("none", 0, True, 0.1)
+        )
     )
-    assert found == [("KNOWN", 1), ("EXACT", 1), ("SERVING", 1)]
+    assert found == [("FIRST", 1), ("SECOND", 1), ("SERVING", 1)]
     # Where nothing says why, all are alike.
-    found = told(values_of(("a", 1, False, None), ("b", 1, False, 0.1)))
+    found = told(values_of(("b", 1, False, None), ("a", 1, False, 0.1)))
     assert found == [("B", 1), ("A", 1)]
 
 

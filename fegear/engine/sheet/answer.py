@@ -33,18 +33,25 @@ class Answer:
         The smaller, the sooner a reader has to act, among several subjects.
     among : str
         Clause that ends the first sentence of the first of several: ``"the weakest of {count}"``.
+    covers, background
+        As those of `Answered`.
     """
 
     said: tuple[str | _Says | Callable[[Seen], Iterable[str]], ...]
     figure: Text
     rank: Where | None
     among: str
+    covers: tuple[str, ...]
+    background: bool
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
-        among: str = "",
+        among: str = "", covers: tuple[str, ...] = (), background: bool = False,
     ) -> None:  # fmt: skip
-        for name, given in (("said", said), ("figure", figure), ("rank", rank), ("among", among)):
+        for name, given in (
+            ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
+            ("background", background),
+        ):  # fmt: skip
             object.__setattr__(self, name, given)
 
     def of(self, seen: Seen, values: Sequence[Value]) -> Answered:
@@ -52,7 +59,10 @@ class Answer:
         seen = replace(seen, values={value.name: value for value in values})
         found = tuple(sentence for one in self.said for sentence in _sentences(one, seen) if sentence)
         rank = None if self.rank is None else seen.find(self.rank)
-        return Answered(found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among)
+        return Answered(
+            found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
+            self.background,
+        )  # fmt: skip
 
 
 def _sentences(one: str | _Says | Callable[[Seen], Iterable[str]], seen: Seen) -> Iterator[str]:

@@ -8,6 +8,7 @@ import fegear
 from fegear.base.effects import EFFECTS
 from fegear.base.notes import counted, open_and_folded, ordered
 from fegear.engine.citation import Citation, bibliography
+from fegear.engine.run_answer import in_order
 from fegear.output.fields import field_file
 from fegear.output.file_names import file_name
 from fegear.output.report.accuracy import accuracy_blocks
@@ -53,11 +54,13 @@ def _title(results: Results, task: Task) -> str:
     return f"{title}: {task.subject}" if task.subject else title
 
 
+def _in_order(results: Results) -> list[Task]:
+    return in_order(results.outcomes, results.plan, results.outcomes, results.scene.case.results)
+
+
 def _values(results: Results) -> tuple[Block, ...]:
-    """Results of every task: wanted before those that only serve others, estimated before exact ones."""
-    wanted = {step.task for step in results.plan.steps if step.wanted}
-    found = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
-    found.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
+    """Results of every task: wanted before those that only serve others, in the order in which they are wanted."""
+    found = [(task, results.outcomes[task].values) for task in _in_order(results) if results.outcomes[task].values]
     open_: list[Block] = []
     folded: list[Block] = []
     shown, tolerance = 0, results.scene.case.accuracy.tolerance
@@ -186,7 +189,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     values, answer, notes = _values(results), results.answer, results.notes(remarks, information=False)
     pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
     # Pictures before what is a table only: the mesh under load before the data of its gears.
-    order = sorted(results.outcomes, key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
+    order = sorted(_in_order(results), key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
     stages = [_stage(results, task, pictures[task], shown | {answer.figure}) for task in order]
     warned = f" {len(notes)} note{'s' if len(notes) > 1 else ''}, below the answer." if notes else ""
     total = sum(results.seconds.values())

@@ -401,7 +401,7 @@ _SHEET = Sheet(
     ),
     values=(_values,),
     figures=(_figures,),
-    answer=Answer(_in_mesh, _lone_gears),
+    answer=Answer(_in_mesh, _lone_gears, background=True),
     remarks=(_on_pairs, _fillets, lambda seen: seen.data.assumed, lambda seen: unmeasured_remarks(seen.data)),
 )  # fmt: skip
 

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fegear.base.printed import figures
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
@@ -33,21 +30,7 @@ def _key(seen: Seen) -> str:
 
 def _grind(seen: Seen) -> Iterator[str]:
     if seen.data.shapes:
-        yield from said_at(seen, seen.data.ends)
-
-
-def _within(seen: Seen) -> Iterator[str]:
-    """What the best relief leaves at worst within its tolerances."""
-    if not seen.data.shapes or not seen.data.grinding:
-        return
-    d = seen.data
-    best, none = d.over_range[f"{d.shapes[0]} tip relief"], d.over_range["no relief"]
-    at = np.array(d.ends)
-    i = int(at[np.argmax(best.most[at] / none.peak_to_peak[at])])
-    yield (
-        f"Pair {seen.name}: within the tolerances of the grinding table at most {figures(best.most[i] * 1e6, 2)} µm at "
-        f"{figures(best.torque[i], 4)} N m (without relief {figures(none.peak_to_peak[i] * 1e6, 2)} µm)."
-    )
+        yield from said_at(seen, seen.data.ends, seen.data.ends)
 
 
 def _figure(seen: Seen) -> str:
@@ -57,7 +40,7 @@ def _figure(seen: Seen) -> str:
 
 RELIEF_OVER_FACE_SHEET = Sheet(
     of=TipsShown,
-    answer=Answer(_grind, _within, figure=_figure),
+    answer=Answer(_grind, figure=_figure),
     tables=(
         grinding_table("grinding_{name}", "Tip relief to grind on {name}", "grinding"),
         OVER_RANGE,

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair
 
 
+#: Share of what one shape may leave within its tolerances below which another is worth a word.
+_CLEARLY = 0.95
+
+
 @dataclass(frozen=True)
 class LeftOverRange:
     """What one relief leaves at each torque of the range, arrays of shape (L,).
@@ -44,6 +48,16 @@ class LeftOverRange:
         name="te_peak_to_peak_max", default=None,
     )  # fmt: skip
     error: float | Array | None = None
+
+    @property
+    def allowed(self) -> Array:
+        """Maximum within the tolerances; without them what the relief itself leaves."""
+        return self.peak_to_peak if self.most is None else self.most
+
+    @property
+    def worst_allowed(self) -> float:
+        """The worst of it in proportion to the load, as the design counts it [m]."""
+        return float((self.allowed * self.weight * self.load.max() / self.load).max())
 
     @property
     def errors(self) -> Array | None:
@@ -73,11 +87,11 @@ def left_over_range(design: ReliefDesign, pair: GearPair) -> dict[str, LeftOverR
 def said_of_range(seen: Seen) -> Iterator[str]:
     """What to grind and what it leaves from the largest to the smallest torque; what one load only would do."""
     if seen.data.for_range:
-        yield from said_at(seen, (-1, 0))
+        yield from said_at(seen, tuple(range(-1, -1 - _first(seen).torque.size, -1)), (-1, 0))
 
 
-def said_at(seen: Seen, ends: tuple[int, ...]) -> Iterator[str]:
-    """The same at torques of the table, by their numbers in it."""
+def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterator[str]:
+    """The same of some torques of the table, by their numbers in it; what tolerances may leave at any of them."""
     d = seen.data
     shape = d.grinding[0].shape
     none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
@@ -89,6 +103,8 @@ def said_at(seen: Seen, ends: tuple[int, ...]) -> Iterator[str]:
     )
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    if ground and best.most is not None:
+        yield _tolerated(seen, shape, none, best, every)
     single = d.over_range.get(f"{shape} tip relief for one load")
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
@@ -99,6 +115,26 @@ def said_at(seen: Seen, ends: tuple[int, ...]) -> Iterator[str]:
             f"{figures(single.peak_to_peak[i] * 1e6)} µm peak-to-peak at {figures(single.torque[i], 4)} N m, "
             f"more than without relief ({figures(none.peak_to_peak[i] * 1e6)} µm)."
         )
+
+
+def _tolerated(seen: Seen, shape: str, none: LeftOverRange, best: LeftOverRange, ends: tuple[int, ...]) -> str:
+    """What tolerances may leave where they take most of the gain, and which other shape they hurt less."""
+    most, at = best.allowed, np.array(ends) % best.torque.size
+    i = int(at[np.argmax(most[at] / none.peak_to_peak[at])])
+    without = f"{figures(none.peak_to_peak[i] * 1e6, 2)} µm without relief"
+    said = (
+        f"Pair {seen.name}: within the tolerances of the grinding table at most {figures(most[i] * 1e6, 2)} µm at "
+        f"{figures(best.torque[i], 4)} N m ({'more than the ' if most[i] > none.peak_to_peak[i] else ''}{without})"
+    )
+    others = {
+        key.removesuffix(" tip relief"): one
+        for key, one in seen.data.over_range.items()
+        if one.most is not None and key != f"{shape} tip relief"
+    }
+    other = min(others, key=lambda key: others[key].worst_allowed, default="")
+    if not other or others[other].worst_allowed > _CLEARLY * best.worst_allowed:
+        return f"{said}."
+    return f"{said}; {other} tip relief at most {figures(others[other].allowed[i] * 1e6, 2)} µm."
 
 
 def _key(seen: Seen) -> str:

@@ -229,7 +229,12 @@ def _sentences(seen: Seen) -> Iterator[str]:
     if math.isfinite(first.face_load_factor):
         known.append(f"K_Hβ {first.face_load_factor:.2f}")
     if math.isfinite(first.margin):
-        known.append(f"S_H {first.contact:.2f}, S_F {first.bending:.2f}")
+        known += [
+            f"{symbol} {value:.2f}" + (f" (minimum {figures(minimum)})" if value < minimum else "")
+            for symbol, value, minimum in (
+                ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
+            )
+        ]  # fmt: skip
     yield f"Pair {first.pair}{many}: {', '.join(known)}."
     for number, one in enumerate(data.changes):
         yield f"Change {number + 1}, {one.part}: {one.finding}; {one.remedy}."
@@ -265,7 +270,9 @@ def _with_error(key: str, error: str) -> Cell:
 
 
 _SHEET = Sheet(
-    answer=Answer(_sentences, figure="gearbox"),
+    answer=Answer(
+        _sentences, figure="gearbox", covers=("misalignment", "shaft-deflection", "load-distribution", "rating")
+    ),
     name=lambda _asked: "",
     tables=(
         Rows(

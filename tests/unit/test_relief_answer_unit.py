@@ -1,0 +1,56 @@
+"""What to grind for a range of torques, in sentences; the designs are made up."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.engine.sheet.seen import Seen
+from fegear.geometry.pair import MEMBERS
+from fegear.results.relief.grinding import TIP, Grinding
+from fegear.results.relief.relief_over_range import LeftOverRange, said_of_range
+
+LOAD = np.array([1000.0, 2000.0])
+
+
+def left(values, most=None):
+    numbers = (np.array(values, dtype=float) * 1e-6, np.zeros(2), None if most is None else np.array(most) * 1e-6)
+    return LeftOverRange(0.05 * LOAD, LOAD, np.ones(2), *numbers)
+
+
+def said(linear, parabolic):
+    rows = tuple(
+        Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, 6e-6, start_diameter=0.06)
+        for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
+    )  # fmt: skip
+    left_over = {
+        "no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), linear),
+        "parabolic tip relief": left((1.3, 2.5), parabolic), "linear tip relief for one load": left((3.9, 0.8)),
+    }  # fmt: skip
+    data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
+    return list(said_of_range(Seen(data, None, "I")))
+
+
+@pytest.mark.parametrize(
+    ("linear", "parabolic", "words"),
+    [
+        ((4.3, 5.9), (3.5, 4.5), ("at most 4.3 µm at 50 N m (more than the 3.7 µm without relief); parabolic tip "
+         "relief at most 3.5 µm.")),
+        ((1.5, 5.9), (3.5, 4.5), "at most 5.9 µm at 100 N m (7 µm without relief)."),
+        ((2.0, 3.0), (1.9, 3.9), "at most 2 µm at 50 N m (3.7 µm without relief)."),
+    ],
+)  # fmt: skip
+def test_what_tolerances_may_leave_is_said_behind_what_to_grind(linear, parabolic, words):
+    first, within, single = said(linear, parabolic)
+    assert first.startswith("Pair I: grind 6 µm from d 60.0 mm on gear p and 6 µm from d 60.0 mm on gear w, linear: ")
+    assert first.endswith("7 -> 2.4 µm at 100 N m, 3.7 -> 1.2 µm at 50 N m, peak to peak.")
+    assert within == f"Pair I: within the tolerances of the grinding table {words}"
+    assert single.endswith(
+        "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
+    )
+
+
+def test_without_tolerances_nothing_is_said_of_them():
+    assert len(said(None, None)) == 2
