@@ -289,7 +289,8 @@ FURTHER = {
 #: With what the first sentence of some begins.
 BEGINS = {
     "helical_load": "Pair I: K_Hβ", "helical_pair": "Pair I: K_Hβ", "khbeta_helical": "Pair I: K_Hβ",
-    "khbeta_spur": "Pair I: K_Hβ", "spur_over_the_face": "Gear a, force on one band of the flank: self-compliance",
+    "khbeta_spur": "Pair I: K_Hβ", "relief_torque_range": "Pair I: grind ",
+    "strain_gauges": "Gauge tension: measured strain is ", "spur_over_the_face": "Gear a, force on one band of the flank: self-compliance",
 }  # fmt: skip
 
 
