@@ -290,7 +290,8 @@ FURTHER = {
 BEGINS = {
     "helical_load": "Pair I: K_Hβ", "helical_pair": "Pair I: K_Hβ", "khbeta_helical": "Pair I: K_Hβ",
     "khbeta_spur": "Pair I: K_Hβ", "relief_torque_range": "Pair I: grind ",
-    "strain_gauges": "Gauge tension: measured strain is ", "spur_over_the_face": "Gear a, force on one band of the flank: self-compliance",
+    "strain_gauges": "Gauge tension: measured strain is ",
+    "spur_over_the_face": "Gear a, force on one band of the flank: self-compliance",
 }  # fmt: skip
 
 
