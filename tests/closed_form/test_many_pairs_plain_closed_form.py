@@ -146,6 +146,28 @@ def test_largest_root_stresses_are_those_of_a_pair(pairs, many):
     assert np.isnan(found.tension[:, 1]).all()
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_largest_stress_of_a_fillet_is_that_of_its_smooth_curve_below_the_contact(sign):
+    """Of a parabola, inside and at the end; what a contact does above the end of the search is faded out."""
+    arc = np.linspace(0.02, 0.98, 40)
+    fit = many_roots._fitted(arc.tobytes())
+
+    def largest(values, end):
+        return over_fillets.largest(sign * values, sign, end, 1.2, arc, *fit, np.empty(40), np.empty(40))
+
+    for top in (0.3, 0.55):
+        values = 3.0 - 4.0 * (arc - top) ** 2
+        assert largest(values, 1.0) == pytest.approx(3.0, rel=1e-9)
+        assert largest(values, 0.7) == pytest.approx(3.0, rel=1e-3)
+    assert largest(2.0 + arc, 1.0) == pytest.approx(3.0, rel=1e-9)  # at the very end, beyond the last point
+    assert largest(3.0 - arc, 1.0) == pytest.approx(3.0, rel=1e-9)
+    level = np.full(40, 7.0)
+    assert largest(level, 0.6) == pytest.approx(7.0, rel=1e-9)
+    assert largest(np.where(arc > 0.66, 500.0, 7.0), 0.6) == pytest.approx(7.0, rel=1e-9)
+    rough = over_fillets.roughly(sign * np.where(arc > 0.66, 500.0, arc), sign, 0.6, arc)
+    assert 0.6 <= rough < 0.66
+
+
 def test_pairs_that_are_looked_up_in_parts_stand_in_their_order(many, monkeypatch):
     """What is asked of each part is recorded: the numbers themselves are those of the tests above."""
     three = ManySpurPairs(*(np.concatenate([a, a[..., :1]], axis=-1) for a in vars(many).values()))

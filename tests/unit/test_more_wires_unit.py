@@ -232,3 +232,65 @@ def test_a_crack_of_either_gear_is_followed_under_the_loads_of_its_own_tooth(mon
                         "factors": [1.0, 2.0], "shares": (0.5, 0.5)}  # fmt: skip
     assert (calls[2][1]["step"], calls[2][1]["toughness"]) == (0.4e-3, 50e6)
     assert CrackGrowthPart().shares == (1.0,)
+
+
+def test_formats_say_what_they_need_and_what_they_can_write():
+    from fegear.output.formats import FORMATS
+
+    def of(flag):
+        return {name for name, one in FORMATS.items() if getattr(one, flag)}
+
+    assert of("asymmetric") == {"dxf", "step", "msh", "vtu", "inp"}
+    assert of("takes_results") == {"rexs"}
+    assert of("needs") == {"fmu"}
+
+
+@pytest.mark.parametrize(("against", "u", "w"), [(False, (1, 0, 0), (0, 0, 1)), (True, (-1, 0, 0), (0, 0, -1))])
+def test_axes_of_a_shaft_that_says_no_more_are_those_of_the_gearbox(monkeypatch, against, u, w):
+    from fegear.exchange.rexs import places
+
+    monkeypatch.setattr(places, "direction", lambda said, shaft: against)
+    found = places.own_axes(SimpleNamespace(vector=lambda shaft, key: None), None)
+    assert [tuple(one) for one in found] == [u, (0, 1, 0), w]
+    own = places.own_axes(SimpleNamespace(vector=lambda shaft, key: (0.0, 2.0, 0.0)), None)
+    assert tuple(own[2]) == pytest.approx((0, 1, 0))
+
+
+def test_traces_of_a_topography_are_those_through_its_middle(monkeypatch):
+    """Measured off the middle of the face, and in other places than its evaluation ends."""
+    from fegear.case.built import measured_flanks
+
+    x, z = np.linspace(2.0, 8.0, 7), np.linspace(-4.0, 6.0, 6)
+    tooth, along, across = (part.ravel() for part in np.meshgrid([1.0, 5.0], x, z, indexing="ij"))
+    rows = {"tooth": tooth, "x": along, "z": across, "deviation": 1e-3 * tooth * (along**2 + 0.1 * across)}
+    monkeypatch.setattr(measured_flanks, "_columns", lambda *given: rows)
+    part = SimpleNamespace(topography="flank.csv", filter=False)
+    scene = SimpleNamespace(gears={"pinion": SimpleNamespace(base_radius=2.0)})
+    profile, helix, both = measured_flanks._flank(scene, "pinion", part, (3.0, 7.0), (-3.0, 5.0))
+    assert (profile.kind, helix.kind) == ("profile", "helix")
+    (removed,) = [one for one in vars(both).values() if np.ndim(one) == 2]
+    mean = 3e-3 * (x[:, None] ** 2 + 0.1 * z)
+    assert removed == pytest.approx(mean.max() - mean)
+    known = np.interp(profile.x, x, x**2)
+    for found, number in zip(profile.deviation, (1.0, 5.0), strict=True):
+        assert found == pytest.approx(1e-3 * number * known)
+    for found, number in zip(helix.deviation, (1.0, 5.0), strict=True):
+        assert found == pytest.approx(1e-3 * number * (25.0 + 0.1 * helix.x))
+
+
+def test_faces_of_cracks_that_may_close_are_pressed_on_each_other(monkeypatch):
+    from fegear.contact.plane import odd_compliance
+
+    curve = odd_compliance.spline(np.linspace(1.0, 3.0, 5), np.linspace(1.0, 2.0, 5) ** 2)
+    monkeypatch.setattr(odd_compliance, "tabulated_own", lambda of: (curve, None))
+
+    def own(closing):
+        influence = SimpleNamespace(
+            alone=lambda near: near, fine=SimpleNamespace(closing=closing), ends=lambda near: (4.3, 4.9),
+            gear=SimpleNamespace(base_radius=4.0), by_closing=lambda near, radius: -0.1 * near * radius,
+        )  # fmt: skip
+        return odd_compliance._own(influence, 2)
+
+    assert own({}).y.tolist() == curve.y.tolist()
+    radius = np.clip(np.hypot(4.0, curve.x), 4.3, 4.9)
+    assert own({2: "crack"}).y == pytest.approx(curve.y - 0.2 * radius)
