@@ -2,6 +2,7 @@
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,10 +30,10 @@ def crack_at(tangent, depth=0.08):
     return straight_crack(TOOTH, mouth, math.radians(90.0 - tangent), depth=depth)
 
 
-def grown(backup, crack, steps, step=0.2, support=ARC, loads=LOAD):
+def grown(backup, crack, steps, step=0.2, support=ARC, loads=LOAD, estimates=False):
     support = support if backup < 2.0 else None
     bore = TOOTH.root_radius - backup * DEPTH
-    return grow(TOOTH, bore, NU, "stress", crack, loads, step=step, steps=steps, support=support)
+    return grow(TOOTH, bore, NU, "stress", crack, loads, step=step, steps=steps, support=support, estimates=estimates)
 
 
 def test_a_crack_turns_to_where_the_tangential_stress_is_largest():
@@ -94,6 +95,44 @@ def test_a_patch_answers_as_the_ring_with_one_cracked_sector(backup, support):
     assert np.diff(found.compliance) == pytest.approx(change, rel=3e-3)
 
 
+@pytest.mark.dear
+def test_faces_in_contact_stop_a_crack_that_its_tooth_presses_together_and_leave_an_open_one():
+    """Of an open crack not a bit changes; one in the opposite fillet has its faces shut, and no K_I."""
+    crack = crack_at(45.0, 0.3)
+    opened, closing = (grown(1.0, one, 1) for one in (crack, replace(crack, closing=True)))
+    assert closing.k_1 == pytest.approx(opened.k_1, rel=1e-9)
+    assert closing.compliance == pytest.approx(opened.compliance, rel=1e-9)
+    assert closing.shut.tolist() == opened.shut.tolist() == [0.0, 0.0]
+    back = straight_crack(TOOTH, crack.mouth, math.radians(45.0), depth=0.3, back=True)
+    usual, shut = (grown(1.0, one, 1) for one in (back, replace(back, closing=True)))
+    assert usual.stopped == shut.stopped == "closed"
+    assert usual.k_1[0] < -0.1
+    assert shut.k_1[0] == pytest.approx(0.0, abs=0.02 * abs(usual.k_1[0]))
+    assert shut.shut[0] > 0.9
+    assert shut.compliance[0] < usual.compliance[0]  # the shut crack carries
+
+
+@pytest.mark.long
+def test_errors_stated_along_a_path_beside_shorter_steps_and_finer_meshes():
+    """True over stated: 0.4 to 1.0 of the path and of K_I beside steps of a quarter; the first K beside level 0."""
+    coarse, fine = grown(1.0, crack_at(45.0), 8, estimates=True), grown(1.0, crack_at(45.0), 32, step=0.05)
+    lengths = [np.append(0.0, np.cumsum(np.hypot(*np.diff(one.path)))) for one in (coarse, fine)]
+    there, here = (
+        np.array([np.interp(coarse.length, along, xy) for xy in one.path])
+        for one, along in zip((coarse, fine), lengths, strict=True)
+    )
+    off = np.hypot(*(there - here))[1:]
+    assert (off < 1.2 * coarse.tip_error[1:]).all()
+    assert (off > 0.2 * coarse.tip_error[1:]).all()
+    k = np.interp(coarse.length, fine.length, fine.k_1)
+    assert (np.abs(coarse.k_1 - k) < 1.5 * (coarse.k_1_error + coarse.off_the_path)).all()
+    gear = whole(1.0, ARC).gear
+    known = solve_cracked_gear(solve_gear(gear, settings_at(0.0), reach=1, estimate_error=False), {0: crack_at(45.0)})
+    k = known.stress_intensity(0, 0, LOAD[0])[0][:, 0]
+    assert abs(coarse.k_1[0] - k[0]) < 1.5 * coarse.k_1_error[0] < 5e-3 * k[0]
+    assert abs(coarse.k_2[0] - k[1]) < 1.5 * coarse.k_2_error[0]
+
+
 @pytest.mark.long
 def test_stress_intensity_in_a_rim_gives_back_the_energy():
     """K_I^2 + K_II^2 = E' dC/da / 2 (plane stress), of a crack that is about to leave its tooth."""
@@ -141,11 +180,17 @@ def test_a_growing_crack_in_si_scales_with_size_and_load():
     found = growing_crack(
         gear, crack_at(45.0, 0.3), loads, step=0.6e-3, steps=1, law=ParisLaw(6.9e-12, 3.0), toughness=1e6
     )
-    plain = grown(1.0, crack_at(45.0, 0.3), 1)
+    plain = grown(1.0, crack_at(45.0, 0.3), 1, estimates=True)
     assert found.k_1 == pytest.approx(plain.k_1 * 1e5 / math.sqrt(3e-3), rel=1e-9)
     assert found.length == pytest.approx(3e-3 * plain.length, rel=1e-9)
     assert found.stiffness == pytest.approx(2e11 / plain.compliance, rel=1e-9)
     assert found.fracture == pytest.approx(found.length[0])
     assert found.cycles[0] == 0.0
     assert found.cycles[1] > 0.0
+    assert 0.0 < found.k_1_error[0] < 5e-3 * found.k_1[0]
+    assert found.tip_error[0] == found.cycles_error[0] == 0.0
+    assert found.tip_error[1] == pytest.approx(3e-3 * plain.tip_error[1], rel=1e-9)
+    # a power of K: what K is off by counts three times
+    assert found.cycles_error[1] == pytest.approx(3.0 * (found.k_1_error / found.k_1).mean() * found.cycles[1], rel=0.5)
+    assert found.closed is None
     assert found.stiffness_loss[1] > found.stiffness_loss[0] == 0.0

@@ -58,17 +58,32 @@ class GrowingCrack:
     stiffness_loss: Array = shown(
         "%", "loss of stiffness since the first step", label="loss of stiffness", table="path"
     )
+    tip_error: Array = shown("mm", "estimated error of the crack tip beside its path", table="path")
     growth_rate: Array | None = shown("mm", "mean growth per load cycle", table="path", default=None)
     cycles: Array | None = shown("", "load cycles", label="load cycles", table="path", default=None)
+    closed: Array | None = shown("%", "share of the crack faces in contact", table="path", default=None)
+    k_1_error: Array | None = None
+    k_2_error: Array | None = None
+    stiffness_error: Array | None = None
+    cycles_error: Array | None = None
 
     @property
     def cycles_to_fracture(self) -> float | None:
         """Load cycles to the toughness, or to the last step where it is not reached."""
-        if self.cycles is None:
+        return self._to_fracture(self.cycles)
+
+    @property
+    def cycles_to_fracture_error(self) -> float | None:
+        """Estimated error of it by those of K; None where the crack may stop."""
+        error = self._to_fracture(self.cycles_error)
+        return error if error is not None and math.isfinite(error) else None
+
+    def _to_fracture(self, cycles: Array | None) -> float | None:
+        if cycles is None:
             return None
         if self.fracture is None:
-            return float(self.cycles[-1])
-        return float(np.interp(self.fracture, self.length, self.cycles))
+            return float(cycles[-1])
+        return float(np.interp(self.fracture, self.length, cycles))
 
 
 def growing_crack(
@@ -112,8 +127,18 @@ def growing_crack(
     stiffness = gear.material.young_modulus / found.compliance
     rate = None if law is None else law.rate(opened, factors, shares)
     fracture = None if toughness is None else length_at(length, opened * max(factors), toughness)
+    # What the path is off by changes K_I; K_II is what turns the crack, and follows the elements only.
+    off = (found.k_1_error + found.off_the_path) / math.sqrt(m)
+    cycles, spread = None, None
+    if law is not None and rate is not None:
+        cycles = cycles_to(length, rate)
+        slower, faster = (law.rate(np.maximum(opened + way * off, 0.0), factors, shares) for way in (-1.0, 1.0))
+        with np.errstate(invalid="ignore"):  # where the crack stops either way
+            spread = np.maximum(np.abs(cycles_to(length, slower) - cycles), np.abs(cycles_to(length, faster) - cycles))
+        spread[np.isinf(cycles)] = math.inf
     return GrowingCrack(
         found.crack, found.path * m, found.end, found.stopped, fracture, length, corners[0] * m, corners[1] * m, k_1,
-        k_2, found.turn, found.radius * m, stiffness, 1.0 - stiffness / stiffness[0], rate,
-        None if rate is None else cycles_to(length, rate),
+        k_2, found.turn, found.radius * m, stiffness, 1.0 - stiffness / stiffness[0], found.tip_error * m, rate, cycles,
+        found.shut if crack.closing else None, off, found.k_2_error / math.sqrt(m),
+        stiffness * found.compliance_error / found.compliance, spread,
     )  # fmt: skip

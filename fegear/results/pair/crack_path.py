@@ -25,7 +25,7 @@ from fegear.engine.figure.panel import Panel
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Every, Rows
+from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.fem.teeth import meshing_order
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 _SECONDS = 0.4
 #: Usual step [modules].
 _STEP = 0.1
+#: K_min over K_max, downward, from which a run says that the crack closes.
+_PRESSED = 0.02
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,24 @@ class Path:
         """Whether the loads of its tooth do not open it."""
         return self.found.stopped == "closed"
 
+    @property
+    def pressed(self) -> bool:
+        """Whether loads on other teeth press the open crack of the case together."""
+        return self.k_1_min < -_PRESSED * self.k_1_max
+
+    @property
+    def ratio(self) -> str:
+        """K_min over K_max, for readers."""
+        return percent(self.k_1_min / self.k_1_max)
+
     final_length: float = shown("mm", "length of the crack after the last step", default=0.0)
     cycles: float | None = shown("", "load cycles to fracture, or to the last step", default=None)
+    cycles_error: float | None = None
+    k_1_max: float = 0.0
+    k_1_min: float = shown(
+        "MPa.m^(1/2)", "minimum K_I of the crack of the case over the mesh (negative: pressed together)",
+        name="K_I_min", default=0.0,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -119,8 +137,12 @@ def _compute(asked: GrowthInputs, upstream: Upstream, work: Work) -> CrackPathDa
             toughness=None if part.toughness is None else part.toughness * 1e6, factors=part.load_factors,
             shares=part.shares,
         )  # fmt: skip
-        cycles = grown.cycles_to_fracture
-        found.append(Path(name, gear, order, grown, float(grown.length[-1]), cycles))
+        found.append(
+            Path(
+                name, gear, order, grown, float(grown.length[-1]), grown.cycles_to_fracture,
+                grown.cycles_to_fracture_error, float(rows.k_1.max()), float(rows.k_1.min()),
+            )
+        )  # fmt: skip
         work.progress((n + 1) / len(asked.cracks))
     return CrackPathData(tuple(found))
 
@@ -188,11 +210,19 @@ _SHEET = Sheet(
         Rows(
             "crack_path_{name}_{one.gear}_{one.tooth}",
             "Growth of the crack of tooth {one.tooth} of gear {one.gear} in {name}",
-            (Every("path"),), of="found", each="paths", matlab=True,
+            (
+                Every("path"), Off("k_1", lambda seen: seen.one.found.k_1_error),
+                Off("k_2", lambda seen: seen.one.found.k_2_error),
+                Off("stiffness", lambda seen: seen.one.found.stiffness_error),
+                Off("cycles", lambda seen: seen.one.found.cycles_error),
+            ),
+            of="found", each="paths", matlab=True,
         ),
     ),
-    values=tuple(
-        Number(key, each="paths", ending="_{one.gear}_{one.tooth}") for key in ("final_length", "cycles")
+    values=(
+        Number("final_length", each="paths", ending="_{one.gear}_{one.tooth}"),
+        Number("cycles", "cycles_error", each="paths", ending="_{one.gear}_{one.tooth}"),
+        Number("k_1_min", each="paths", ending="_{one.gear}_{one.tooth}"),
     ),
     figures=(
         _drawing,
@@ -202,7 +232,13 @@ _SHEET = Sheet(
             "Pair {name}: stress intensity factors at the nominal load, loss of stiffness of the tooth and load cycles "
             "over the length of the crack of tooth {one.tooth} of gear {one.gear}.",
             (
-                Over("length", (Line("k_1", "K_I"), Line("k_2", "K_II", "orange"))),
+                Over(
+                    "length",
+                    (
+                        Line("k_1", "K_I", error="found.k_1_error"),
+                        Line("k_2", "K_II", "orange", error="found.k_2_error"),
+                    ),
+                ),
                 Over("length", ("stiffness_loss",)),
             ),
             of="found", each="paths",
@@ -217,9 +253,14 @@ _SHEET = Sheet(
         Remark(
             neglecting(
                 "Pair {name}: growth of the crack of tooth {one.tooth} of gear {one.gear} under the loads on its own "
-                "tooth, shared as with the crack of the case; loads on the next teeth and crack closure are neglected."
+                "tooth, shared as with the crack of the case; loads on the next teeth are neglected."
             ),
             each="paths",
+        ),
+        Remark(
+            "Pair {name}: loads on the next teeth press the crack of tooth {one.tooth} of gear {one.gear} together "
+            "(K_I down to {one.ratio} of its maximum); closed there, it grows by ΔK from zero.",
+            each="paths", when="pressed",
         ),
     ),
 )  # fmt: skip

@@ -20,11 +20,19 @@ from fegear.fem.plane.odd.cracked_sector import CrackedSector, crack_in
 from fegear.fem.plane.ring_closure import closed_stiffness
 from fegear.fem.plane.sector_sides import between_sides, condensed_sector
 from fegear.fem.plane.settings import settings_at
-from fegear.fem.plane.supported_section import assemble_section, bore_end, section_on, supported_sector
+from fegear.fem.plane.supported_section import (
+    assemble_section,
+    assemble_section_two_orders,
+    bore_end,
+    section_on,
+    supported_sector,
+)
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
+    from fegear.fem.plane.elasticity import SectorElasticity
+    from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.odd.crack import Crack
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Plane
@@ -49,11 +57,14 @@ class Rest:
         Between side A and side B of the patch.
     moves : ndarray of bool, shape (2 m,)
         Unknowns of these sides that are not held.
+    lower : Rest, optional
+        The same with elements one order lower.
     """
 
     half: int
     stiffness: Array
     moves: Mask
+    lower: Rest | None = None
 
 
 def sectors_beside(tooth: InvoluteTooth, bore_radius: float, support: RimSupport | None) -> int:
@@ -72,11 +83,22 @@ def rest_of_ring(
     plane: Plane,
     settings: MeshSettings,
     support: RimSupport | None,
+    *,
+    two_orders: bool = False,
 ) -> Rest:
-    """Condense all sectors but those of the patch; lengths in modules."""
+    """Condense all sectors but those of the patch, on request with elements one order lower too; lengths in modules."""
     half = sectors_beside(tooth, bore_radius, support)
     mesh = supported_sector(tooth, bore_radius, settings, support)
-    elasticity = assemble_section(mesh, poisson_ratio, plane, settings.order, settings.solver, support)
+    asked = mesh, poisson_ratio, plane, settings.order, settings.solver, support
+    if not two_orders:
+        return _rest(mesh, assemble_section(*asked), tooth, half, support)
+    fine, lower = (_rest(mesh, each, tooth, half, support) for each in assemble_section_two_orders(*asked))
+    return replace(fine, lower=lower)
+
+
+def _rest(
+    mesh: SectorMesh, elasticity: SectorElasticity, tooth: InvoluteTooth, half: int, support: RimSupport | None
+) -> Rest:
     none = np.zeros(0, dtype=np.intp)
     others = tooth.teeth - 2 * half - 1
     if support is None or support.kind != "free_arc":
