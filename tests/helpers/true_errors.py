@@ -34,7 +34,7 @@ from fegear.case.built import solid_influence
 from fegear.case.reading import build_scene
 from fegear.contact.plane import loaded_pair, shifted_compliance
 from fegear.contact.wide import over_pitch
-from fegear.engine.least_errors import error_columns
+from fegear.engine.least_errors import ROUND_OFF, error_columns
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.solid.settings import solid_settings
@@ -216,7 +216,7 @@ def scene_of(case, accuracy):
 
 
 def answers(case, accuracy, cache=None):
-    """Numbers of a case by what they are: places (in their unit), values, stated errors."""
+    """Numbers of a case by what they are: places (in their unit), values, stated errors, what digits are worth."""
     scene, plan = scene_of(case, accuracy)
     results = run_plan(scene, plan, cache=cache or SolutionCache())
     found = {}
@@ -229,12 +229,20 @@ def answers(case, accuracy, cache=None):
                     where = place
                     if "face_position" in {c.name for c in table.columns}:
                         where = place + 1e3 * table.column("face_position").si
-                    found[f"{table.name.split('_')[0]}...{name}", table.name] = (where, column.si, off.si)
+                    found[f"{table.name.split('_')[0]}...{name}", table.name] = (
+                        where, column.si, off.si, digits_of(table, column),
+                    )  # fmt: skip
         for value in outcome.values:
             key = value.name.rpartition(".")[2].rstrip("0123456789")
             error = np.nan if value.si_error is None else value.si_error
-            found[f"value {key}", value.name] = (np.zeros(1), np.array([value.si]), np.array([error]))
+            found[f"value {key}", value.name] = (np.zeros(1), np.array([value.si]), np.array([error]), 0.0)
     return found
+
+
+def digits_of(table, column):
+    """What the engine takes the digits of a column to be worth, of all that has its unit: what cancels has no others."""
+    alike = [np.abs(c.si) for c in table.columns if c.si.dtype.kind == "f" and c.unit == column.unit != ""]
+    return ROUND_OFF * float(np.nanmax(np.concatenate(alike))) if alike else 0.0
 
 
 def of_elements(case, accuracy):
@@ -319,16 +327,17 @@ class Judged:
 def judged(found, truth, elements=None):
     """Every quantity of a solution beside the truth; `elements` has the errors of finite elements by themselves."""
     every = []
-    for (what, name), (place, value, stated) in found.items():
+    for (what, name), (place, value, stated, *digits) in found.items():
         if (what, name) not in truth:
             continue
-        at, exact, rough = truth[what, name]
+        at, exact, rough = truth[what, name][:3]
         mine, theirs = np.round(place, 12), np.round(at, 12)
         both, i, j = np.intersect1d(mine, theirs, return_indices=True)
         if not both.size:
             continue
         # What the truth's own elements may be off: its error also has what no elements tell, of contacts beside tips.
         small = np.minimum(np.nan_to_num(rough[j], nan=0.0), _ROUGH * np.abs(exact).max(initial=0.0))
+        small = np.maximum(small, sum(digits))
         own = (elements or found)[what, name][2][i]
         every.append(Judged(what, name, np.abs(exact[j]), value[i] - exact[j], stated[i], small, own))
     return every

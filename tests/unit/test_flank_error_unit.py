@@ -121,9 +121,10 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
     stated = over(VALUES)
     result = flank_error(flanks, FOUND, "coarse", "gaps", stated, 55.0)
     assert steps == [(FOUND, more), (more, softer)]
-    assert result.coarse is softer
-    np.testing.assert_allclose(result.mean, 1.0 + 10.0 + 0.001)
-    np.testing.assert_allclose(result.peak_to_peak, 2.0 + 20.0 + 0.002)
+    assert (result.longer, result.coarse) == (more, softer)
+    # Coarser gears change means and shapes by more than they err.
+    np.testing.assert_allclose(result.mean, 1.0 + 0.6 * 10.0 + 0.001)
+    np.testing.assert_allclose(result.peak_to_peak, 2.0 + 0.4 * 20.0 + 0.002)
     np.testing.assert_allclose(result.face_load_factor, 3.0 + 30.0 + 0.003)
     # Spots miss a hundredth of each largest number; a pressure read between stations six tenths of what it adds.
     by_panels, left = (np.array([4.0, 4.0]), 0.004) if not finer else (0.0, 1.5 * again["largest_line_load"])
@@ -149,7 +150,7 @@ def test_a_spot_that_comes_and_goes_leaves_a_share_of_the_mean_s_change(monkeypa
 
 
 def test_bodies_that_miss_a_share_of_their_compliance_add_it_to_every_error():
-    none = FlankError(np.zeros((3, 2)), np.zeros((2, 3, 2)), FOUND, *np.zeros((5, 2)))
+    none = FlankError(np.zeros((3, 2)), np.zeros((2, 3, 2)), FOUND, FOUND, *np.zeros((5, 2)))
     some = replace(none, mean=np.array([1.0, 2.0]), share=np.full((2, 3, 2), 0.5))
     found = with_misses(some, FOUND, 0.04)
     np.testing.assert_allclose(found.transmission_error, 0.04 * np.abs(FOUND.transmission_error))

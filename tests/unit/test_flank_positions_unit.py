@@ -8,7 +8,13 @@ import pytest
 from fegear.contact.wide.along_lines import _loads_below, load_below, swept_mean
 from fegear.contact.wide.lines import contact_lines, shortest_line
 from fegear.contact.wide.roll_points import _shared, line_breaks, roll_points
-from fegear.contact.wide.transmission_error import curve_through, from_half
+from fegear.contact.wide.transmission_error import (
+    FlankTransmissionError,
+    curve_through,
+    flank_transmission_error_shift,
+    from_half,
+    series_over_pitch,
+)
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
@@ -158,3 +164,26 @@ def test_curves_through_roll_positions_are_the_same_to_the_last_digit_every_time
         assert np.array_equal(curve_through(points, values, x), found)
         assert np.array_equal(from_half(points, values), half)
     np.testing.assert_allclose(found, np.cos(2.0 * math.pi * x / points.period), atol=1e-3)
+
+
+def test_coarser_gears_count_in_part_and_longer_panels_whole():
+    """Sines over the base pitch, about means: of what gears change a part is error, of means another than of shapes."""
+    points = roll_points(pair(20.0), 48)
+    turn = 2.0 * math.pi * points.x / points.period
+
+    def curve(mean, amplitude):
+        values = mean + 2.0 * amplitude * np.sin(turn)
+        flat = np.full(values.shape, 3.0)
+        series = series_over_pitch(points, values)
+        return FlankTransmissionError(1.0, points, values, flat, flat * mean, series, float(np.ptp(values)))
+
+    fine, longer, coarse = curve(10.0, 1.0), curve(10.5, 1.01), curve(12.5, 1.06)
+    same = flank_transmission_error_shift(fine, fine, fine, fine)
+    whole = flank_transmission_error_shift(fine, fine, longer, coarse)
+    part = flank_transmission_error_shift(fine, fine, longer, coarse, (0.6, 0.4))
+    assert whole.mean - same.mean == pytest.approx(2.5, rel=1e-9)
+    assert part.mean - same.mean == pytest.approx(0.5 + 0.6 * 2.0, rel=1e-9)
+    assert part.stiffness - same.stiffness == pytest.approx(3.0 * (0.5 + 0.6 * 2.0), rel=1e-9)
+    assert part.first_harmonic - same.first_harmonic == pytest.approx(2.0 * (0.01 + 0.4 * 0.05), rel=1e-3)
+    assert part.peak_to_peak - same.peak_to_peak == pytest.approx(4.0 * (0.01 + 0.4 * 0.05), rel=5e-3)
+    assert part.effective - same.effective == pytest.approx(0.5 * (whole.effective - same.effective), rel=5e-3)

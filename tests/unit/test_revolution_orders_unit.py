@@ -1,6 +1,7 @@
 """Orders and condition indicators of transmission errors that are made up: what is put in comes out."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,11 +18,8 @@ def made(te):
     turn = (x - START + PITCH * np.arange(CYCLES)[:, None]) / (CYCLES * PITCH)
     error = 1e-6 * (te(turn) + 0.0 * turn)
     loads = np.stack([np.full(error.shape, 100.0), np.where(turn < 0.5, 50.0, 0.0)], axis=1)
-    nan = np.full(error.shape, math.nan)
     stiffness = 1e8 + 1e12 * error
-    return OverRevolution(
-        x, PITCH, 100.0, 0.03, np.array([0, 1]), error, stiffness, loads, 3, nan, nan, 2.0 * stiffness
-    )
+    return OverRevolution(x, PITCH, 100.0, 0.03, np.array([0, 1]), error, stiffness, loads, 3, 2.0 * stiffness)
 
 
 def mesh(turn):
@@ -100,3 +98,32 @@ def test_stiffness_at_any_rotation_of_the_driver():
         assert found.stiffness_at(at) == pytest.approx(rows.local_stiffness[inner])
         assert found.error_at(at) == pytest.approx(rows.te[inner])
     assert found.error_at(rows.driver_angle[0] - 1e-9) == pytest.approx(rows.te[-1], rel=1e-6)
+
+
+def odd_pitch(softer=0.3, scale=1.0):
+    """One base pitch of twelve whose stiffness, 1e8 N/m, is lower by a share, its error larger by as much."""
+    usual = made(lambda turn: 1.0 + 0.0 * turn)
+    share = np.where(np.arange(CYCLES) == 4, 1.0 - softer, 1.0)[:, None] * scale
+    full = np.ones(usual.stiffness.shape)
+    return replace(usual, stiffness=1e8 * share * full, transmission_error=1e-6 / share * full)
+
+
+def test_errors_of_losses_and_residuals_are_what_the_compliances_errors_change():
+    plain = odd_pitch()
+    assert plain.stiffness_loss == pytest.approx(0.3)
+    assert plain.largest_residual == pytest.approx(1e-6 * (1.0 / 0.7 - 1.0))
+    assert math.isnan(plain.stiffness_loss_error) and math.isnan(plain.largest_residual_error)
+    found = replace(plain, others=(odd_pitch(0.32), odd_pitch(0.29)))
+    assert found.stiffness_loss_error == pytest.approx(0.03)
+    assert found.largest_residual_error == pytest.approx(1e-6 * (1.0 / 0.68 - 1.0 / 0.71))
+    assert found.stiffness_error.max() == pytest.approx(3e6)
+
+
+def test_what_softens_all_teeth_alike_leaves_a_part_of_its_error():
+    """Losses stay the same, but odd teeth share their errors with ordinary ones only in part; teeth all alike do."""
+    found = replace(odd_pitch(), others=(odd_pitch(scale=0.99),))
+    assert found.stiffness_loss_error == pytest.approx(0.2 * 0.7 * 0.01)
+    assert found.largest_residual_error == pytest.approx(1e-6 * (1.0 / 0.7 - 1.0) * (1.0 / 0.99 - 1.0))
+    alike = replace(odd_pitch(0.0), others=(odd_pitch(0.0, 0.99),), solved=1)
+    assert alike.stiffness_loss_error == pytest.approx(0.0, abs=1e-15)
+    assert alike.largest_residual_error == pytest.approx(0.0, abs=1e-21)

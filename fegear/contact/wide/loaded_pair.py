@@ -26,7 +26,7 @@ from fegear.contact.loaded_teeth import (
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.wide.compliance import FlankCompliance
-from fegear.contact.wide.error import FlankError
+from fegear.contact.wide.error import OF_GEARS_MEAN, OF_GEARS_SHAPE, FlankError
 from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
@@ -209,10 +209,14 @@ class LoadedWidePair:
             )
         ]
         curves = flank_transmission_errors(found, self.flanks.points)
-        again = flank_transmission_errors(self.error.coarse, self.flanks.points) if self.estimated else curves
+        longer, coarse = (
+            flank_transmission_errors(one, self.flanks.points)[i] if self.estimated else curves[i]
+            for one in (self.error.longer, self.error.coarse)
+        )
         progress(0.5)
         perfect = self._mean_without_gaps()
-        shift = _missed_too(flank_transmission_error_shift(each[i], curves[i], again[i]), each[i], self._missed)
+        shift = flank_transmission_error_shift(each[i], curves[i], longer, coarse, (OF_GEARS_MEAN, OF_GEARS_SHAPE))
+        shift = _missed_too(shift, each[i], self._missed)
         # What is stated of the whole base pitch is stated once.
         shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
         uneven = bool(self.gaps.driver_spacing.size or self.gaps.driven_spacing.size)

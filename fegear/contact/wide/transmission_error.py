@@ -124,16 +124,22 @@ def _secant(known: FlankCompliance, place: Index, force: Array) -> Array:
 
 
 def flank_transmission_error_shift(
-    te: FlankTransmissionError, fine: FlankTransmissionError, again: FlankTransmissionError
+    te: FlankTransmissionError,
+    fine: FlankTransmissionError,
+    longer: FlankTransmissionError,
+    coarse: FlankTransmissionError,
+    of_gears: tuple[float, float] = (1.0, 1.0),
 ) -> TransmissionErrorShift:
-    """Estimated errors: the change by the coarser solution, and that by half as many roll positions.
+    """Estimated errors: the changes by coarser solutions, and that by half as many roll positions.
 
     Parameters
     ----------
     te : FlankTransmissionError
         What is stated.
-    fine, again : FlankTransmissionError
-        At the same roll positions, these or others: as solved, and with coarser gears and longer panels.
+    fine, longer, coarse : FlankTransmissionError
+        At the same roll positions, these or others: as solved, on longer panels, and of coarser gears on these.
+    of_gears : (float, float)
+        Of what coarser gears change, so much is error: of means, and of the curve's shape.
     """
     kept = every_second(te.points)
 
@@ -141,16 +147,21 @@ def flank_transmission_error_shift(
         return np.interp(te.points.x, te.points.x[kept], values[kept], period=te.points.period)
 
     fewer = _error(te.load, te.points, *(straight(one) for one in (te.values, te.local, te.secant)))
-    pairs = ((te, fewer), (fine, again))
+    pairs = ((te, fewer), (fine, longer), (longer, coarse))
+    mean, shape = ((1.0, 1.0, part) for part in of_gears)
 
-    def changed(key: str) -> float:
-        return sum(abs(float(getattr(one, key)) - float(getattr(two, key))) for one, two in pairs)
+    def changed(key: str, parts: tuple[float, ...]) -> float:
+        changes = (abs(float(getattr(one, key)) - float(getattr(two, key))) for one, two in pairs)
+        return sum(part * change for part, change in zip(parts, changes, strict=True))
 
     known = te.series.amplitude.size
-    amplitudes = [np.pad(np.abs(one.series.amplitude - two.series.amplitude), (0, known))[:known] for one, two in pairs]
+    amplitudes = [
+        part * np.pad(np.abs(one.series.amplitude - two.series.amplitude), (0, known))[:known]
+        for part, (one, two) in zip(shape, pairs, strict=True)
+    ]
     return TransmissionErrorShift(
-        changed("mean"), changed("peak_to_peak"), changed("effective_error"), np.asarray(sum(amplitudes)),
-        changed("mean_secant"),
+        changed("mean", mean), changed("peak_to_peak", shape), changed("effective_error", shape),
+        np.asarray(sum(amplitudes)), changed("mean_secant", mean),
     )  # fmt: skip
 
 

@@ -152,10 +152,20 @@ class RevolutionData:
         return self.found.ordinary_lowest_stiffness
 
     @property
+    def mesh_stiffness_min_ordinary_error(self) -> float:
+        """[N/m]."""
+        return float(self.found.shift(lambda one: one.ordinary_lowest_stiffness))
+
+    @property
     @shows("%", "reduction of the minimum mesh stiffness compared with an ordinary base pitch")
     def mesh_stiffness_loss(self) -> float:
         """Of one."""
-        return 1.0 - self.mesh_stiffness_min / self.mesh_stiffness_min_ordinary
+        return self.found.stiffness_loss
+
+    @property
+    def mesh_stiffness_loss_error(self) -> float:
+        """Of one."""
+        return self.found.stiffness_loss_error
 
     @property
     @shows("um", "maximum transmission error")
@@ -172,7 +182,12 @@ class RevolutionData:
     @shows("um", "maximum residual: transmission error minus that of an ordinary base pitch")
     def te_residual_max(self) -> float:
         """[m]."""
-        return float(np.abs(self.found.residual).max())
+        return self.found.largest_residual
+
+    @property
+    def te_residual_max_error(self) -> float:
+        """[m]."""
+        return self.found.largest_residual_error
 
 
 def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
@@ -284,10 +299,10 @@ _SHEET = Sheet(
     ),
     values=(
         Number("mesh_stiffness_min", "mesh_stiffness_min_error"),
-        "mesh_stiffness_min_ordinary",
-        "mesh_stiffness_loss",
+        Number("mesh_stiffness_min_ordinary", "mesh_stiffness_min_ordinary_error"),
+        Number("mesh_stiffness_loss", "mesh_stiffness_loss_error"),
         Number("te_max", "te_max_error"),
-        "te_residual_max",
+        Number("te_residual_max", "te_residual_max_error"),
         *(Number(key, of="indicators") for key in INDICATORS),
     ),
     figures=(
