@@ -240,7 +240,7 @@ def answers(case, accuracy, cache=None):
 
 
 def digits_of(table, column):
-    """What the engine takes the digits of a column to be worth, of all that has its unit: what cancels has no others."""
+    """What the digits of a column are worth to the engine, of all that has its unit: what cancels has no others."""
     alike = [np.abs(c.si) for c in table.columns if c.si.dtype.kind == "f" and c.unit == column.unit != ""]
     return ROUND_OFF * float(np.nanmax(np.concatenate(alike))) if alike else 0.0
 
