@@ -34,6 +34,15 @@ class TransmissionErrorShift:
         return float(self.amplitude[0]) if self.amplitude.size else 0.0
 
 
+def no_less_than_beside(error: Array) -> Array:
+    """Errors of harmonics, shape (N,), none below the root mean square of it and those beside it.
+
+    What a change of the flank's ends adds to one harmonic may cancel, and does not in the next, whose phases differ.
+    """
+    square = np.pad(error**2, 1, mode="edge")
+    return np.maximum(error, np.sqrt((square[:-2] + square[1:-1] + square[2:]) / 3.0))
+
+
 @dataclass(frozen=True)
 class Harmonics:
     """Lines of the transmission error, n = 1 to N, under L loads.

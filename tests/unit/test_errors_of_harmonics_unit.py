@@ -3,17 +3,18 @@
 import numpy as np
 import pytest
 
+from fegear.contact.error_over_pitch import no_less_than_beside
 from fegear.contact.fourier import panels
-from fegear.contact.plane.shifted_loads import _between_two_places, _no_less_than_beside, _of_effective
+from fegear.contact.plane.shifted_loads import _between_two_places, _of_effective
 
 
 def test_a_harmonic_in_which_changes_cancel_has_an_error_as_those_beside_it():
     error = np.array([4.0, 3.0, 0.0, 3.0, 2.0])
-    found = _no_less_than_beside(error)
+    found = no_less_than_beside(error)
     assert (found >= error).all()
     assert found[2] == pytest.approx(np.sqrt(6.0))
-    assert _no_less_than_beside(np.full(5, 2.0)) == pytest.approx(np.full(5, 2.0))
-    assert (_no_less_than_beside(np.zeros(5)) == 0.0).all()
+    assert no_less_than_beside(np.full(5, 2.0)) == pytest.approx(np.full(5, 2.0))
+    assert (no_less_than_beside(np.zeros(5)) == 0.0).all()
 
 
 def test_the_effective_errors_error_is_that_of_its_harmonics():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.error_over_pitch import TransmissionErrorShift
+from fegear.contact.error_over_pitch import TransmissionErrorShift, no_less_than_beside
 from fegear.contact.fourier import EFFECTIVE_HARMONICS, FourierSeries, effective_error, fourier_series
 from fegear.contact.plane.base_pitch import mean_secant_stiffness
 from fegear.contact.plane.engagement import Engagement, solve_again
@@ -57,19 +57,10 @@ def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement
         # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
         for series in (again.series, bent):
             amplitude += 2.0 * np.abs(series.coefficients - te.series.coefficients)[1:]
-    amplitude = _no_less_than_beside(amplitude)
+    amplitude = no_less_than_beside(amplitude)
     effective = max(effective, _of_effective(te.series.amplitude, amplitude))
     peak_to_peak = max(peak_to_peak, usual)
     return TransmissionErrorShift(mean, peak_to_peak, effective, amplitude, stiffness)
-
-
-def _no_less_than_beside(error: Array) -> Array:
-    """Errors of harmonics, shape (N,), none below the root mean square of it and those beside it.
-
-    What a change of the flank's ends adds to one harmonic may cancel, and does not in the next, whose phases differ.
-    """
-    square = np.pad(error**2, 1, mode="edge")
-    return np.maximum(error, np.sqrt((square[:-2] + square[1:-1] + square[2:]) / 3.0))
 
 
 def _of_effective(amplitude: Array, error: Array) -> float:

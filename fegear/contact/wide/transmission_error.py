@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
-from fegear.contact.error_over_pitch import TransmissionErrorShift
+from fegear.contact.error_over_pitch import TransmissionErrorShift, no_less_than_beside
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
 from fegear.contact.wide.complementarity import secant_compliance
 from fegear.contact.wide.compliance import FlankCompliance
@@ -155,13 +155,14 @@ def flank_transmission_error_shift(
         return sum(part * change for part, change in zip(parts, changes, strict=True))
 
     known = te.series.amplitude.size
-    amplitudes = [
-        part * np.pad(np.abs(one.series.amplitude - two.series.amplitude), (0, known))[:known]
-        for part, (one, two) in zip(shape, pairs, strict=True)
-    ]
+    amplitude = np.zeros(known)
+    for part, (one, two) in zip(shape, pairs, strict=True):
+        # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
+        change = 2.0 * np.abs(one.series.coefficients - two.series.coefficients)[1:]
+        amplitude += part * np.pad(change, (0, known))[:known]
     return TransmissionErrorShift(
         changed("mean", mean), changed("peak_to_peak", shape), changed("effective_error", shape),
-        np.asarray(sum(amplitudes)), changed("mean_secant", mean),
+        no_less_than_beside(amplitude), changed("mean_secant", mean),
     )  # fmt: skip
 
 

@@ -69,9 +69,8 @@ _SCATTERS = 3.0
 _USUAL = 1.5
 #: Of neighbours, whose errors by the width of the pressures are local: of fourth order for that half-width, more by
 #: this power of wider ones up to so much, for long edges bend a thin rim, and what that moves passes through zero
-#: between two solutions (twice as much was two to three times what 84 random gears and rings need). Of lower orders the
-#: last.
-_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_BELOW = 0.2, 3.8, 0.4, 0.8
+#: between two solutions. Of lower orders the last.
+_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR = 0.2, 3.8, 0.8
 #: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
 #: whole the tension of a tooth may pass through zero.
 _LEAST_STRESS = 0.1
@@ -245,9 +244,9 @@ class Estimate:
 
     def _neighbour_estimate(self, k: int, difference: Array) -> Array:
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        least = _USUAL_NEIGHBOUR_BELOW
+        least = _MOST_USUAL_NEIGHBOUR
         if self.fine.flank.order == 4:
-            least = min(self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), _MOST_USUAL_NEIGHBOUR)
+            least = min(self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), least)
         return np.asarray(np.maximum(difference, least * usual)) + self.common_errors[1]
 
     def _stress_of(self, k: int, side: Side, radius: Array, half_width: Array) -> _Stress:
