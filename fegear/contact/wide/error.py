@@ -40,7 +40,7 @@ _BETWEEN = 0.6
 #: What longer panels change of the mean transmission error of spots, as an error of its peak to peak.
 _OF_SPOT = 0.6
 #: What is taken for an error of what coarser gears change of the mean transmission error and of its peak to peak: on
-#: five random pairs they changed it 3 to 14 and 10 to 80 times as much as finer ones.
+#: five random pairs they changed it 3 to 14 and 10 to 40 times as much as it was off.
 OF_GEARS_MEAN, OF_GEARS_SHAPE = 0.6, 0.4
 
 
