@@ -25,6 +25,9 @@ def open(  # noqa: A001 - it is the name of the command
             "repeatable.",
         ),
     ] = None,
+    read_only_link: Annotated[
+        bool, typer.Option("--read-only-link", help="Print a second address for viewers who can change nothing.")
+    ] = False,
 ) -> None:
     """Open the live workbench in the browser: change a case and see the gears answer.
 
@@ -33,6 +36,6 @@ def open(  # noqa: A001 - it is the name of the command
     from fegear.window.server import serve
 
     try:
-        serve(case, port, browser=not no_browser, say=typer.echo, folders=folder or ())
+        serve(case, port, browser=not no_browser, say=typer.echo, folders=folder or (), look=read_only_link)
     except KeyboardInterrupt:
         leave("closed; unsaved changes are kept for the next start.", 130)

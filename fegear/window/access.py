@@ -1,6 +1,8 @@
 """Who may speak to the page: this machine, by its own name, the account that runs it, with the secret of its cookie.
 
-An address brings a key that works once: what it opens gets the cookie, and the next key is printed. A browser that
+An address brings a key that works once: what it opens gets the cookie, and the next key is printed. A second key, of
+those who look on, works as often as it is used: its cookie reads, and what would change anything is answered by 403,
+requests and messages alike, before anything else sees them. A browser that
 fegear itself starts gets its address by a file that its owner only can read, as command lines are read by everybody.
 """
 
@@ -10,6 +12,7 @@ import contextlib
 import hmac
 import html
 import os
+import re
 import secrets
 import sys
 from ipaddress import ip_address
@@ -43,6 +46,12 @@ _CONNECTIONS = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 _ROOT = 0
 #: How frames of a page begin: the end, an answer to a ping, a message, another transport (engine.io).
 _FRAMES = ("1", "3", "4", "5")
+#: Of these, what a page that only looks on may say: that it ends, hears, begins, has shown what was sent.
+_UPKEEP = re.compile(r'(1|3|41)\Z|40(\{|\Z)|42\["(handshake|ack)",')
+#: A message that waits for its answer, by its number.
+_ANSWERED = re.compile(r"42(\d+)\[")
+#: In the scope of a request of who only looks on.
+LOOKS = "fegear_looks"
 _LITTLE = sys.byteorder == "little"
 #: Whose connection was closed meanwhile: the system counts it as that of the first account, who may do everything.
 _NOBODY = -1
@@ -55,10 +64,12 @@ class Keys:
     ----------
     secret : str
         Of the cookie.
+    look, look_secret : str
+        The key of those who look on, and the secret that it is exchanged for.
     """
 
     def __init__(self) -> None:
-        self.secret = secrets.token_urlsafe(24)
+        self.secret, self.look, self.look_secret = (secrets.token_urlsafe(24) for _ in range(3))
         self._open: dict[str, Callable[[], object]] = {}
 
     def another(self, used: Callable[[], object]) -> str:
@@ -112,8 +123,14 @@ class Doorkeeper:
         elif _opens(scope, heads) and self._keys.take(_key_of(scope)):  # used up though the browser has the cookie
             cookie = f"fegear-{self._port}={self._keys.secret}; HttpOnly; SameSite=Strict; Path=/"
             await _answer(_with_heads(send), 200, leading_to("/"), "text/html", [(b"set-cookie", cookie.encode())])
-        elif self._has_cookie(heads):
+        elif self._has_cookie(heads, f"fegear-{self._port}", self._keys.secret):
             await self._app(scope, _whole_frames(receive), _with_heads(send))
+        elif _opens(scope, heads) and hmac.compare_digest(_key_of(scope, "look").encode(), self._keys.look.encode()):
+            cookie = f"fegear-look-{self._port}={self._keys.look_secret}; HttpOnly; SameSite=Strict; Path=/"
+            await _answer(_with_heads(send), 200, leading_to("/"), "text/html", [(b"set-cookie", cookie.encode())])
+        elif _only_reads(scope) and self._has_cookie(heads, f"fegear-look-{self._port}", self._keys.look_secret):
+            scope[LOOKS] = True
+            await self._app(scope, _frames_that_read(receive, send), _with_heads(send))
         else:
             await _refuse(scope, send)
 
@@ -127,11 +144,12 @@ class Doorkeeper:
         asking = account_of(scope.get("client"), self._port)
         return asking is None or asking in (_ROOT, os.getuid())
 
-    def _has_cookie(self, heads: dict[str, str]) -> bool:
+    @staticmethod
+    def _has_cookie(heads: dict[str, str], name: str, secret: str) -> bool:
         if heads.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return False
-        shown = _cookies(heads.get("cookie", ""), f"fegear-{self._port}")
-        return any(hmac.compare_digest(one.encode(), self._keys.secret.encode()) for one in shown)
+        shown = _cookies(heads.get("cookie", ""), name)
+        return any(hmac.compare_digest(one.encode(), secret.encode()) for one in shown)
 
 
 def leading_to(address: str) -> str:
@@ -193,8 +211,35 @@ def _opens(scope: Scope, heads: dict[str, str]) -> bool:
     return whence in ("none", "same-origin") or heads.get("sec-fetch-dest") == "document"
 
 
-def _key_of(scope: Scope) -> str:
-    return parse_qs(scope.get("query_string", b"").decode("latin-1")).get("key", [""])[0]
+def _key_of(scope: Scope, name: str = "key") -> str:
+    return parse_qs(scope.get("query_string", b"").decode("latin-1")).get(name, [""])[0]
+
+
+def _only_reads(scope: Scope) -> bool:
+    """Whether a request can change nothing: what travels along a connection is looked at frame by frame."""
+    if scope["type"] == "websocket":
+        return True
+    return scope.get("method") in ("GET", "HEAD") and not scope.get("path", "").startswith("/_nicegui_ws")
+
+
+def _frames_that_read(
+    receive: Callable[..., Awaitable[Any]], send: Callable[..., Awaitable[None]]
+) -> Callable[..., Awaitable[Any]]:
+    """Let through what keeps a connection up; answer every other message by 403."""
+
+    async def received() -> Any:
+        while True:
+            message = await receive()
+            if message["type"] != "websocket.receive":
+                return message
+            text = message.get("text") or ""
+            if _UPKEEP.match(text) and "\x1e" not in text:  # which would begin another message
+                return message
+            asked = _ANSWERED.match(text)
+            refused = f"43{asked[1]}[403]" if asked is not None else '42["refused",403]'
+            await send({"type": "websocket.send", "text": refused})
+
+    return received
 
 
 def _cookies(head: str, name: str) -> list[str]:

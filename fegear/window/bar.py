@@ -67,6 +67,12 @@ class Bar:
             self._level.props('dense no-caps unelevated toggle-text-color=paper aria-label="Accuracy against time"')
             for name in ("to-report", "to-fold"):  # the page names them and answers them
                 ui.element("button").classes("button").props(f"type=button id={name}")
+            with ui.element("details").classes("views"):
+                ui.html("View", tag="summary").classes("button")
+                with ui.element("div"):
+                    for name in ("to-large", "to-exercise"):
+                        ui.element("button").classes("button").props(f"type=button id={name}")
+            ui.element("button").classes("button").props("type=button id=to-answers")
             ui.element("button").classes("button").props("type=button id=stop hidden")
             ui.element("div").classes("state").props("role=status id=state")  # the page writes it: it changes often
         self._told = ui.label().classes("told")

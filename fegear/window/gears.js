@@ -215,6 +215,7 @@ const fegearGears = (() => {
     for (const [kind, [words, title]] of Object.entries(KINDS)) {
       buttons[kind] = button(words, title, () => turn(kind, !kept.on[kind]));
       buttons[kind].setAttribute("aria-pressed", "false");
+      buttons[kind].dataset.shows = kind;
       switches.append(buttons[kind]);
     }
     const label = document.createElement("label"), words = document.createElement("span"), value = document.createElement("b");

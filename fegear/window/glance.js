@@ -23,7 +23,14 @@ const fegearGlance = (() => {
     const none = !Object.keys(pairs).length, report = view.report || none;
     document.body.classList.toggle("reporting", report);
     document.body.classList.toggle("folded", !!view.folded);
-    for (const [id, on, words] of [["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"]]) {
+    document.documentElement.classList.toggle("large-type", !!view.large);
+    document.body.classList.toggle("exercise", !!view.exercise);
+    const hidden = !document.body.classList.contains("revealed");
+    for (const [id, on, words] of [
+      ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
+      ["to-large", view.large, "Large type"], ["to-exercise", view.exercise, "Exercise: answers on request"],
+      ["to-answers", !hidden, hidden ? "Show the answers" : "Hide the answers"],
+    ]) {
       const one = $(id);
       if (!one) continue;
       one.textContent = words;
@@ -36,6 +43,9 @@ const fegearGlance = (() => {
     const id = target.closest?.("button")?.id;
     if (id === "to-report") { keep({ report: !view.report }); apply(); if (view.report) fegear.showReport(); }
     if (id === "to-fold") { keep({ folded: !view.folded }); apply(); }
+    if (id === "to-large") { keep({ large: !view.large }); apply(); }
+    if (id === "to-exercise") { document.body.classList.remove("revealed"); keep({ exercise: !view.exercise }); apply(); }
+    if (id === "to-answers") { document.body.classList.toggle("revealed"); apply(); }
   });
   const chosen = () => {
     const usual = told?.usual[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"] ?? [];
@@ -211,6 +221,11 @@ const fegearGlance = (() => {
       apply();
     },
     view: () => view,
+    ask() { // of a case that has changed: its answers are another exercise
+      if (!document.body.classList.contains("revealed")) return;
+      document.body.classList.remove("revealed");
+      apply();
+    },
     keep,
     found(content) {
       gather(content, { specs, numbers });

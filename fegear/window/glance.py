@@ -167,6 +167,10 @@ class View(NamedTuple):
         Whether all results are shown in place of the glance.
     middle : str
         What stands in the middle: a pair, ``set NAME`` or ``gearbox``; empty for the usual.
+    large : bool
+        Whether type is large, for a room.
+    exercise : bool
+        Whether answers are hidden until they are asked for, anew after each change.
     """
 
     pictures: tuple[str, ...] = ()
@@ -174,6 +178,8 @@ class View(NamedTuple):
     folded: bool = False
     report: bool = False
     middle: str = ""
+    large: bool = False
+    exercise: bool = False
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""

@@ -15,6 +15,7 @@ from starlette.responses import Response
 from fegear.base.errors import FegearError
 from fegear.output.draw_plotly.layout import template
 from fegear.output.report.page import plotly_file
+from fegear.window.access import LOOKS
 from fegear.window.bar import Bar
 from fegear.window.document import LARGEST
 from fegear.window.first_drawing import first_drawing
@@ -58,6 +59,7 @@ _SCRIPTS = (
     "gearbox",
     "hands",
     "scrub",
+    "look",
 )
 
 
@@ -92,11 +94,14 @@ class Page:
     Parameters
     ----------
     bench : Bench
+    looks : bool
+        Whether it is of somebody who only looks on.
     """
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Bench, *, looks: bool = False) -> None:
         self._bench = bench
         self._client = ui.context.client
+        self._looks = looks
         with ui.element("div").classes("window").style("width: 100%") as self._root:
             pass
         self._bar: Bar | None = None
@@ -118,6 +123,8 @@ class Page:
         parts = json.dumps({"piece": PIECE, "most": LARGEST})
         self._client.run_javascript(f"fegearPieces.begin({parts})")
         self._client.run_javascript(f"fegear.begin({json.dumps(template())}, {_AT + '/plotly.js'!r})")
+        if self._looks:
+            self._client.run_javascript("fegearLook.begin()")
         self._client.on_delete(bench.listen(self._hear))
         self._client.on_delete(self._forget)
         self._lay()
@@ -127,6 +134,9 @@ class Page:
         self._root.clear()
         self._bar = self._inputs = None
         with self._root:
+            if self._bench.desk is None and self._looks:
+                ui.label("No case is open.").classes("told")
+                return
             if self._bench.desk is None:
                 start_page(self._bench)
                 return
@@ -224,4 +234,4 @@ def show(bench: Bench) -> None:
     hands = dict(bench.shown_now()).get("hands")
     if hands is not None:
         ui.add_body_html(first_drawing(hands["pairs"], bench.view))
-    Page(bench)
+    Page(bench, looks=bool(ui.context.client.request.scope.get(LOOKS)))

@@ -73,7 +73,13 @@ def _end_with_the_terminal() -> None:
 
 
 def serve(
-    case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None], folders: Sequence[Path] = ()
+    case: Path | None,
+    port: int | None,
+    *,
+    browser: bool,
+    say: Callable[[str], None],
+    folders: Sequence[Path] = (),
+    look: bool = False,
 ) -> None:
     """Serve the page until the process is asked to end.
 
@@ -88,6 +94,8 @@ def serve(
         Receives the address.
     folders : sequence of Path
         Whose files the page may open and write, besides the working folder and that of the case.
+    look : bool
+        Whether an address is printed by which others look on and change nothing.
 
     Raises
     ------
@@ -100,14 +108,21 @@ def serve(
     reach = Reach.of(case, folders)
     computing = Computing()  # it loads what computes while this process loads what serves, which takes as long
     try:
-        _serve(case, port, computing, reach, browser=browser, say=say)
+        _serve(case, port, computing, reach, browser=browser, say=say, look=look)
     finally:
         computing.close()
         end_tracker()
 
 
 def _serve(
-    case: Path | None, port: int, computing: Computing, reach: Reach, *, browser: bool, say: Callable[[str], None]
+    case: Path | None,
+    port: int,
+    computing: Computing,
+    reach: Reach,
+    *,
+    browser: bool,
+    say: Callable[[str], None],
+    look: bool,
 ) -> None:
     with loading():
         from fegear.window.bench import Bench
@@ -122,7 +137,7 @@ def _serve(
 
         from fegear.window.page import show
 
-    door = _Door(port, computing.folder, say)
+    door = _Door(port, computing.folder, say, look=look)
 
     def opened() -> None:
         bench.begin()
@@ -150,11 +165,13 @@ class _Door:
     folder : Path
         Of this process, which no other account can look into.
     say : callable
+    look : bool
+        Whether the address of those who look on is printed.
     """
 
-    def __init__(self, port: int, folder: Path, say: Callable[[str], None]) -> None:
+    def __init__(self, port: int, folder: Path, say: Callable[[str], None], *, look: bool = False) -> None:
         self.keys = Keys()
-        self._port, self._folder, self._say = port, folder, say
+        self._port, self._folder, self._say, self._look = port, folder, say, look
         self._opening: asyncio.Task[None] | None = None
 
     def begin(self, *, browser: bool) -> None:
@@ -172,6 +189,8 @@ class _Door:
                 break
             await asyncio.sleep(_PAUSE)
         self._say(f"Open {self._address(self._print_another)}")
+        if self._look:
+            self._say(f"Read-only, as often as it is used: http://{HOST}:{self._port}/?look={self.keys.look}")
         self._say("Stop with Ctrl-C; unsaved changes are kept for the next start.")
         if browser:
             await self._lead()

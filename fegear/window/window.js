@@ -183,6 +183,7 @@ const fegear = (() => {
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");
+      if (content.number !== undefined) fegearGlance.ask();
       if (!moving) offer("Stop");
       say("computing ...");
     },

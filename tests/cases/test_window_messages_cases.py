@@ -47,14 +47,14 @@ GEAR = '[gear.g{0}]\nteeth = {1}\nmodule = "3 mm"\nface_width = "20 mm"\n'
 class Served:
     """`fegear open` in a process of its own."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
         self.folder, self.errors = folder, folder / "errors"
         (folder / "scratch").mkdir()
         (folder / "c.toml").write_text(TEXT)
         kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "fegear", "open", "--no-browser", "c.toml"], stdout=subprocess.PIPE, text=True,
-            stderr=self.errors.open("w"), cwd=folder, env=kept | {
+            [sys.executable, "-m", "fegear", "open", "--no-browser", *options, "c.toml"],
+            stdout=subprocess.PIPE, text=True, stderr=self.errors.open("w"), cwd=folder, env=kept | {
                 "FEGEAR_STATE": str(folder / "state"), "PYTHONUNBUFFERED": "1", "TMPDIR": str(folder / "scratch"),
             },
         )  # fmt: skip
@@ -102,6 +102,47 @@ def as_other_account(port: int, request: str) -> str:
     program = f'exec 3<>/dev/tcp/127.0.0.1/{port}; printf \'%b\' "$0" >&3; read -r -t 20 line <&3; echo "$line"'
     command = [shutil.which("bash"), "-c", program, request.replace("\r\n", "\\r\\n")]
     return subprocess.run(command, capture_output=True, text=True, check=False, user=65534, cwd="/").stdout.strip()
+
+
+@pytest.mark.long
+def test_whatever_a_page_says_that_looks_on_nothing_changes(tmp_path):
+    """Every event of every element, every message of the page's scripts, on its own page and on its owner's."""
+    from fegear.window.messages import EVENTS
+
+    served = Served(tmp_path, "--read-only-link")
+    look = served.process.stdout.readline().split()[-1]
+    try:
+        with window_page.Page(served.address) as owner, window_page.Page(look) as page:
+            assert page.cookie.startswith("fegear-look-")
+            assert any("fegearLook.begin" in one for one in page.heard) or page.elements
+            values = {str: "gear", int: 0, float: 1.0, bool: False, list: []}
+            count = 0
+            for of in (page, owner):
+                for kind, parts in EVENTS.items():
+                    said = {name: values[one] for name, one in parts.items()} | {"gear": "a", "pair": "I"}
+                    said |= {"field": "gear.a.teeth", "text": "30"} if kind == "value" else {}
+                    page.send(f"42{json.dumps(['event', of.event(kind, said)])}")
+                    count += 1
+                for number, one in of.elements.items():
+                    for event in one.get("events", ()):
+                        told = {"id": int(number), "client_id": of.client, "listener_id": event["listener_id"],
+                                "args": [json.dumps("changed")]}  # fmt: skip
+                        page.send(f"42{json.dumps(['event', told])}")
+                        count += 1
+                typed(of, TEXT)  # its pieces
+            page.until(lambda: sum("403" in one for one in page.heard) >= count)
+            cookie = {"Cookie": page.cookie}
+            assert window_page.status(served.bare, **cookie) == 200
+            assert window_page.status(served.bare + "_nicegui_ws/socket.io/?EIO=4&transport=polling", **cookie) == 403
+            owner.say("load", {"pair": "I", "key": "load", "text": "6 kN", "moving": False})  # it still hears its owner
+            owner.until(lambda: any("6 kN" in one for one in served.kept()))
+            assert [one for one in served.kept() if one != TEXT.replace("5 kN", "6 kN")] == []
+        assert (tmp_path / "c.toml").read_text() == TEXT
+        served.end()
+    finally:
+        if served.process.poll() is None:
+            served.process.kill()
+            served.process.wait()
 
 
 def test_others_are_refused_everywhere(served):

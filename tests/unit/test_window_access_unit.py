@@ -14,7 +14,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, parse_document
-from fegear.window.access import Doorkeeper, Keys, account_of, file_leading_to
+from fegear.window.access import LOOKS, Doorkeeper, Keys, account_of, file_leading_to
 from fegear.window.bench import Bench
 from fegear.window.document import Desk
 from fegear.window.reach import Reach
@@ -80,6 +80,74 @@ def test_a_key_opens_the_page_once_and_its_cookie_from_then_on():
     again = keys.another(lambda: None)
     asked(door, f"key={again}", cookie=name)  # a browser that needs none uses it up all the same
     assert asked(door, f"key={again}")["status"] == 403
+
+
+READS = ["40", "40{}", "41", "1", "3", '42["handshake",{"client_id":"x"}]', '42["ack",{}]']
+WRITES = [
+    '42["event",{"id":1}]', '42["piece",{}]', '42["log",{}]', '42["javascript_response",{}]', '42["handshake2",{}]',
+    '42/other,["event",{}]', '42["handshake",{}]\x1e42["event",{}]', '42 ["handshake",{}]', '42["event","ack"]',
+    '4 2["event",{}]', ' 42["event",{}]', '45["event",{}]', '451-["event",{}]', '46[]', "40/other,", "3probe", "5", "2",
+    "4", "", '42["\\u0065vent",{}]', "43[]",
+]  # fmt: skip
+
+
+def look_on(door: Doorkeeper, cookie: str, frames: list[dict]) -> list[str]:
+    """What is answered to the messages of a page."""
+    sent, left = [], [*frames, {"type": "websocket.disconnect"}]
+
+    async def receive():
+        return left.pop(0)
+
+    async def send(message):
+        sent.append(message.get("text"))
+
+    heads = [(k.encode(), v.encode()) for k, v in (HOST | {"cookie": cookie}).items()]
+    scope = {
+        "type": "websocket", "path": "/_nicegui_ws/socket.io/", "query_string": b"", "headers": heads,
+        "client": ("127.0.0.1", 1),
+    }  # fmt: skip
+    asyncio.run(door(scope, receive, send))
+    return sent
+
+
+def test_who_looks_on_reads_and_changes_nothing():
+    """Everything that the page says to change something, and everything that might pass for what it may say."""
+    heard, scopes = [], []
+
+    async def framework(scope, receive, send):
+        scopes.append(scope)
+        while scope["type"] == "websocket" and (message := await receive())["type"] != "websocket.disconnect":
+            heard.append(message.get("text") or message.get("bytes"))
+        if scope["type"] == "http":
+            await page(scope, receive, send)
+
+    keys = Keys()
+    door = Doorkeeper(framework, 5000, keys)
+    opened = [asked(door, f"look={keys.look}") for _ in range(2)]  # as often as it is used
+    (cookie,) = {one["set-cookie"].partition(";")[0] for one in opened}
+    assert cookie == f"fegear-look-5000={keys.look_secret}"
+    assert keys.secret not in str(opened)
+    assert asked(door, cookie=cookie)["body"] == b"the page"
+    assert scopes[-1][LOOKS] is True
+    for method in ("POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"):
+        assert asked(door, cookie=cookie, method=method)["status"] == 403
+    for method in ("GET", "POST"):  # by requests in place of a connection
+        polled = asked(door, "EIO=4&transport=polling", path="/_nicegui_ws/socket.io/", cookie=cookie, method=method)
+        assert polled["status"] == 403
+    frames = [{"type": "websocket.receive", "text": one} for one in READS + WRITES]
+    answers = look_on(door, cookie, [*frames, {"type": "websocket.receive", "bytes": b'42["event"]'}])
+    assert heard == READS
+    assert answers == ['42["refused",403]'] * (len(WRITES) + 1)
+    assert look_on(door, cookie, [{"type": "websocket.receive", "text": '427["event",{}]'}]) == ["437[403]"]
+    heard.clear()
+    look_on(door, f"fegear-5000={keys.secret}", frames[:1] + frames[len(READS) : len(READS) + 1])
+    assert heard == ["40", WRITES[0]]  # whose page it is
+    assert LOOKS not in scopes[-1]
+    # One secret is not the other, nor is one key.
+    assert asked(door, cookie=f"fegear-5000={keys.look_secret}")["status"] == 403
+    assert asked(door, cookie=f"fegear-look-5000={keys.secret}")["status"] == 403
+    assert asked(door, f"key={keys.look}")["status"] == asked(door, "look=")["status"] == 403
+    assert asked(door, f"look={keys.look}", origin="http://evil.example")["status"] == 403
 
 
 @pytest.mark.parametrize(
