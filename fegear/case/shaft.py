@@ -157,7 +157,7 @@ class ShaftInSpacePart(Part):
         from fegear.shafts.beam import Shaft
 
         made = tuple(Section(one.length, one.outer, one.inner, one.outer_end, one.inner_end) for one in self.sections)
-        modulus = math.inf if rigid or self.rigid else self.material.young_modulus
+        modulus = math.inf if rigid or self.rigid else self.material.modulus
         return Shaft(made, modulus, self.material.poisson_ratio)
 
 

@@ -9,6 +9,7 @@ import pytest
 import fegear
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
+from fegear.case.shaft import ShaftInSpacePart
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
@@ -104,3 +105,12 @@ def test_a_plastic_gear_is_not_rated_and_the_refusal_does_not_advise_a_steel():
     with pytest.raises(InputError, match="VDI 2736") as refused:
         make_plan(asked, STAGES)
     assert refused.value.key == "gear.b.material"
+
+
+def test_shafts_take_it_too():
+    part = ShaftInSpacePart.model_validate({
+        "axis": ["0 mm", "0 mm"], "sections": [{"length": "40 mm", "outer": "8 mm"}],
+        "material": {**PLASTIC, "creep_modulus": "1 GPa"},
+    })  # fmt: skip
+    assert part.build().young_modulus == 1e9
+    assert part.build(rigid=True).young_modulus == math.inf
