@@ -90,7 +90,7 @@ def test_either_flank_of_the_whole_gear_by_scikit_fem_alone(name):
     tooth = AsymmetricTooth(teeth, rack, shift)
     bore = 0.6 * tooth.root_radius
     settings = settings_at(-1)
-    alone = whole_gear(tooth, bore, replace(settings.refined(0.5), back_edge_length=0.12))
+    alone = whole_gear(tooth, bore, replace(settings.refined(0.7), back_edge_length=0.12))
     for flank, (radius, wanted) in alone.items():
         ring = influence_of_shape(tooth.side(flank), bore, NU, "strain", settings, 1)
         found = {

@@ -50,8 +50,8 @@ def apart(which, solved):
 @pytest.mark.dear
 @pytest.mark.parametrize("which", ["off", pytest.param("inclined", marks=pytest.mark.long)])
 def test_load_on_a_web(which):
-    """With functions that resolve hats of half a module beside a web's end: off the middle .13 and .47 %."""
-    moved, stress = worst(which, replace(SolidSettings().scaled(1.2), waves_per_module=3.0))
+    """With functions that resolve hats of half a module beside a web's end: off the middle 0.30 and 0.53 %."""
+    moved, stress = worst(which, replace(SolidSettings().scaled(1.6), waves_per_module=3.0))
     assert moved < 0.006
     assert stress < 0.008
 
