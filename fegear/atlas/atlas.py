@@ -15,7 +15,7 @@ import numpy as np
 from fegear.atlas.atlas_gear import AtlasGear
 from fegear.atlas.common_rows import KEPT, CommonRows
 from fegear.atlas.domain import KEYS, ROUND_OFF, Domain
-from fegear.atlas.family import Family, place_of
+from fegear.atlas.family import REMEDY, Family, place_of
 from fegear.atlas.polynomials import products
 from fegear.atlas.tables import VERSION, Layout
 from fegear.base.arrays import ReadOnlyArrays
@@ -212,13 +212,16 @@ class Atlas:
         nearest = max((one for one in outside if one is not None), key=lambda one: one[0], default=None)
         if nearest is None:
             what = "has undercut" if side == "undercut" else "has no undercut"
-            raise RangeError("profile_shift", f"{place.shift:.6g}", f"{what}, unlike the gears of this atlas", _REMEDY)
+            raise RangeError("profile_shift", f"{place.shift:.6g}", f"{what}, unlike the gears of this atlas", REMEDY)
         number, (low, high) = nearest
         if number == 0:  # beyond all regions of its side
             ends = [piece.domain.teeth for piece in self.pieces if piece.domain.side == side]
             low, high = min(ends)[0], max(one[1] for one in ends)
         raise RangeError(
-            KEYS[number], f"{place[number]:.6g}", f"is outside the atlas, {low:.6g} to {high:.6g}", _REMEDY
+            KEYS[number],
+            _WRITTEN.get(KEYS[number], "{:.6g}").format(place[number]),
+            f"is outside the atlas, {low:.6g} to {high:.6g}",
+            REMEDY,
         )
 
     def save(self, path: Path) -> None:
@@ -243,7 +246,11 @@ class Atlas:
 
 
 _KIND = "fegear atlas"
-_REMEDY = "solve the gear"
+#: How a gear's place is written where it is not the number of its key.
+_WRITTEN = {
+    "tip_diameter": "tip circle {:.6g} modules above its shifted pitch circle",
+    "bore_radius": "{:.6g} root radii",
+}
 
 
 def load_atlas(path: Path) -> Atlas:

@@ -27,7 +27,7 @@ Ends = tuple[float, float]
 #: Outside by no more than this share of a region's extent is at its end.
 ROUND_OFF = 1e-9
 #: What the coordinates are called, as keys of a gear.
-KEYS = ("teeth", "profile_shift", "tip height", "bore ratio")
+KEYS = ("teeth", "profile_shift", "tip_diameter", "bore_radius")
 #: Fractions of the steps of a sequence that fills four dimensions evenly: powers of the root of s^5 = s + 1.
 _STEPS = np.array([0.8566748838545029, 0.733891856627126, 0.6287067210378087, 0.5385972572236101])
 

@@ -15,7 +15,7 @@ from fegear.atlas.atlas import load_atlas
 from fegear.atlas.build import build_atlas
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family
-from fegear.base.errors import InputError
+from fegear.base.errors import InputError, RangeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,11 +109,21 @@ def fingerprint() -> str:
 
 def atlas_of(gear: Gear) -> Atlas | None:
     """The shipped atlas that holds a gear; None where none does."""
-    nearest = nearest_atlas(gear)
+    try:
+        nearest = nearest_atlas(gear)
+    except RangeError:
+        return None
     return nearest if nearest.holds(gear) else None
 
 
 def nearest_atlas(gear: Gear) -> Atlas:
-    """The shipped atlas of a gear's family, whether it holds the gear or not; the first one where none is."""
-    atlases = [shipped_atlas(rack) for rack in SHIPPED]
-    return next((atlas for atlas in atlases if atlas.family.has(gear)), atlases[0])
+    """The shipped atlas of a gear's family, whether it holds the gear or not; else the one that differs least.
+
+    Raises
+    ------
+    RangeError
+        If the gear is of no family that an atlas could have.
+    """
+    family = Family.of(gear)
+    found = next((rack for rack in SHIPPED if not family_of(rack).unlike(family)), None)
+    return shipped_atlas(found or min(SHIPPED, key=lambda rack: len(family_of(rack).unlike(family))))

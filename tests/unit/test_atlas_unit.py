@@ -121,8 +121,11 @@ def test_size_and_steel_scale_and_a_thickness_allowance_is_a_shift(atlas):
     [
         (lambda: steel_gear(50), "teeth = 50: is outside the atlas, 24 to 48"),
         (lambda: steel_gear(30, 0.31), "profile_shift = 0.31: is outside the atlas, 0.1 to 0.3"),
-        (lambda: replace(steel_gear(), bore_radius=0.02), "bore ratio = "),
-        (lambda: replace(steel_gear(), tooth=replace(steel_gear().tooth, tip_radius=16.6)), "tip height = 0.93: "),
+        (lambda: replace(steel_gear(), bore_radius=0.02), "bore_radius = "),
+        (
+            lambda: replace(steel_gear(), tooth=replace(steel_gear().tooth, tip_radius=16.6)),
+            "tip circle 0.93 modules above",
+        ),
         (lambda: steel_gear(plane="stress"), 'plane = "stress": must be "strain" in this atlas'),
         (lambda: steel_gear(material=Material(poisson_ratio=0.25)), "poisson_ratio = 0.25: must be 0.3 in this atlas"),
         (lambda: Gear(Tooth(31, BasicRack(), 0.17), 3e-3, 0.02), "rack.tip_radius = 0.25: must be 0.38"),

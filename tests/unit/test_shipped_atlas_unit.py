@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,14 +11,14 @@ import pytest
 from fegear.atlas.__main__ import main
 from fegear.atlas.family import Place
 from fegear.atlas.many import ManySpurPairs, known_pairs
-from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, shipped_atlas
-from fegear.base.errors import InputError
+from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, nearest_atlas, shipped_atlas
+from fegear.base.errors import InputError, RangeError
 from fegear.contact.many.many_loaded import transmission_errors
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 
@@ -96,3 +97,20 @@ def test_arrays_of_pairs_through_an_atlas_are_pairs_of_its_gears():
         tolerance = 1e-9 if i == 0 else 1e-3
         assert found.mean[i, 0] == pytest.approx(alone.mean, rel=tolerance)
         assert abs(found.peak_to_peak[i, 0] - alone.peak_to_peak) < max(tolerance, 1e-6) * alone.mean
+
+
+def test_a_gear_of_no_atlas_is_refused_by_what_differs_from_the_nearest_one():
+    """By its Poisson's ratio, not by the rack of another atlas; in words of its keys and with a remedy of a case."""
+    tooth = Tooth(31, BasicRack(1.0, 1.4, 0.39))
+    soft = Gear(tooth, 3e-3, 1.5e-3 * tooth.root_radius, material=Material(2.9e9, 0.35, 1410.0))
+    with pytest.raises(RangeError, match=r"poisson_ratio = 0.35: must be 0.3 in this atlas; .*accuracy.source"):
+        nearest_atlas(soft).gear(soft)
+    thick = Gear(tooth, 3e-3, 0.9 * 3e-3 * tooth.root_radius)
+    with pytest.raises(RangeError, match=r"bore_radius = 0.9 root radii: is outside the atlas, 0.35 to 0.65"):
+        nearest_atlas(thick).gear(thick)
+    flat = Gear(replace(tooth, tip_radius=tooth.tip_radius - 0.4), 3e-3, 1.5e-3 * tooth.root_radius)
+    with pytest.raises(RangeError, match=r"tip_diameter = tip circle 0.6 modules above"):
+        nearest_atlas(flat).gear(flat)
+    assert atlas_of(soft) is atlas_of(thick) is atlas_of(flat) is None
+    helical = Gear(replace(tooth, helix_angle=0.2, tip_radius=math.nan), 3e-3, 1.5e-3 * tooth.root_radius)
+    assert atlas_of(helical) is None
