@@ -9,12 +9,13 @@ import pytest
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.maker import load_plane
 from fegear.design.fillet.bench import FilletBench, search_settings
-from fegear.design.fillet.fillet_design import design_fillet, full_rounded, moved
+from fegear.design.fillet.fillet_design import SEARCHES, _start, design_fillet, full_rounded, moved
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import search
 from fegear.design.fillet.moved_ellipses import MovedEllipses
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import EllipseOnSpace
 from fegear.geometry.gear import Gear
@@ -115,3 +116,16 @@ def test_three_searches_agree_and_finer_solutions_confirm_the_gain(objective):
     again = FilletBench(other.engagement, LOAD, "driver", objective=objective, settings=finer.settings)
     assert again.largest(design.best.tooth) == pytest.approx(design.best.stress, abs=1.5 * design.best.error)
     assert min(design.off) > 0.0
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.3])
+def test_searches_for_a_hob_begin_within_its_reach_and_not_all_at_one_place(loaded, radius):
+    bench = bench_of(loaded, limits=Limits(generated=True, smallest_tool_radius=radius))
+    few = family(bench, 2)
+    starts = [_start(bench, few, *SEARCHES[name][1:]) for name in ("waves", "waves, other start")]
+    for numbers in starts:
+        assert conjugate_rack(bench.tooth(few.shape(numbers))).room(radius).min() > 0.0
+    assert not np.array_equal(*starts)
+    # Any fillet may begin where it is asked to.
+    free = bench_of(loaded)
+    assert np.array_equal(_start(free, few, 0.4, 0.02)[:2], [0.4, 0.02])
