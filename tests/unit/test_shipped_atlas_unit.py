@@ -112,5 +112,6 @@ def test_a_gear_of_no_atlas_is_refused_by_what_differs_from_the_nearest_one():
     with pytest.raises(RangeError, match=r"tip_diameter = tip circle 0.6 modules above"):
         nearest_atlas(flat).gear(flat)
     assert atlas_of(soft) is atlas_of(thick) is atlas_of(flat) is None
-    helical = Gear(replace(tooth, helix_angle=0.2, tip_radius=math.nan), 3e-3, 1.5e-3 * tooth.root_radius)
+    leaning = replace(tooth, helix_angle=0.2, tip_radius=math.nan)
+    helical = Gear(leaning, 3e-3, 1.5e-3 * leaning.root_radius, hand="left")
     assert atlas_of(helical) is None
