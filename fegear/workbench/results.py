@@ -22,6 +22,7 @@ from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
 from fegear.workbench.given import folder_of, texts
+from fegear.workbench.mesh_curve import curve_of
 from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
     import pandas as pd
     import xarray as xr
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
 
 
 #: Sentences and values that the short form shows, values at least, and characters of a remark.
@@ -188,6 +192,35 @@ class Results(Found):
             With the nearest name.
         """
         return Plots(tuple(self.figures[name] for name in names) if names else tuple(self.figures))
+
+    def mesh_stiffness(self, driver_angle: ArrayLike, pair: str = "", *, secant: bool = False) -> Array:
+        """Mesh stiffness at rotations of the driver under the nominal load, for equations of motion.
+
+        Parameters
+        ----------
+        driver_angle : array_like
+            [rad], any number of turns: counted from the first row of the curve over a tooth, and of a revolution with
+            odd teeth from where the first teeth are at the pitch point.
+        pair : str
+            By default the only pair with a curve.
+        secant : bool
+            Load over transmission error in place of the slope dF/dTE.
+
+        Returns
+        -------
+        ndarray
+            Periodic, straight between the rows of the table [N/m].
+
+        Raises
+        ------
+        InputError
+            If the results have neither "transmission-error" nor "mesh-stiffness-revolution" of that pair.
+        """
+        return curve_of(self, pair).stiffness(driver_angle, secant=secant)
+
+    def transmission_error(self, driver_angle: ArrayLike, pair: str = "") -> Array:
+        """Transmission error at rotations of the driver under the nominal load [m], as `mesh_stiffness`."""
+        return curve_of(self, pair).error(driver_angle)
 
     def save(self, folder: str | os.PathLike[str], *, plots: bool = True) -> Path:
         """Write everything into a folder, as ``fegear run`` does: tables, dataset, pictures, report, summary.

@@ -12,6 +12,7 @@ import sys
 import tomllib
 import types
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,8 @@ import pytest
 import fegear
 from fegear.base.errors import InputError, MissingLibraryError
 from fegear.base.units import from_si
+from fegear.engine.stage import Task
+from fegear.workbench.mesh_curve import curve_of
 
 CASE = Path(__file__).parents[2] / "cases" / "pinion_and_wheel.toml"
 QUICK = {"pair.I.compliance": {"source": "weber-banaschek"}, "effects.neighbour_coupling": False}
@@ -333,3 +336,33 @@ def test_flanks_of_a_pair_are_divided_as_it_says():
     assert "load_distribution={'positions': 24}" in repr(fine)
     with pytest.raises(InputError, match="load_distribution"):
         fegear.Pair(*gears, load_distribution={"places": 24})
+
+
+def test_mesh_stiffness_and_transmission_error_are_functions_of_the_rotation(found):
+    """At the rows of the table, and a number of teeth later; the straight line between two of them."""
+    table = found.tables["transmission_error_I"]
+    pair = found.scene.pairs["I"]
+    columns = {column.name: column.si for column in table.columns}
+    x, slope, secant, te = (columns[name] for name in ("x", "local_stiffness", "mesh_stiffness", "te"))
+    middle = slice(5, 60)
+    angle = (x - x[0])[middle] / pair.driver.base_radius + 3.0 * 2.0 * np.pi / pair.driver.teeth
+    np.testing.assert_allclose(found.mesh_stiffness(angle), slope[middle], rtol=1e-6)
+    np.testing.assert_allclose(found.mesh_stiffness(angle, "I", secant=True), secant[middle], rtol=1e-6)
+    np.testing.assert_allclose(found.transmission_error(angle), te[middle], rtol=1e-6)
+    with pytest.raises(InputError, match='pair = "II": has no mesh stiffness in these results; known here: I'):
+        found.mesh_stiffness(0.0, "II")
+
+
+def test_over_a_revolution_the_curve_with_the_odd_teeth_is_taken(found):
+    over = SimpleNamespace(stiffness_at=lambda angle, secant: (angle, secant), error_at=lambda angle: -angle)
+    tasks = {Task("mesh-stiffness-revolution", "I"): over, Task("transmission-error", "I"): None}
+    outcomes = {task: SimpleNamespace(data=SimpleNamespace(found=one)) for task, one in tasks.items()}
+    case = SimpleNamespace(results=["geometry"])
+    results = SimpleNamespace(outcomes=outcomes, scene=SimpleNamespace(case=case))
+    curve = curve_of(results, "")
+    assert (curve.stiffness(2.0, secant=True), curve.error(2.0)) == ((2.0, True), -2.0)
+    with pytest.raises(InputError, match='request "transmission-error" or "mesh-stiffness-revolution"'):
+        curve_of(SimpleNamespace(outcomes={}, scene=results.scene), "")
+    outcomes[Task("transmission-error", "II")] = SimpleNamespace(data=SimpleNamespace(found=over))
+    with pytest.raises(InputError, match="is required: 2 pairs have a curve; I, II"):
+        curve_of(results, "")

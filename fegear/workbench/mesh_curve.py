@@ -1,0 +1,78 @@
+"""Mesh stiffness and transmission error of a run as functions of the rotation of the driver."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from fegear.base.errors import InputError, shown
+from fegear.case.nearest import nearest
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.engine.run import Results
+
+#: Stages whose data hold such curves; over a revolution before over a tooth, as it has the odd teeth.
+_STAGES = ("mesh-stiffness-revolution", "transmission-error")
+
+
+class MeshCurve(Protocol):
+    """Periodic in the rotation of the driver [rad]."""
+
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+        """[N/m]."""
+
+    def error(self, driver_angle: ArrayLike) -> Array:
+        """[m]."""
+
+
+class _OverRevolution:
+    """The same of a curve over a revolution."""
+
+    def __init__(self, found: Any) -> None:
+        self._found = found
+
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+        """[N/m]."""
+        found: Array = self._found.stiffness_at(driver_angle, secant=secant)
+        return found
+
+    def error(self, driver_angle: ArrayLike) -> Array:
+        """[m]."""
+        found: Array = self._found.error_at(driver_angle)
+        return found
+
+
+def curve_of(results: Results, pair: str) -> MeshCurve:
+    """The curve of a pair.
+
+    Parameters
+    ----------
+    results : Results
+    pair : str
+        Empty for the only one.
+
+    Raises
+    ------
+    InputError
+        If there is none, or several.
+    """
+    known: dict[str, MeshCurve] = {}
+    for stage in _STAGES:
+        for task, outcome in results.outcomes.items():
+            if task.stage == stage and task.subject not in known:
+                found: Any = getattr(outcome.data, "found", None)
+                if found is not None:
+                    known[task.subject] = _OverRevolution(found) if stage == _STAGES[0] else found
+    if not known:
+        raise InputError(
+            "results", ", ".join(results.scene.case.results), "have no mesh stiffness over the rotation",
+            'request "transmission-error" or "mesh-stiffness-revolution"',
+        )  # fmt: skip
+    if not pair and len(known) > 1:
+        raise InputError("pair", "(not given)", f"is required: {len(known)} pairs have a curve", f"{', '.join(known)}")
+    name = pair or next(iter(known))
+    if name not in known:
+        raise InputError("pair", shown(name), "has no mesh stiffness in these results", nearest(name, known))
+    return known[name]
