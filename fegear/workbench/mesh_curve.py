@@ -67,7 +67,7 @@ def curve_of(results: Results, pair: str) -> MeshCurve:
                     known[task.subject] = _OverRevolution(found) if stage == _STAGES[0] else found
     if not known:
         raise InputError(
-            "results", ", ".join(results.scene.case.results), "have no mesh stiffness over the rotation",
+            "results", f'"{results.scene.name}"', "have no mesh stiffness over the rotation",
             'request "transmission-error" or "mesh-stiffness-revolution"',
         )  # fmt: skip
     if not pair and len(known) > 1:

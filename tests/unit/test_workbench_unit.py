@@ -357,8 +357,7 @@ def test_over_a_revolution_the_curve_with_the_odd_teeth_is_taken(found):
     over = SimpleNamespace(stiffness_at=lambda angle, secant: (angle, secant), error_at=lambda angle: -angle)
     tasks = {Task("mesh-stiffness-revolution", "I"): over, Task("transmission-error", "I"): None}
     outcomes = {task: SimpleNamespace(data=SimpleNamespace(found=one)) for task, one in tasks.items()}
-    case = SimpleNamespace(results=["geometry"])
-    results = SimpleNamespace(outcomes=outcomes, scene=SimpleNamespace(case=case))
+    results = SimpleNamespace(outcomes=outcomes, scene=SimpleNamespace(name="drive"))
     curve = curve_of(results, "")
     assert (curve.stiffness(2.0, secant=True), curve.error(2.0)) == ((2.0, True), -2.0)
     with pytest.raises(InputError, match='request "transmission-error" or "mesh-stiffness-revolution"'):
