@@ -49,6 +49,11 @@ def logarithm(share: Array, tangent: float, edge: tuple[Array, Array] | None = N
     return np.asarray(grown if edge is None else grown - 2.0 * edge[0] + tangent * edge[1])
 
 
+def _acts(coefficient: Array | float) -> bool:
+    """Whether a coefficient is other than zero for any contact; asked at every step, of arrays without a detour."""
+    return bool(coefficient.any()) if isinstance(coefficient, np.ndarray) else coefficient != 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class ContactLaw:
     """What n contacts at P positions approach by beyond compliances that hold at the reference load.
@@ -73,7 +78,7 @@ class ContactLaw:
     @property
     def is_linear(self) -> bool:
         """Whether no compliance depends on its load."""
-        return not (np.any(self.log_slope) or np.any(self.power))
+        return not (_acts(self.log_slope) or _acts(self.power))
 
     def each(self, change: Callable[[Array], Array]) -> ContactLaw:
         """The same with every array changed alike; what is one number for all contacts stays."""
@@ -112,9 +117,9 @@ class ContactLaw:
             Of one shape with the law [m/N], [N].
         """
         w, share = self._shares(loads)
-        if np.any(self.log_slope):
+        if _acts(self.log_slope):
             compliance = compliance - 0.5 * self.log_slope * logarithm(share, 0.0, self._edge(share))
-        if np.any(self.power):
+        if _acts(self.power):
             compliance = compliance + self.power * w ** (EXPONENT - 1.0)
         return compliance
 
@@ -136,13 +141,13 @@ class ContactLaw:
         """
         w, share = self._shares(loads)
         slope, height = compliance, gap
-        if np.any(self.log_slope):
+        if _acts(self.log_slope):
             half, edge = 0.5 * self.log_slope, self._edge(share)
             slope = slope - half * logarithm(share, 1.0, edge)
             height = height + half * w
             if edge is not None:
                 height = height + half * w * edge[1]
-        if np.any(self.power):
+        if _acts(self.power):
             approach = self.power * w**EXPONENT
             slope = slope + EXPONENT * approach / w
             height = height + (1.0 - EXPONENT) * approach

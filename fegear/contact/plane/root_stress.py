@@ -153,11 +153,17 @@ class RootStress:
         shape : tuple of int
             (..., points).
         """
+        total, felt = np.zeros(shape), list(felt)
+        with np.errstate(invalid="ignore"):
+            for one in felt:
+                total[one.at] += one.line_load[..., None] * one.row
+        if np.isfinite(total).all():
+            return total
+        # a formula may give nothing for a load at this place, which is no matter where there is none
         total = np.zeros(shape)
         for one in felt:
-            load, row = one.line_load[..., None], one.row
-            # a formula may give nothing for a load at this place, which is no matter where there is none
-            total[one.at] += load * row if np.isfinite(row).all() else np.where(load != 0.0, load * row, 0.0)
+            load = one.line_load[..., None]
+            total[one.at] += np.where(load != 0.0, load * one.row, 0.0)
         return total
 
     def bound(
