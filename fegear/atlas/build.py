@@ -120,7 +120,7 @@ def build_atlas(
         regions.append(_Region(family, domain, settings, reach, cache, _known(like, family, domain, number)))
     for number, region in enumerate(regions):
         before, after = sum(one.count for one in regions[:number]), len(regions) - number - 1
-        region.grow(budget, lambda done, wanted, before=before, after=after: progress and progress(  # type: ignore[misc]
+        region.grow(budget, lambda done, wanted, before=before, after=after: progress and progress(  # type: ignore[misc]  # mypy cannot infer a lambda with a default
             before + done, before + wanted + after * wanted))  # fmt: skip
     common = common_rows(np.concatenate([rows for one in regions for rows in one.spanning]), Layout(reach))
     pieces = tuple(one.piece(common.parts, common.rows) for one in regions)

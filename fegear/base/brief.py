@@ -29,7 +29,7 @@ class Brief:
 
 
 def _written(self: object) -> str:
-    given = (f"{one.name}={brief(getattr(self, one.name))}" for one in fields(self) if one.repr)  # type: ignore[arg-type]
+    given = (f"{one.name}={brief(getattr(self, one.name))}" for one in fields(self) if one.repr)  # type: ignore[arg-type]  # only dataclasses have it
     return f"{type(self).__qualname__}({', '.join(given)})"
 
 

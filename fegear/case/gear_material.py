@@ -99,7 +99,7 @@ class MaterialPart(_MaterialKeys):  # type: ignore[misc]  # frozen by pydantic
             raise refuse("is not a known material", near, key="name", value=shown(name))
         numbers = {"young_modulus": f"{found.young_modulus!r} Pa", "density": f"{found.density!r} kg/m^3"}
         if found.poisson_ratio is not None:
-            numbers["poisson_ratio"] = found.poisson_ratio  # type: ignore[assignment]
+            numbers["poisson_ratio"] = found.poisson_ratio  # type: ignore[assignment]  # texts with units, and one number
         elif "poisson_ratio" not in given:
             raise refuse(
                 f"is required for {found.name}: the source of its modulus has none",

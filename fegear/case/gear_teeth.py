@@ -44,10 +44,10 @@ _LENGTH = quantity("length", positive=True)
 def _mean_of_limits(value: Any, info: ValidationInfo) -> Any:
     """The mean of both limits of a drawing; a single length stays as it is."""
     if not isinstance(value, (list, tuple)):
-        return _LENGTH.func(value, info)  # type: ignore[call-arg]
+        return _LENGTH.func(value, info)  # type: ignore[call-arg]  # pydantic allows validators without info, too
     if len(value) != 2:
         raise refuse("must be one length or both its limits", 'for example ["23.33 mm", "23.37 mm"]', value="(a list)")
-    low, high = (_LENGTH.func(limit, info) for limit in value)  # type: ignore[call-arg]
+    low, high = (_LENGTH.func(limit, info) for limit in value)  # type: ignore[call-arg]  # as above
     return 0.5 * (low + high)
 
 
@@ -67,7 +67,7 @@ def _allowance(value: Any, info: ValidationInfo) -> Any:
                 "is neither a length nor a designation of DIN 3967 (a to h with 21 to 30)",
                 'for example "45 um", "cd25" or "derived"', value=shown(value),
             )  # fmt: skip
-    return quantity("length", not_negative=True).func(value, info)  # type: ignore[call-arg]
+    return quantity("length", not_negative=True).func(value, info)  # type: ignore[call-arg]  # pydantic allows validators without info, too
 
 
 _DESIGNATION = Annotated[str, Field(pattern=f"^({_FIT}|{DERIVED})$", json_schema_extra={"examples": ["cd25"]})]

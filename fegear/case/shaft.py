@@ -256,7 +256,7 @@ class BearingPart(Part):
                     raise refuse("is required without a designation", "specify it", key=f"catalogue.{key}")
         try:
             printed = self.printed
-            assert printed is not None  # noqa: S101
+            assert printed is not None  # noqa: S101  (for mypy: there is a designation here)
             _ = printed.inside
         except InputError as error:
             key = error.key if error.key == "designation" else f"catalogue.{error.key}"

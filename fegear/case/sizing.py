@@ -90,7 +90,7 @@ else:
 class LimitsPart(_LimitKeys):  # type: ignore[misc]  # frozen by pydantic
     """``limits = { tip_thickness, contact_ratio, ... }``: what a pair must not fall below or exceed."""
 
-    shift_sum: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(  # type: ignore[assignment]
+    shift_sum: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(  # type: ignore[assignment]  # a list of two in a case
         default_factory=lambda: [-1.0, 1.5], description="Minimum and maximum of x_1 + x_2."
     )
 

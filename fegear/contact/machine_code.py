@@ -103,7 +103,7 @@ def machine_code(function: Callable[..., Any], made_from: str = "", long: str = 
     except RuntimeError:  # neither the package's folder nor the user's can be written to
         return numba.njit(no_cfunc_wrapper=True)(function)
     kept = made._cache  # noqa: SLF001  (numba has no open door to it)
-    files = kept._cache_file  # noqa: SLF001
-    kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, (files._source_stamp, made_from))  # noqa: SLF001
-    made._cache = _Forgiving(kept, long)  # noqa: SLF001
+    files = kept._cache_file  # noqa: SLF001  (as above)
+    kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, (files._source_stamp, made_from))  # noqa: SLF001  (as above)
+    made._cache = _Forgiving(kept, long)  # noqa: SLF001  (as above)
     return made

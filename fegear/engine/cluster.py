@@ -42,7 +42,7 @@ def on_cluster(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply
         If Dask is missing here, or fegear there.
     """
     try:
-        import dask.distributed  # noqa: F401
+        import dask.distributed  # noqa: F401  (only whether it is there)
     except ImportError:
         raise MissingLibraryError(
             "--scheduler requires Dask; install it with: pip install 'fegear[distributed]'"

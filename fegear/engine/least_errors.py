@@ -72,7 +72,7 @@ def with_least_errors(values: Iterable[Value]) -> tuple[Value, ...]:
         if value.si_error is not None and not value.si_error >= least:
             # what is not a number no one has estimated
             error = None if np.isnan(value.si_error) else least if value.si_error > 0.0 else value.si_error
-            value = replace(value, si_error=error)  # noqa: PLW2901
+            value = replace(value, si_error=error)  # noqa: PLW2901  (the same value with its error)
         found.append(value)
     return tuple(found)
 

@@ -25,7 +25,7 @@ class _Dotted(BilinearForm):  # type: ignore[misc]  # scikit-fem has no types
         return np.vecdot(self.form(*u, *v, w), dx)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
 def plane_elasticity(u: Any, v: Any, w: Any) -> Any:
     """Work of the stresses of u on the strains of v, lambda div u div v + 2 mu eps(u) : eps(v)."""
     return w["lam"] * div(u) * div(v) + 2.0 * w["mu"] * ddot(sym_grad(u), sym_grad(v))
@@ -62,7 +62,7 @@ def stresses(strain: Array, lam: float, mu: float) -> Array:
     return np.concatenate([pressure + 2.0 * mu * strain[:3], mu * strain[3:]])
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
 def turned_elasticity(u: Any, v: Any, w: Any) -> Any:
     """Work of the stresses of u on the strains of v in a twisted prism; gradients hold D as their third slope."""
     stress = stresses(turned_strains(u, u.grad, w["tau"]), w["lam"], w["mu"])
@@ -87,19 +87,19 @@ def _work(strain_u: Array, strain_v: Array, w: Any) -> Any:
     return (stresses(strain_u, w["lam"], w["mu"]) * strain_v).sum(axis=0)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
 def turned_section(u: Any, v: Any, w: Any) -> Any:
     """B0' C B0 of a twisted prism, its functions those of the section."""
     return _work(_in_section(u, w), _in_section(v, w), w)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
 def turned_mixed(u: Any, v: Any, w: Any) -> Any:
     """B0' C B1: what changes along the face is the trial function."""
     return _work(_along_face(u, w), _in_section(v, w), w)
 
 
-@BilinearForm  # type: ignore[untyped-decorator]
+@BilinearForm  # type: ignore[untyped-decorator]  # scikit-fem has no types
 def turned_along(u: Any, v: Any, w: Any) -> Any:
     """B1' C B1."""
     return _work(_along_face(u, w), _along_face(v, w), w)

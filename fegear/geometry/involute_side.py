@@ -32,19 +32,19 @@ class GivenNumbers(Protocol):
     """What is given of any tooth, whatever its flanks."""
 
     @property
-    def teeth(self) -> int: ...  # noqa: D102
+    def teeth(self) -> int: ...  # noqa: D102  (its name says it)
     @property
-    def profile_shift(self) -> float: ...  # noqa: D102
+    def profile_shift(self) -> float: ...  # noqa: D102  (its name says it)
     @property
-    def thickness_allowance(self) -> float: ...  # noqa: D102
+    def thickness_allowance(self) -> float: ...  # noqa: D102  (its name says it)
     @property
-    def tip_radius(self) -> float: ...  # noqa: D102
+    def tip_radius(self) -> float: ...  # noqa: D102  (its name says it)
     @property
-    def tip_rounding(self) -> float: ...  # noqa: D102
+    def tip_rounding(self) -> float: ...  # noqa: D102  (its name says it)
     @property
-    def tip_chamfer(self) -> float: ...  # noqa: D102
+    def tip_chamfer(self) -> float: ...  # noqa: D102  (its name says it)
     @property
-    def helix_angle(self) -> float: ...  # noqa: D102
+    def helix_angle(self) -> float: ...  # noqa: D102  (its name says it)
 
 
 def check_given(tooth: GivenNumbers) -> None:

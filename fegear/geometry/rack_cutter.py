@@ -71,7 +71,7 @@ class RackCutter:
     def points(self, u: ArrayLike, l: ArrayLike) -> Array:  # noqa: E741  (the paper's letter)
         """Points (3, ...) [m] at l [m] along the tooth (A.5.3, A.5.8; the sign of element (3, 2) of A.5.9 is plus)."""
         x, y = self.normal_profile(u)
-        cosine, l = math.cos(self.gear.helix_angle), np.asarray(l, dtype=float)  # noqa: E741
+        cosine, l = math.cos(self.gear.helix_angle), np.asarray(l, dtype=float)  # noqa: E741  (l as in the literature)
         return np.stack(np.broadcast_arrays(x + self.shift, y * cosine + l * self._slant, l * cosine - y * self._slant))
 
     def along(self, u: ArrayLike, z: ArrayLike) -> Array:
@@ -87,7 +87,7 @@ class RackCutter:
         n = np.stack([math.sin(alpha) - bend * math.cos(alpha), across * math.cos(beta), -across * self._slant])
         return np.asarray(self._side * n / np.sqrt(1.0 + bend**2))
 
-    def roll_angle(self, u: ArrayLike, l: ArrayLike) -> Array:  # noqa: E741
+    def roll_angle(self, u: ArrayLike, l: ArrayLike) -> Array:  # noqa: E741  (l as in the literature)
         """Psi [rad] at which the cutter generates at (u, l): the equation of meshing (A.5.14, A.5.15)."""
         u, alpha, beta = np.asarray(u, dtype=float), self.gear.normal_pressure_angle, self.gear.helix_angle
         bend = 2.0 * self.parabola * u
@@ -105,7 +105,7 @@ class RackCutter:
         w = np.exp(1j * self._side * psi) * (r + x + 1j * (y - self._side * r * psi))
         return np.stack(np.broadcast_arrays(w.real, w.imag, z))
 
-    def generated(self, u: ArrayLike, l: ArrayLike) -> Array:  # noqa: E741
+    def generated(self, u: ArrayLike, l: ArrayLike) -> Array:  # noqa: E741  (l as in the literature)
         """Points (3, ...) [m] of the generated flank, in the gear's frame."""
         return self.rolled(self.points(u, l), self.roll_angle(u, l))
 

@@ -78,7 +78,7 @@ def comparison_summary(comparison: Comparison) -> dict[str, object]:
             one.name: {
                 "a": None if one.first is None else number(one.first.value),
                 "b": None if one.second is None else number(one.second.value),
-                "unit": (one.first or one.second).unit,  # type: ignore[union-attr]
+                "unit": (one.first or one.second).unit,  # type: ignore[union-attr]  # one of them is there
                 "share": number(one.share),
                 "within_errors": one.within_errors,
             }

@@ -55,7 +55,7 @@ class PictureProcess:
             self._child.wait()
             for pipe in (self._child.stdin, self._child.stdout):
                 with contextlib.suppress(OSError):  # what was not read any more
-                    pipe.close()  # type: ignore[union-attr]
+                    pipe.close()  # type: ignore[union-attr]  # both are pipes
 
     def draw(self, figure: Figure, folder: Path) -> Future[Pictures]:
         """Begin to draw a figure into a folder; the pictures are None if it must be drawn here instead.
@@ -67,7 +67,7 @@ class PictureProcess:
     def close(self) -> None:
         """Send no more figures: the process may end."""
         if self._child is not None:
-            self._talk.submit(self._child.stdin.close)  # type: ignore[union-attr]
+            self._talk.submit(self._child.stdin.close)  # type: ignore[union-attr]  # a pipe
 
     def _drawn(self, figure: Figure, folder: Path) -> Pictures:
         if self._child is None:
@@ -76,8 +76,8 @@ class PictureProcess:
             request = pickle.dumps(
                 (figure, folder)
             )  # whole before it is sent: half of one would confuse the other side
-            self._child.stdin.write(request)  # type: ignore[union-attr]
-            self._child.stdin.flush()  # type: ignore[union-attr]
+            self._child.stdin.write(request)  # type: ignore[union-attr]  # a pipe
+            self._child.stdin.flush()  # type: ignore[union-attr]  # a pipe
             return pickle.load(self._child.stdout)  # type: ignore[arg-type]  # noqa: S301  (our own process's answer)
         except (OSError, EOFError, ValueError, TypeError, AttributeError, pickle.PickleError):
             return None

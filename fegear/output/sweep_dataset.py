@@ -80,7 +80,7 @@ def _plain_names(results: SweepResults) -> dict[str, str]:
     """Names of axes, tables, columns and values that the file has otherwise, by what it has."""
     values = [name for value in swept_values(results) for name in (value.name, f"{value.name}_error")]
     tables = [
-        (name, ["row", "rows", *dict.fromkeys(key for table in found.values() for key in table.keys())])  # noqa: SIM118
+        (name, ["row", "rows", *dict.fromkeys(key for table in found.values() for key in table.keys())])  # noqa: SIM118  (of a table, which lists its rows otherwise)
         for name, found in _found_tables(results).items()
     ]
     return plain_of(tables, [axis.key for axis in results.axes] + values)

@@ -186,7 +186,7 @@ def contact_ellipses() -> Iterator[Compared]:
         found = contact_ellipse(large, small, 300.0, modulus)
         a, b, p0 = float(found.long), float(found.short), float(found.pressure)
         e2 = (1.0 - b / a) * (1.0 + b / a)
-        k, l = ellipk(e2), ellipe(e2)  # noqa: E741
+        k, l = ellipk(e2), ellipe(e2)  # noqa: E741  (names of the literature)
         front = p0 / modulus * b / (e2 * a * a)
         yield from near((2.0 * front * (k - l), 2.0 * front * ((a / b) ** 2 * l - k)), (small, large), 1e-7)
         yield from near(found.approach, p0 / modulus * b * k, 1e-9)

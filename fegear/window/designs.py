@@ -172,9 +172,9 @@ def _sliced_draft(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | Non
     if not any(task.subject in pairs for task in wanted):
         return None
     given = dict(scene.document)
-    tables: dict[str, Any] = dict(given.get("pair", {}))  # type: ignore[call-overload]
+    tables: dict[str, Any] = dict(given.get("pair", {}))  # type: ignore[call-overload]  # a table of the document
     tables |= {name: {**tables[name], "width": "slices"} for name in pairs}
-    face: dict[str, Any] = dict(given.get("load_distribution", {}))  # type: ignore[call-overload]
+    face: dict[str, Any] = dict(given.get("load_distribution", {}))  # type: ignore[call-overload]  # a table of the document
     few = {"positions": _POSITIONS, "panels": _PANELS}
     face |= {key: min(most, face.get(key, most)) for key, most in few.items()}
     document = {

@@ -53,7 +53,7 @@ def free_port(wanted: int | None) -> int:
 def _without_clients() -> Iterator[None]:
     """Import without libraries that ask other servers for something: optional, and a third of the time."""
     absent = [name for name in _CLIENTS if name not in sys.modules]
-    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]
+    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]  # None forbids an import
     try:
         yield
     finally:

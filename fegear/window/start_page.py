@@ -51,7 +51,7 @@ def start_page(bench: Bench) -> None:
             with ui.element("div").classes("offers"):
                 for left in unsaved:
                     about = f"unsaved, last changed {left.kept.when}"
-                    _offer(left.kept.name, about, lambda left=left: lay_left(left))  # type: ignore[misc]
+                    _offer(left.kept.name, about, lambda left=left: lay_left(left))  # type: ignore[misc]  # mypy cannot infer a lambda with a default
         ui.html("What do you want to do?", tag="h2")
         of_gallery = examples()
         with ui.element("div").classes("jobs"):
@@ -75,10 +75,10 @@ def _job(bench: Bench, name: str, job: Job, cases: tuple[tuple[str, str], ...]) 
         ui.html(job.title, tag="h3")
         ui.html(job.about, tag="p").classes("about")
         for kind, about in templates_of(name):
-            _offer(kind, about, lambda kind=kind: bench.from_template(kind))  # type: ignore[misc]
+            _offer(kind, about, lambda kind=kind: bench.from_template(kind))  # type: ignore[misc]  # mypy cannot infer a lambda with a default
         if cases:
             with ui.element("details"):
                 count = f"{len(cases)} examples" if len(cases) > 1 else "1 example"
                 ui.html(f"Copy of one of {count}" if len(cases) > 1 else f"Copy of {count}", tag="summary")
                 for case, title in cases:
-                    _offer("", title, lambda case=case: bench.from_gallery(case))  # type: ignore[misc]
+                    _offer("", title, lambda case=case: bench.from_gallery(case))  # type: ignore[misc]  # mypy cannot infer a lambda with a default

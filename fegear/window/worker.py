@@ -478,7 +478,7 @@ def _load() -> None:
     import fegear.contact.plane.root_stress_history
     import fegear.contact.plane.transmission_error
     import fegear.design.relief_design
-    import fegear.fem.plane.table  # noqa: F401
+    import fegear.fem.plane.table  # noqa: F401  (loaded ahead)
 
     gc.freeze()  # what is loaded stays: the collector need not look through it again and again
 

@@ -192,7 +192,7 @@ class Pair(Described):
         if not isinstance(other, Pair):
             return False
         described, others = (
-            (one.name, one.driver, one.driven, one._keys, one._divided) for one in (self, other)  # noqa: SLF001
+            (one.name, one.driver, one.driven, one._keys, one._divided) for one in (self, other)  # noqa: SLF001  (two of one class)
         )  # fmt: skip
         return described == others
 

@@ -24,7 +24,7 @@ def takes_keys_of(part: type[Part]) -> Callable[[_C], _C]:
         own = [one for one in signature.parameters.values() if one.kind is not one.VAR_KEYWORD]
         keys = {name: field for name, field in part.model_fields.items() if name not in signature.parameters}
         more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in keys]
-        kind.__signature__ = signature.replace(parameters=[*own, *more])  # type: ignore[attr-defined]
+        kind.__signature__ = signature.replace(parameters=[*own, *more])  # type: ignore[attr-defined]  # inspect reads it
         listed = "\n".join(
             f"{name}\n{textwrap.indent(field.description or '', '    ')}" for name, field in keys.items()
         )

@@ -109,7 +109,7 @@ def relief_key(gear: Gear) -> str:
 
 def _spec(kind: type[_S], part: Part) -> _S:
     """A spec of the keys of the same names."""
-    values: dict[str, Any] = {one.name: getattr(part, one.name) for one in fields(kind)}  # type: ignore[arg-type]
+    values: dict[str, Any] = {one.name: getattr(part, one.name) for one in fields(kind)}  # type: ignore[arg-type]  # specs are dataclasses
     return kind(**values)
 
 

@@ -192,7 +192,7 @@ def model_at(
                 changed["mu"] = partial_face_mu(value)
             return part.build(replace(mesh, **changed), prefix)
         if parameter != "bearing_stiffness":
-            unity = part.unity_ratio.model_copy(update={parameter: value})  # type: ignore[union-attr]
+            unity = part.unity_ratio.model_copy(update={parameter: value})  # type: ignore[union-attr]  # asked for where there is one
             return part.model_copy(update={"unity_ratio": unity}).build(mesh, prefix)
         model = part.build(mesh, prefix)
         if isinstance(model, HelicalPairModel):

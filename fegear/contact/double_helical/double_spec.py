@@ -129,7 +129,7 @@ class DoubleHelicalSpec(PlacedHalves):
     @property
     def middles(self) -> tuple[float, float]:
         """Where the middles of the halves' faces stand from that of the gap [m]."""
-        return tuple(  # type: ignore[return-value]
+        return tuple(  # type: ignore[return-value]  # two halves
             side * 0.5 * (self.gap + half.pair.face_width) for side, half in zip((-1.0, 1.0), self.halves, strict=True)
         )
 

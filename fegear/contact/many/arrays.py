@@ -153,7 +153,7 @@ def engagements_of(engagements: Sequence[Engagement]) -> ManyEngagements:
         raise InputError("pairs", "one of them", "must be external, of solved gears with sharp tips")
 
     def each(of: Callable[[FiniteElementCompliance], object]) -> Array:
-        return np.array([[of(both[i]) for both in sources] for i in (0, 1)], dtype=float)  # type: ignore[arg-type]
+        return np.array([[of(both[i]) for both in sources] for i in (0, 1)], dtype=float)  # type: ignore[arg-type]  # all are finite elements: looked at above
 
     reach = min(source.reach for source in known)
     flanks = ManyFlanks(

@@ -91,11 +91,11 @@ class OneTooth(AlikeTeeth):
     remarks = ()
     tip_wedge = (0.0, 0.0)
 
-    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (all alike)
         """Zero."""
         return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
 
-    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (all alike)
         """Unknown."""
         return None
 
@@ -103,7 +103,7 @@ class OneTooth(AlikeTeeth):
         """Unknown."""
         return None
 
-    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (all alike)
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 

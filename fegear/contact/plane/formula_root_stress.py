@@ -93,7 +93,7 @@ class FormulaRootStress(AlikeTeeth):
         """None: a formula knows the largest stress alone."""
         return None
 
-    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (unknown anywhere)
         """Not a number [1/m]: a formula does not know how far it is off."""
         return np.full(np.shape(np.atleast_1d(radius_q)), math.nan)
 

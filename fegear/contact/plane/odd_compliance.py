@@ -270,7 +270,7 @@ def odd_neighbours_shifted_by_error(base: OddCompliance) -> OddCompliance:
 
 
 def _plain(base: OddCompliance) -> FiniteElementCompliance:
-    assert isinstance(base.ordinary, FiniteElementCompliance)  # noqa: S101
+    assert isinstance(base.ordinary, FiniteElementCompliance)  # noqa: S101  (for mypy: no source is shifted twice)
     return base.ordinary
 
 

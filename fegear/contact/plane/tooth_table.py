@@ -88,7 +88,7 @@ class ToothTable(AlikeTeeth):
         p, q = (roll_length(self.gear, r, *ends) for r in (radius_p, radius_q))
         return chebyshev_over(*ends, p, q, self.neighbours[k])
 
-    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002
+    def root_stress(self, i: int, j: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (as of every source)
         """Unknown: see `RootTable`."""
         return None
 
@@ -96,7 +96,7 @@ class ToothTable(AlikeTeeth):
         """Unknown."""
         return None
 
-    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (as of every source)
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 
@@ -164,7 +164,7 @@ class RootTable(AlikeTeeth):
         """As of the source; None for the other fillet."""
         return self.curve if side == "tension" else None
 
-    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (as of every source)
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
 

@@ -164,7 +164,7 @@ class RackTeeth:
         """How the largest stress is found between the points."""
         return self.solved.loaded(0).fillet_curve(side, self.rack.module)
 
-    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002
+    def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:  # noqa: ARG002  (as of every source)
         """Not known of one load: errors over the stroke are found from two solutions."""
         return np.full(np.shape(radius_q), np.nan)
 

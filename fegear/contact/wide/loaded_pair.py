@@ -122,7 +122,7 @@ class LoadedWidePair:
         """What keeps the flanks apart of the effects that are on, without reliefs and spacing errors."""
         return open_gaps(replace(self.spec, relief=False, spacing_errors=False))
 
-    def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:  # noqa: ARG002
+    def neglects(self, answers: Sequence[Answer], loads: Sequence[float]) -> Neglected:  # noqa: ARG002  (as of every loaded pair)
         """See `LoadedTeeth`: of mean transmission error and K_Hbeta, at the nominal load."""
         return neglected_effects(self.spec, self.flanks, self.gaps, self.over)
 
@@ -252,7 +252,7 @@ class LoadedWidePair:
         known, flanks = self.over.found.known, self.flanks
         return flanks.cache.call(mean_without_gaps, flanks, known, self.nominal).value
 
-    def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:  # noqa: ARG002
+    def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:  # noqa: ARG002  (as of every loaded pair)
         """See `LoadedTeeth`; the nominal load alone is what was solved before."""
         wanted, found = np.atleast_1d(np.asarray(loads, dtype=float)), self.found
         if wanted.tolist() == [self.nominal]:

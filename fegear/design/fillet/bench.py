@@ -121,7 +121,7 @@ class FilletBench:
 
     def tooth(self, shape: FilletShape) -> InvoluteTooth:
         """The gear's tooth with a fillet; raises `GeometryError`."""
-        return with_fillet(self.generated, shape)  # type: ignore[arg-type]
+        return with_fillet(self.generated, shape)  # type: ignore[arg-type]  # a tooth that a tool generates
 
     def judged(self, tooth: InvoluteTooth) -> Judged:
         """Stress along the fillet and what is left of the limits."""

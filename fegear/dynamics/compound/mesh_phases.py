@@ -146,7 +146,7 @@ def _seen(of: CompoundSet, toothed: Toothed, side: int) -> float:
 
 
 def _sign(number: object) -> int:
-    return (number > 0) - (number < 0)  # type: ignore[operator]
+    return (number > 0) - (number < 0)  # type: ignore[operator]  # any number that can be compared
 
 
 def _part(pitches: Array | float) -> Array:

@@ -177,8 +177,8 @@ class PlanetLoads:
     @property
     def te_peak_to_peak_error(self) -> float:
         """Of `te_peak_to_peak` [m]: what its ends hide, and its changes by the errors of the teeth."""
-        ends = [self.peak_error(lambda one, sign=sign: sign * one.te) for sign in (1.0, -1.0)]  # type: ignore[misc]
-        teeth = [self.shift(lambda one, sign=sign: (sign * one.te).max()) for sign in (1.0, -1.0)]  # type: ignore[misc]
+        ends = [self.peak_error(lambda one, sign=sign: sign * one.te) for sign in (1.0, -1.0)]  # type: ignore[misc]  # mypy cannot infer a lambda with a default
+        teeth = [self.shift(lambda one, sign=sign: (sign * one.te).max()) for sign in (1.0, -1.0)]  # type: ignore[misc]  # mypy cannot infer a lambda with a default
         return float(sum(ends) - sum(teeth) + self.shift(lambda one: one.te_peak_to_peak))
 
 

@@ -347,7 +347,7 @@ def _ways(said: Said, one: Component, rows: Sequence[Component], angle: float) -
 def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
     """``elements``; a ball bearing that slides has a seat that holds nothing along the axis."""
     one, rows = held.component, held.rows
-    assert rows is not None  # noqa: S101
+    assert rows is not None  # noqa: S101  (for mypy: looked at before)
     clearance = _clearance(said, one)
     value = catalogue_table(rows.printed) if rows.printed else inline(
         kind=text("ball" if rows.length is None else "roller"), count=number(rows.count),

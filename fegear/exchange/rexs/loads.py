@@ -172,7 +172,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
     whole = tuple(flow_through(said, one, bodies) for one in sets)
     meshes = tuple(
         Mesh(
-            tuple(bodies[on[gear.id].id] for gear in stage.gears),  # type: ignore[union-attr, arg-type]
+            tuple(bodies[on[gear.id].id] for gear in stage.gears),  # type: ignore[union-attr, arg-type]  # gears on no shaft are refused before
             _teeth(said, stage),
         )
         for stage in stages
@@ -274,7 +274,7 @@ def _completed(
             outlets = [body for body in _ends(meshes, train) if body != one.body]
             outlets = outlets[-1:] or [max(among - {one.body})]
             torques += [Torque(body, None) for body in outlets]
-            last = next(gear for n in train for gear in stages[n].gears if bodies[on[gear.id].id] == outlets[0])  # type: ignore[union-attr]
+            last = next(gear for n in train for gear in stages[n].gears if bodies[on[gear.id].id] == outlets[0])  # type: ignore[union-attr]  # gears on no shaft are refused before
             said.notes.append(f"Output torque assumed at {last.said} (only possible output).")
     return torques, assumed
 

@@ -146,7 +146,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
         tables.append(Table(f"gear.{names[n]}", keys, f"{gear.said} {gear.name}".strip()))
     relieved = any(key.name in ("relief", "lead") for table in tables for key in table.keys)
     width = _width(said, [stages[n] for n in loaded])
-    heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]
+    heights = {n: _height(places[on[n].id], middles[n]) for n in gears}  # type: ignore[union-attr]  # gears on no shaft are refused before
     tables += [
         _pair(said, stage, names, flow, n, heights if bent else {}, bins, width)
         for n, stage in enumerate(stages)
@@ -230,7 +230,7 @@ def _are(several: list[str]) -> str:
 
 def _names(components: object, other: str) -> dict[int, str]:
     found: dict[int, str] = {}
-    for one in components:  # type: ignore[attr-defined]
+    for one in components:  # type: ignore[attr-defined]  # several kinds of components
         found[one.id] = plain_name(one.name, f"{other}_{one.id}", set(found.values()))
     return found
 

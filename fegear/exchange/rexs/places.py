@@ -138,8 +138,8 @@ def _frame(axis: Vector, beside: Vector | None) -> Frame:
     """Unit vectors: along an axis, across it, and across it in its plane with another vector."""
     u = _unit(axis)
     if beside is None or math.hypot(*_cross(beside, u)) <= _PARALLEL * math.hypot(*beside):
-        beside = tuple(float(n == min(range(3), key=lambda m: abs(u[m]))) for n in range(3))  # type: ignore[assignment]
-    v = _unit(_cross(beside, u))  # type: ignore[arg-type]
+        beside = tuple(float(n == min(range(3), key=lambda m: abs(u[m]))) for n in range(3))  # type: ignore[assignment]  # three numbers
+    v = _unit(_cross(beside, u))  # type: ignore[arg-type]  # as above
     return u, v, _cross(u, v)
 
 

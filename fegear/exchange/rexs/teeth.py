@@ -158,7 +158,7 @@ def flank_of(said: Said, gear: Component) -> Component | None:
     left, right = (said.linked(gear, "gear", "flank", side, *FLANKS) for side in ("left", "right"))
     for name in ("addendum_modification_coefficient", "normal_pressure_angle"):
         values = [said.number(one, _KIND[name], name) for one in (*left[:1], *right[:1])]
-        if None not in values and max(values, default=0.0) - min(values, default=0.0) > 1e-9:  # type: ignore[operator,type-var]
+        if None not in values and max(values, default=0.0) - min(values, default=0.0) > 1e-9:  # type: ignore[operator,type-var]  # numbers, as just asked
             raise InputError(
                 name, " and ".join(f"{one:.6g}" for one in values), f"differs between the flanks of {gear.said}",
                 "only symmetric teeth are supported: use the same value for both flanks",

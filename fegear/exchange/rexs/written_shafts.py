@@ -99,7 +99,7 @@ def _bearing(
     made.say("tilting stiffness", bending_stiffness=part.tilting if "tilting" in part.model_fields_set else None)
     if part.radial_clearance:
         made.say("small length", operating_radial_bearing_clearance=2.0 * part.radial_clearance)
-    kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]
+    kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]  # one of them is there
     angle = elements.contact_angle if elements else 0.0
     if printed is not None:
         kind, angle = printed.inside.kind, printed.given_angle

@@ -234,7 +234,7 @@ class ThinSlices(TwistedFlank):
     settings: SolidSettings
     seconds: Mapping[str, float]
 
-    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> ThinLines:  # noqa: ARG002
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> ThinLines:  # noqa: ARG002  (as of every solution)
         """Press contact lines on it."""
         return ThinLines(self, line, spans)
 

@@ -122,7 +122,7 @@ class SolidSolution(SolidFlank):
         own = loads if watched is pressed else loads_of(watched, self.flank, self.face)
         return np.asarray(own.T @ self.compliance[k] @ loads)
 
-    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> PressedLines:  # noqa: ARG002
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> PressedLines:  # noqa: ARG002  (as of every solution)
         """Contact lines on the flank, one after the other: see `contact.PressedLines`."""
         return PressedLines(self, line, spans)
 

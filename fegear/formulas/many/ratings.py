@@ -152,7 +152,7 @@ def _curves(asked: ManyConditions, forms: ManyForms) -> tuple[tuple[ManyKnots, M
 
 def _annex_c(line: ManyKnots, strength: object) -> ManyKnots:
     """The line of ISO 6336-6, annex C: all film factors at all load cycles, up to ten times fewer of them."""
-    life = life_knots(strength)  # type: ignore[arg-type]
+    life = life_knots(strength)  # type: ignore[arg-type]  # arrays of strengths in place of one
     (n_0, n_1), (z_0, z_1) = life.cycles[:2], life.values[:2]
     first = z_0 * (z_0 / z_1) ** (np.log(_ABOVE) / np.log(n_1 / n_0))
     scale = line.values[-2] / life.values[-2]

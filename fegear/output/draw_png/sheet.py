@@ -230,7 +230,7 @@ def legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
             name = getattr(item, "name", "")
             if not name or name in found:
                 continue
-            style, colour = look(item.role), shade(item.role).light  # type: ignore[union-attr]
+            style, colour = look(item.role), shade(item.role).light  # type: ignore[union-attr]  # items with a name have a role
             if isinstance(item, (Bars, Surface)):
                 found[name] = Patch(color=colour)
             elif isinstance(item, Curve):

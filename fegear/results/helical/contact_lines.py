@@ -189,7 +189,7 @@ def _on_teeth(name: str, pair: HelicalPair, lines: LineContact, title: str) -> F
     """A tooth of the pinion and one of the gear side by side, with the lines on their flanks."""
     panels = []
     for gear, axis, t, which in ((pair.pinion, "space", lines.t_1, "pinion"), (pair.gear, "tooth", lines.t_2, "gear")):
-        flank = InvoluteHelicoid.of(gear, axis)  # type: ignore[arg-type]
+        flank = InvoluteHelicoid.of(gear, axis)  # type: ignore[arg-type]  # two texts of two allowed
         r = np.linspace(max(gear.form_radius, gear.base_radius * (1.0 + 1e-9)), gear.tip_radius, _ACROSS)
         shift = pair.axial_offset if which == "gear" else 0.0
         along = shift + np.linspace(-0.5, 0.5, _ALONG) * gear.face_width

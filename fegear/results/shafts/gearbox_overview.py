@@ -86,7 +86,7 @@ class GearboxInputs:
 def _refused(check: object, scene: Scene, pair: str) -> str:
     """Why something cannot be had of a pair; empty where it can."""
     try:
-        check(scene, pair)  # type: ignore[operator]
+        check(scene, pair)  # type: ignore[operator]  # functions of several signatures
     except InputError as error:
         return f"{error.key} {error.rule}" if error.value == "(not given)" else str(error)
     return ""

@@ -80,7 +80,7 @@ def placed_present(
     known : ndarray
         Criteria of all that live, NaN where one is not known.
     """
-    pairs = present_pair(asked.part, asked.part.present)  # type: ignore[arg-type]
+    pairs = present_pair(asked.part, asked.part.present)  # type: ignore[arg-type]  # where there is a present design
     with np.errstate(invalid="ignore", divide="ignore"):
         rating, margin = reasons_of_rating(pairs, asked.duty)
         found = (*broken(pairs, _of_rounded_shifts(asked.limits)), *rating)

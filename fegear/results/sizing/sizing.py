@@ -160,7 +160,7 @@ def _one_of_lives(asked: SizingInputs, lives: Lives, known: Estimated, row: int)
 
 def _present(asked: SizingInputs) -> SizedVariant:
     """The present design, with what the atlas says of it."""
-    pairs = present_pair(asked.part, asked.part.present)  # type: ignore[arg-type]
+    pairs = present_pair(asked.part, asked.part.present)  # type: ignore[arg-type]  # where there is a present design
     one = _sized(asked, None, pairs)
     if asked.atlas is None:
         return one

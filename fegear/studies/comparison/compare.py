@@ -252,7 +252,7 @@ class Pairing(NamedTuple):
     def differs(self, tolerance: float) -> bool:
         """Whether it is missing on one side, or changes by more than a share; no number twice is no change."""
         both = self.first is not None and self.second is not None
-        if both and math.isnan(self.first.si) and math.isnan(self.second.si):  # type: ignore[union-attr]
+        if both and math.isnan(self.first.si) and math.isnan(self.second.si):  # type: ignore[union-attr]  # both are there
             return False
         return not abs(self.share) <= tolerance
 

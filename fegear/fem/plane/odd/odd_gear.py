@@ -218,7 +218,7 @@ class OddGearInfluence:
 
     def _off_between(self, i: int, j: int, p: Array, q: Array) -> Array:
         """What half the width of the pressures, and elements one order lower, change of c_ij."""
-        assert self.fine.lower is not None  # noqa: S101
+        assert self.fine.lower is not None  # noqa: S101  (for mypy: errors are asked for where two orders were solved)
         value = self.fine.between(i, j, p, q, self._patch)
         width = np.abs(value - self.fine.between(i, j, p, q, 0.5 * self._patch))
         return np.asarray(width + _COUPLING_SHARE * np.abs(value - self.fine.lower.between(i, j, p, q, self._patch)))
@@ -287,7 +287,7 @@ class OddGearInfluence:
         )
 
     def _off_stress(self, i: int, j: int, side: Side, r: Array, b: Array) -> Array:
-        assert self.fine.lower is not None  # noqa: S101
+        assert self.fine.lower is not None  # noqa: S101  (for mypy: errors are asked for where two orders were solved)
         value, other = (one.largest_root_stress(i, j, side, r, b)[0] for one in (self.fine, self.fine.lower))
         return np.asarray(np.abs(value - other))
 
@@ -337,7 +337,7 @@ class OddGearInfluence:
     def _estimate(self, i: int) -> Estimate:
         """Of a tooth under its own load."""
         if i not in self._estimates:
-            assert self.fine.lower is not None  # noqa: S101
+            assert self.fine.lower is not None  # noqa: S101  (for mypy: errors are asked for where two orders were solved)
             coarser = self.settings.refined(LEVEL_RATIO)
             other = replace(self.fine.lower.shut_tooth(i), corner_distance=coarser.corner_distance)
             self._estimates[i] = Estimate(self.fine.shut_tooth(i), other, self._patch, coarser.patch_half_width)

@@ -104,13 +104,13 @@ def _rest(
     if support is None or support.kind != "free_arc":
         sector, side, turn, _ = condensed_sector(mesh, elasticity, none)
         row = chain_of(between_sides(sector, side, turn).held, others)
-        assert row is not None  # noqa: S101
+        assert row is not None  # noqa: S101  (for mypy: there are other teeth)
         return Rest(half, _from_b_to_a(row, side), np.ones(2 * side, dtype=bool))
     arc = free_arc(mesh, elasticity, none, support.free_teeth)
     beside = support.free_teeth // 2 - half
     held, free, m = arc.held.chain(others - 2 * beside), chain_of(arc.part.held, beside), arc.held.free.size
     if not beside:
-        assert held is not None  # noqa: S101
+        assert held is not None  # noqa: S101  (for mypy: there are other teeth)
         return Rest(half, _from_b_to_a(held, m), np.tile(arc.held.free, 2))
     chains = [(free, 0, 1), (held, 1, 2), (free, 2, 3)]
     whole = closed_stiffness(chains, 4, m).reshape(4 * m, -1)

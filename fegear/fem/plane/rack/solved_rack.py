@@ -48,7 +48,7 @@ class RackInfluence(Influence):
     def fillet_curve(self, side: Side, module: float = 1.0) -> FilletCurve:
         """Where the largest stress of a rounding is looked for."""
         fillet, flank = self.fillets[side], self.flank
-        assert isinstance(flank, StraightFlank)  # noqa: S101
+        assert isinstance(flank, StraightFlank)  # noqa: S101  (for mypy: racks have straight flanks)
         return StraightFilletCurve(
             side, fillet.arc, fillet.length, flank.base_radius, (0.0, 0.0), module, flank.heights, flank.pressure_angle
         )
