@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fegear.design.fillet.bench import FilletBench
+from fegear.design.fillet.fillet_bench import FilletBench
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.external_tooth import Tooth

@@ -8,7 +8,7 @@ import pytest
 
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.maker import load_plane
-from fegear.design.fillet.bench import FilletBench, search_settings
+from fegear.design.fillet.fillet_bench import FilletBench, search_settings
 from fegear.design.fillet.fillet_design import SEARCHES, _start, design_fillet, full_rounded, moved
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import search

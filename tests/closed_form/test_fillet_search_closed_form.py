@@ -13,7 +13,7 @@ from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.design.fillet import fillet_design
-from fegear.design.fillet.bench import SHARES, FilletBench, Judged
+from fegear.design.fillet.fillet_bench import SHARES, FilletBench, Judged
 from fegear.design.fillet.fillet_design import FilletDesign, Stressed, design_fillet
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import KEPT, Found, search

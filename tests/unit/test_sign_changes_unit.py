@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.contact.changes import sign_changes
+from fegear.contact.sign_changes import sign_changes
 
 
 def found(functions, samples=13, passes=6):

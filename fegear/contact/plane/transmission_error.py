@@ -11,8 +11,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.shown import shows
-from fegear.contact.changes import sign_changes
 from fegear.contact.fourier import SIDE, FourierSeries, Panels, effective_error, fourier_series, panels
+from fegear.contact.sign_changes import sign_changes
 from fegear.fem.teeth import together
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
-from fegear.design.fillet.bench import FilletBench, Objective
+from fegear.design.fillet.fillet_bench import FilletBench, Objective
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import Found, search
 from fegear.design.fillet.moved_ellipses import Basis, MovedEllipses

@@ -14,7 +14,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
-from fegear.design.fillet.bench import FilletBench, Judged
+from fegear.design.fillet.fillet_bench import FilletBench, Judged
 from fegear.design.fillet.moved_ellipses import MovedEllipses
 from fegear.geometry.fillet_shapes import PointsFillet
 

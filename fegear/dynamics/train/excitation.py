@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
-from fegear.contact.changes import sign_changes
+from fegear.contact.sign_changes import sign_changes
 from fegear.dynamics.train.periodic import Periodic, combine
 
 #: Divisions of a cell in which a spring comes to bear or lets go: to the last digit.

@@ -17,7 +17,7 @@ from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.pair import GearPair, Member
 
 if TYPE_CHECKING:
-    from fegear.design.fillet.bench import Objective
+    from fegear.design.fillet.fillet_bench import Objective
     from fegear.design.fillet.fillet_design import FilletDesign, Stressed
 
 #: Points by which the length of a fillet is measured.
@@ -197,7 +197,7 @@ class FilletShown:
         return (middle[0] - half, middle[0] + half), (middle[1] - half, middle[1] + half)
 
     def _stressed(self, one: Stressed) -> StressedFillet:
-        from fegear.design.fillet.bench import SHARES
+        from fegear.design.fillet.fillet_bench import SHARES
         from fegear.geometry.outline import tooth_outline
 
         tooth, m = one.tooth, self.module
