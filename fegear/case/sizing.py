@@ -128,6 +128,29 @@ class PresentPart(Part):
         return self
 
 
+class TolerancesPart(Part):
+    """``tolerances = { face_width, parallelism }``: between what limits the transmission error counts."""
+
+    face_width: PositiveLength | None = Field(
+        default=None,
+        description="Tolerance of the face width: numbers of helical variants by FE also count at b - t and b + t.",
+    )
+    parallelism: PositiveLength | None = Field(
+        default=None,
+        description="Deviation of the shafts from parallel over the face width (out of plane): numbers of helical "
+        "variants by FE also count with it in both directions.",
+    )
+
+    @property
+    def states(self) -> tuple[tuple[float, float], ...]:
+        """What is added to the face width, and the deviation of the shafts [m]; the nominal pair first."""
+        width, shafts = self.face_width, self.parallelism
+        found = [(0.0, 0.0)]
+        found += [] if width is None else [(-width, 0.0), (width, 0.0)]
+        found += [] if shafts is None else [(0.0, -shafts), (0.0, shafts)]
+        return tuple(found)
+
+
 class SizingPart(Part):
     """A pair of external gears to be sized: requirement, what may vary, limits and criteria. The pinion drives."""
 
@@ -221,7 +244,7 @@ class SizingPart(Part):
     screened: Annotated[int, Field(ge=0, le=5000)] = Field(
         default=24,
         description="Number of variants outside the atlas (helical, other racks) whose transmission error is "
-        "estimated by FE (coarse).",
+        "estimated by FE (coarse); of helical ones the best by thin slices from the atlas.",
     )
     verified: Annotated[int, Field(ge=0, le=200)] | None = Field(
         default=None,
@@ -232,6 +255,11 @@ class SizingPart(Part):
     )
     tolerance: Annotated[Number, Field(ge=1e-4, le=0.1)] = Field(
         default=1e-2, description="Relative accuracy of the FE verification."
+    )
+    tolerances: Table[TolerancesPart] = Field(
+        default_factory=TolerancesPart,
+        description="Deviations of helical variants at which transmission error and root stress by FE also count "
+        "(their maximum). Default: none.",
     )
     present: Table[PresentPart] | None = Field(
         default=None, description="Existing design to be placed among the variants."
@@ -306,6 +334,9 @@ class SizingPart(Part):
             raise refuse("contains a criterion twice", "specify each once", key="criteria", value=self.criteria)
         if any(not 0.0 <= one <= math.radians(45.0) for one in self.chosen_helix_angles):
             raise refuse("must be between 0 and 45 deg", key="helix_angles", value="(a list)")
+        width, widths = self.tolerances.face_width, self.widths
+        if width is not None and widths and not width < widths[0]:
+            raise refuse("must be below the face width", key="tolerances.face_width", value=width)
         if any(not math.radians(10.0) <= one <= math.radians(30.0) for one in self.chosen_pressure_angles):
             raise refuse("must be between 10 and 30 deg", key="pressure_angles", value="(a list)")
         return self

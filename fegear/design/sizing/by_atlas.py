@@ -1,7 +1,8 @@
 """Transmission error of arrays of variants from the atlases that come with fegear, bare and with the best tip relief.
 
 Spur gears of a rack, pressure angle and material that an atlas contains are loaded by arrays, some thousand pairs a
-second; all others have NaN here and are solved by finite elements.
+second; all others have NaN here and are solved by finite elements. Which helical ones are worth that is seen by thin
+slices of such gears.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from fegear.atlas.many import known_pairs, spur_pairs
 from fegear.atlas.shipped import SHIPPED, family_of, shipped_atlas
+from fegear.atlas.thin_slices import sliced_errors
 from fegear.contact.many import kernel
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.many.many_loaded import transmission_errors
@@ -44,6 +46,8 @@ _STRESSED = 256
 _SHORTEST, _LONGEST = 0.02, 0.98
 #: From which share of the largest amount tried on a relief is at its limit.
 _AT_LIMIT = 0.98
+#: Overlap ratios that count, as shares of the nominal one: at whole ones thin slices see no ripple.
+_OVERLAPS = (0.9, 1.0, 1.1)
 #: Accuracy of a search: harmonics, and samples between which changes of contact are looked for.
 _WAVES, _SAMPLES = 3, 12
 
@@ -114,25 +118,25 @@ class Relieved(NamedTuple):
     at_limit: Mask
 
 
-def of_an_atlas(pairs: ManyGearPairs, poisson_ratio: float) -> Iterator[tuple[Atlas, Index]]:
-    """Atlases, and which pairs are of their families."""
+def of_an_atlas(pairs: ManyGearPairs, poisson_ratio: float, *, helical: bool = False) -> Iterator[tuple[Atlas, Index]]:
+    """Atlases, and which spur (or helical) pairs are of their families."""
     for rack in SHIPPED:
         atlas = shipped_atlas(rack)
         family = atlas.family
         if abs(poisson_ratio - family.poisson_ratio) > _SAME:
             continue
-        same = (pairs.helix_angle == 0.0) & (abs(pairs.pressure_angle - family.pressure_angle) <= _SAME)
+        same = ((pairs.helix_angle != 0.0) == helical) & (abs(pairs.pressure_angle - family.pressure_angle) <= _SAME)
         same &= abs(pairs.dedendum - family.dedendum) <= _SAME
         same &= abs(pairs.rack_tip_radius - family.rounding) <= _SAME
         if same.any():
             yield atlas, np.flatnonzero(same)
 
 
-def may_hold(space: SizingSpace, poisson_ratio: float) -> bool:
-    """Whether any variant of a requirement is of the family of an atlas that comes with fegear."""
+def may_hold(space: SizingSpace, poisson_ratio: float, *, helical: bool = False) -> bool:
+    """Whether any spur (or helical) variant of a requirement is of the family of an atlas that comes with fegear."""
     return any(
         abs(poisson_ratio - one.poisson_ratio) <= _SAME
-        and 0.0 in space.betas
+        and (any(space.betas) if helical else 0.0 in space.betas)
         and any(abs(alpha - one.pressure_angle) <= _SAME for alpha in space.alphas)
         and any(abs(height + space.root_clearance - one.dedendum) <= _SAME for height in space.heights)
         and abs(space.rack_tip_radius - one.rounding) <= _SAME
@@ -170,6 +174,24 @@ def bare_errors(pairs: ManyGearPairs, duty: AtlasDuty) -> Bare:
                 root[rows] = tension.max(axis=0)
                 root_error[rows] = (known.stress_error[:, :, 0] * tension).max(axis=0)
     return bare
+
+
+def sliced_errors_of(pairs: ManyGearPairs, duty: AtlasDuty) -> Array:
+    """Transmission error of helical variants by thin slices, its maximum over torques and overlaps, (N,) [m].
+
+    NaN of spur ones and of other racks.
+
+    Raises
+    ------
+    MissingLibraryError
+        If numba is not installed.
+    """
+    te = np.full(len(pairs), np.nan)
+    for atlas, rows in of_an_atlas(pairs, duty.poisson_ratio, helical=True):
+        some = pairs.at(rows)
+        found = sliced_errors(atlas, some, _loads(some, duty), duty.young_modulus, _OVERLAPS)
+        te[rows] = found.peak_to_peak.max(axis=1)
+    return te
 
 
 def relieved_errors(pairs: ManyGearPairs, duty: AtlasDuty) -> Relieved:

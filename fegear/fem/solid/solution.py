@@ -201,7 +201,9 @@ class SolidSolution(SolidFlank):
             If tooth k is beyond reach.
         """
         self._check_tooth(k)
-        return np.asarray(self.displacement[k, side] @ loads)
+        felt = self.displacement[k, side]
+        # As one product: that of a stack goes matrix by matrix, small ones on several threads.
+        return np.asarray(felt.reshape(-1, felt.shape[3]) @ loads).reshape(*felt.shape[:3], -1)
 
     def surface_stress(self, side: Side, moved: Array, zeta: ArrayLike) -> Array:
         """What `fillet_stress` gives, of displacements that `moved` gives, or of a sum of such.

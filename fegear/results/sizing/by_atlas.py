@@ -8,10 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import FegearError
-from fegear.design.sizing.by_atlas import AtlasDuty, Bare, Relieved, bare_errors, of_an_atlas, relieved_errors
+from fegear.design.sizing.by_atlas import (
+    AtlasDuty,
+    Bare,
+    Relieved,
+    bare_errors,
+    of_an_atlas,
+    relieved_errors,
+    sliced_errors_of,
+)
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Index
+    from fegear.base.arrays import Array, Index
     from fegear.design.sizing.space import SizingSpace
     from fegear.engine.progress import Progress
     from fegear.engine.stage import Work
@@ -48,6 +56,11 @@ def relieved_part(part: AtlasPart) -> dict[str, Any]:
     return relieved_errors(part.pairs, part.duty)._asdict()
 
 
+def sliced_part(part: AtlasPart) -> dict[str, Any]:
+    """As `sliced_errors_of`, plain arrays."""
+    return {"te": sliced_errors_of(part.pairs, part.duty)}
+
+
 def bare_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, progress: Progress) -> Bare:
     """Transmission error of unmodified variants by number; NaN where no atlas contains them."""
     pairs = space.pairs(numbers)
@@ -59,6 +72,17 @@ def bare_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, pro
         if found:
             values[rows] = np.concatenate([one[name] for one in found])
     return bare
+
+
+def sliced_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, progress: Progress) -> Array:
+    """Transmission error of helical variants by thin slices; NaN of others."""
+    pairs, te = space.pairs(numbers), np.full(numbers.size, np.nan)
+    known = [rows for _, rows in of_an_atlas(pairs, duty.poisson_ratio, helical=True)]
+    rows = np.sort(np.concatenate(known)) if known else np.zeros(0, dtype=np.int64)
+    if rows.size:
+        found = _mapped(sliced_part, pairs.at(rows), duty, work, _PART, progress)
+        te[rows] = np.concatenate([one["te"] for one in found])
+    return te
 
 
 def relieved_of(space: SizingSpace, numbers: Index, duty: AtlasDuty, work: Work, progress: Progress) -> Relieved:

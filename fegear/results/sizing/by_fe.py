@@ -85,9 +85,9 @@ def _content(point: Mapping[str, Any]) -> object:
 
 def by_finite_elements(
     asked: Mapping[str, Any], variants: Sequence[Variant], work: Work, folder: str, progress: Progress, *,
-    verified: tuple[str, float] | None = None,
+    verified: tuple[str, float] | None = None, states: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> tuple[FromFE, ...]:  # fmt: skip
-    """Numbers of every variant.
+    """Numbers of every variant, of helical ones their maximum over states.
 
     Parameters
     ----------
@@ -100,19 +100,36 @@ def by_finite_elements(
     progress : callable
     verified : (str, float), optional
         Tooth model of helical pairs and tolerance of a verification, with estimated errors; else an estimate.
+    states : sequence of (float, float)
+        What is added to the face width of helical variants, and the deviation of their shafts over it [m].
     """
     from fegear.engine.executor import map_points
     from fegear.engine.processes import Failure
 
     width, tolerance = verified or (COARSE_WIDTH, COARSE)
+    nominal = tuple(states)[:1]
+    each = [states if one.helix_angle else nominal for one in variants]
     points = [
         {
-            "document": case_of_variant(asked, one, _RESULTS, width=width, tolerance=tolerance), "folder": folder,
-            "estimates": verified is not None,
+            "document": case_of_variant(
+                asked, one._replace(face_width=one.face_width + wider), _RESULTS, width=width, tolerance=tolerance,
+                parallelism=shafts,
+            ),
+            "folder": folder, "estimates": verified is not None,
         }
-        for one in variants
+        for one, those in zip(variants, each, strict=True) for wider, shafts in those
     ]  # fmt: skip
     found = map_points(
         compute_variant, points, work.executor, work.cache, key=_content, shares_cache=True, progress=progress
     )
-    return tuple(FromFE(reason=one.reason) if isinstance(one, Failure) else FromFE(**one) for one in found)
+    numbers = iter([FromFE(reason=one.reason) if isinstance(one, Failure) else FromFE(**one) for one in found])
+    return tuple(_largest([next(numbers) for _ in those]) for those in each)
+
+
+def _largest(states: Sequence[FromFE]) -> FromFE:
+    """Maxima over the states of a variant, each with its error; the first failure where one has no number."""
+    failed = next((one for one in states if one.reason), None)
+    if failed is not None:
+        return failed
+    te, root = (max(states, key=lambda one: getattr(one, name)) for name in ("te", "root_stress"))
+    return FromFE(te.te, te.te_error, root.root_stress, root.root_stress_error)

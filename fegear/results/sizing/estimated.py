@@ -1,7 +1,7 @@
 """What is known of all variants that live before any is solved: criteria by formulas and by the atlas.
 
 Variants of a family that an atlas contains have their transmission error from it, all of them; the best of the others
-are left to coarse finite elements.
+are left to coarse finite elements, of helical ones the best by thin slices of such gears.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from fegear.design.sizing.by_atlas import LENGTHS, AtlasDuty, Bare, Relieved, bare_errors, relieved_errors
 from fegear.design.sizing.front import best_by_fronts, best_by_ranks, pareto_front, rounded_costs
 from fegear.design.sizing.funnel import BARE, RELIEVED, ROOT
-from fegear.results.sizing.by_atlas import bare_of, relieved_of
+from fegear.results.sizing.by_atlas import bare_of, relieved_of, sliced_of
 from fegear.results.sizing.by_fe import FromFE
 from fegear.results.sizing.sizing_data import BestRelief
 
@@ -44,12 +44,15 @@ class Estimated:
         Of those for which a relief was searched, ascending.
     relieved : Relieved
         Of these.
+    sliced : ndarray, shape (N,)
+        Transmission error of helical ones by thin slices, for an order only; NaN of others.
     """
 
     costs: Array
     bare: Bare
     rows: Index
     relieved: Relieved | None
+    sliced: Array
 
     @property
     def known(self) -> Index:
@@ -117,8 +120,9 @@ def estimated(
     for k, name in enumerate(names):
         if name in lives.names:
             costs[:, k] = lives.criteria[:, lives.names.index(name)]
+    unknown, none = np.full(count, np.nan), np.zeros(0, dtype=np.int64)
     if duty is None or not count:
-        return Estimated(costs, Bare.unknown(count), np.zeros(0, dtype=np.int64), None)
+        return Estimated(costs, Bare.unknown(count), none, None, unknown)
     bare, share = Bare.unknown(count), 0.5 if RELIEVED in names else 1.0
     looked = best_by_ranks(lives.criteria, most[0])
     found = bare_of(space, lives.numbers[looked], duty, work, lambda part: progress(share * part))
@@ -128,13 +132,36 @@ def estimated(
         if name in (BARE, RELIEVED, ROOT):
             costs[:, k] = bare.root if name == ROOT else bare.te
     if RELIEVED not in names:
-        return Estimated(costs, bare, np.zeros(0, dtype=np.int64), None)
+        unknown[looked] = sliced_of(space, lives.numbers[looked], duty, work, lambda _part: None)
+        return Estimated(costs, bare, none, None, unknown)
     held = np.flatnonzero(np.isfinite(costs).all(axis=1))
     rows = held[best_by_fronts(costs[held], most[1])]
     relieved = relieved_of(space, lives.numbers[rows], duty, work, lambda part: progress(share + (1.0 - share) * part))
     costs[:, names.index(RELIEVED)] = np.nan
     costs[rows, names.index(RELIEVED)] = relieved.te
-    return Estimated(costs, bare, rows, relieved)
+    return Estimated(costs, bare, rows, relieved, unknown)
+
+
+def screened_rows(lives: Lives, known: Estimated, names: tuple[str, ...], count: int) -> Index:
+    """Which of the variants that no atlas contains are left to coarse finite elements, front after front.
+
+    Those with a transmission error by thin slices are compared by that and what formulas give, the others by formulas;
+    both have their share of the `count`.
+    """
+    other = np.flatnonzero(~np.isfinite(known.bare.te))
+    sliced = np.isfinite(known.sliced[other]) & (BARE in names)
+    by_slices, by_formulas = other[sliced], other[~sliced]
+    share = round(count * by_slices.size / max(other.size, 1))
+    if by_slices.size and by_formulas.size:
+        share = min(max(share, 1), max(count - 1, 1))
+    given = [k for k, name in enumerate(names) if name in lives.names or name == BARE]
+    costs = known.costs[by_slices].copy()
+    if BARE in names:
+        costs[:, names.index(BARE)] = known.sliced[by_slices]
+    return np.concatenate([
+        by_slices[best_by_fronts(costs[:, given], share)],
+        by_formulas[best_by_fronts(lives.criteria[by_formulas], count - share)],
+    ])  # fmt: skip
 
 
 def shown_rows(costs: Array, rows: Index, first: int, *, compared: bool) -> Index:

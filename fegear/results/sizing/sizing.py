@@ -1,7 +1,8 @@
 """Stage ``sizing``: from a requirement to a design.
 
 A funnel: all variants by formulas (limits, ISO 6336), the transmission error of all that live by an atlas of solved
-gears, or of some by coarse finite elements, the Pareto front, the best verified by finite elements.
+gears, or of some by coarse finite elements (helical ones in the order of thin slices), the Pareto front, the best
+verified by finite elements.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from fegear.base.errors import InputError
 from fegear.base.extras import absent
 from fegear.base.notes import neglecting
 from fegear.design.sizing.by_atlas import AtlasDuty, may_hold
-from fegear.design.sizing.front import best_by_fronts, pareto_front
+from fegear.design.sizing.front import pareto_front
 from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT, costs_of, sieve
 from fegear.design.sizing.limits import masses
 from fegear.design.sizing.rated import safeties
@@ -37,7 +38,7 @@ from fegear.results.sizing.basis import (
     space_of,
 )
 from fegear.results.sizing.by_fe import FromFE, by_finite_elements
-from fegear.results.sizing.estimated import Estimated, estimated, of_one, shown_rows
+from fegear.results.sizing.estimated import Estimated, estimated, of_one, screened_rows, shown_rows
 from fegear.results.sizing.placed import in_order, placed_present, with_shown
 from fegear.results.sizing.sizing_data import Excluded, SizedVariant, SizingData
 from fegear.results.sizing.sizing_inputs import SizingInputs
@@ -56,8 +57,9 @@ if TYPE_CHECKING:
 #: Shares of the time until all variants are enumerated, looked up in the atlas, and estimated by finite elements.
 _SIEVED, _LOOKED_UP, _SCREENED = 0.1, 0.5, 0.7
 
-#: Poisson's ratio of steel, for forecasts; seconds of a look-up of half the variants, and of a search for a relief.
-_POISSON, _LOOK_UP, _ROOT_STRESS, _SEARCH = 0.3, 1.5e-4, 3e-4, 8e-3
+#: Poisson's ratio of steel, for forecasts; seconds of a look-up of half the variants, of one with root stress, of a
+#: search for a relief, and of thin slices.
+_POISSON, _LOOK_UP, _ROOT_STRESS, _SEARCH, _SLICES = 0.3, 1.5e-4, 3e-4, 8e-3, 1e-4
 
 
 def _inputs(scene: Scene, _subject: str) -> SizingInputs:
@@ -66,18 +68,25 @@ def _inputs(scene: Scene, _subject: str) -> SizingInputs:
     duty, said = duty_of(part, asked, scene.folder)
     limits, space = limits_of(part, duty.material.density), space_of(part)
     said = (*said_of_present(part), *said)
-    if BY_FE & set(part.criteria) and absent("motion") and may_hold(space, duty.material.poisson_ratio):
+    if BY_FE & set(part.criteria) and absent("motion") and _asks(space, duty.material.poisson_ratio):
         said = (neglecting("Sizing: atlas of solved gears not used (pip install 'fegear[motion]')."), *said)
+    if len(part.tolerances.states) > 1 and not any(space.betas):
+        said = (neglecting("Sizing: tolerances count for helical variants only; all variants are spur."), *said)
     return SizingInputs(
         part, space, limits, duty, asked, _atlas_duty(part, space, duty), str(Path(scene.folder).absolute()), said
     )
+
+
+def _asks(space: SizingSpace, poisson_ratio: float) -> bool:
+    """Whether an atlas says anything of a variant, as a spur pair or by slices."""
+    return may_hold(space, poisson_ratio) or may_hold(space, poisson_ratio, helical=True)
 
 
 def _atlas_duty(part: SizingPart, space: SizingSpace, duty: SizingDuty) -> AtlasDuty | None:
     """What variants are looked up for; arrays need numba."""
     material = duty.material
     wanted = BY_FE & set(part.criteria) and part.estimated > 0
-    if not wanted or not may_hold(space, material.poisson_ratio) or absent("motion"):
+    if not wanted or not _asks(space, material.poisson_ratio) or absent("motion"):
         return None
     torques = (duty.pinion_torque,) if part.torques is None else tuple(part.torques.in_order.tolist())
     root = duty.pinion_torque if ROOT in part.criteria else 0.0
@@ -143,9 +152,7 @@ def _chosen(asked: SizingInputs, lives: Lives, known: Estimated) -> list[SizedVa
     part = asked.part
     shown = shown_rows(known.costs, known.known, max(part.verified_count, 1), compared=asked.with_fe)
     if asked.with_fe and not asked.relieved and part.screened:
-        other = np.flatnonzero(~np.isfinite(known.bare.te))
-        if other.size:
-            shown = np.concatenate([shown, other[best_by_fronts(lives.criteria[other], part.screened)]])
+        shown = np.concatenate([shown, screened_rows(lives, known, asked.criteria, part.screened)])
     return [_one_of_lives(asked, lives, known, int(row)) for row in np.unique(shown)]
 
 
@@ -235,7 +242,10 @@ def _fe(
     asked: SizingInputs, variants: Sequence[Variant], work: Work, span: tuple[float, float],
     verified: tuple[str, float] | None = None,
 ) -> tuple[FromFE, ...]:  # fmt: skip
-    return by_finite_elements(asked.asked, variants, work, asked.folder, _span(work, *span), verified=verified)
+    return by_finite_elements(
+        asked.asked, variants, work, asked.folder, _span(work, *span), verified=verified,
+        states=asked.part.tolerances.states,
+    )  # fmt: skip
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
@@ -245,15 +255,19 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     looked_up = 0
     if wanted and part.estimated and may_hold(space, _POISSON) and not absent("motion"):
         looked_up = min(space.count, part.estimated)
+    sliced = 0
+    if BARE in wanted and part.estimated and may_hold(space, _POISSON, helical=True) and not absent("motion"):
+        sliced = min(space.count, part.estimated)
     screened = part.screened if wanted and RELIEVED not in wanted else 0
     relieved = min(looked_up, part.relieved) if RELIEVED in part.criteria else 0
     slow = 4.0 if part.verified_width == "slices" else 40.0
     loads = 1 if part.torques is None else part.torques.in_order.size
-    seconds = forecasts.LIBRARIES + 3e-6 * space.count + screened * (0.6 if spur else 4.0)
+    states = len(part.tolerances.states)
+    seconds = forecasts.LIBRARIES + 3e-6 * space.count + screened * (0.6 if spur else 4.0 * states)
     seconds += (
         (_ROOT_STRESS * looked_up if ROOT in part.criteria else 0.0)
-        + loads * (_LOOK_UP * looked_up + _SEARCH * relieved)
-        + part.verified_count * (2.0 if spur else slow)
+        + loads * (_LOOK_UP * looked_up + _SEARCH * relieved + _SLICES * sliced)
+        + part.verified_count * (2.0 if spur else slow * states)
     )
     return Forecast(
         {"variants": space.count, "by_atlas": looked_up, "screened": screened, "verified": part.verified_count}, seconds

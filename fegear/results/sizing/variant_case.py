@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from fegear.base.effects import CORNER_CONTACT, HERTZ, NEIGHBOUR_COUPLING, RELIEF
+from fegear.base.effects import CORNER_CONTACT, HERTZ, MISALIGNMENT, NEIGHBOUR_COUPLING, RELIEF
 from fegear.case.text_file import toml_string
 
 if TYPE_CHECKING:
@@ -55,7 +55,13 @@ def _relief(variant: Variant, i: int) -> dict[str, Any]:
 
 
 def case_of_variant(
-    asked: Mapping[str, Any], variant: Variant, results: Sequence[str], *, width: str = "", tolerance: float = 0.0
+    asked: Mapping[str, Any],
+    variant: Variant,
+    results: Sequence[str],
+    *,
+    width: str = "",
+    tolerance: float = 0.0,
+    parallelism: float = 0.0,
 ) -> dict[str, Any]:
     """The case of a variant as plain tables.
 
@@ -68,6 +74,8 @@ def case_of_variant(
     width : str
         Tooth model of helical pairs, and tolerance of finite elements, where they are not the usual ones.
     tolerance : float
+    parallelism : float
+        Deviation of the driver's shaft over the face width [m].
     """
     helical = variant.helix_angle != 0.0
     pair: dict[str, Any] = {
@@ -81,6 +89,9 @@ def case_of_variant(
     effects: dict[str, Any] = {NEIGHBOUR_COUPLING.name: True, HERTZ.name: "load-dependent"}
     if variant.relief is not None:
         effects[RELIEF.name] = True
+    if parallelism:
+        pair["misalignment"] = {"driver": {"out_of_plane": _mm(parallelism)}}
+        effects[MISALIGNMENT.name] = True
     z, beta = variant.teeth, math.degrees(variant.helix_angle)
     return {
         "title": f"{z[0]}/{z[1]} teeth, m_n {variant.module * 1e3:.4g} mm, {beta:.4g} deg",
