@@ -15,7 +15,7 @@ import numpy as np
 
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks
 from fegear.contact.many.many_loaded import shares_at
-from fegear.fem.plane.influence import log_slope
+from fegear.fem.plane.contact_width import log_slope
 
 if TYPE_CHECKING:
     from fegear.atlas.atlas import Atlas
