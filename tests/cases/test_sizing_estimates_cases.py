@@ -211,7 +211,8 @@ def test_parts_are_put_together_in_the_order_of_their_variants(monkeypatch):
 def _sized(asked, monkeypatch):
     calls = []
 
-    def by_finite_elements(given, variants, work, folder, progress, *, verified=None):
+    def by_finite_elements(given, variants, work, folder, progress, *, verified=None, states):
+        assert states == ((0.0, 0.0),)
         calls.append((list(variants), verified))
         return tuple(
             by_fe.FromFE(1e-6 * (1.0 + one.profile_shift[0]) * (0.5 if one.relief else 1.0), 1e-9, 2e8, 1e6)

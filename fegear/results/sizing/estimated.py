@@ -7,7 +7,7 @@ are left to coarse finite elements, of helical ones the best by thin slices of s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,14 +45,14 @@ class Estimated:
     relieved : Relieved
         Of these.
     sliced : ndarray, shape (N,)
-        Transmission error of helical ones by thin slices, for an order only; NaN of others.
+        Transmission error of helical ones by thin slices, for an order only; NaN of others, empty where none is wanted.
     """
 
     costs: Array
     bare: Bare
     rows: Index
     relieved: Relieved | None
-    sliced: Array
+    sliced: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def known(self) -> Index:
