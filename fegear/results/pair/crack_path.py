@@ -103,7 +103,7 @@ class Path:
     k_1_max: float = 0.0
     k_1_min: float = shown(
         "MPa.m^(1/2)", "minimum K_I of the crack of the case over the mesh (negative: pressed together)",
-        name="K_I_min", default=0.0,
+        name="K_I_min_start", default=0.0,
     )  # fmt: skip
 
 
