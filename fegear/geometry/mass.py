@@ -25,8 +25,7 @@ from fegear.geometry.fillet_curves import ArcsFillet
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_side import InvoluteSide
 
-#: Gauss points of a panel; panels of a curve are halved until both integrals stay within this share of themselves.
-_POINTS = np.polynomial.legendre.leggauss(12)
+#: Panels of a curve are halved until both integrals stay within this share of themselves; no more than so many.
 _CONVERGED, _PANELS = 1e-12, 256
 
 
@@ -80,7 +79,7 @@ class MassProperties:
 
 def _along(curve: Curve, panels: int) -> Array:
     """Integrals of p.n / 2 and |p|^2 p.n / 4 along a curve, shape (2,)."""
-    nodes, weights = _POINTS
+    nodes, weights = np.polynomial.legendre.leggauss(12)  # here: a plan that asks for no mass loads no polynomials
     edges = np.linspace(curve.start, curve.end, panels + 1)
     half = 0.5 * np.diff(edges)[:, None]
     at = (0.5 * (edges[:-1] + edges[1:])[:, None] + half * nodes).ravel()
