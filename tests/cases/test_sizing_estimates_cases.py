@@ -223,6 +223,12 @@ def _sized(asked, monkeypatch):
     scene = build_scene({"results": ["sizing"], "sizing": asked}, "sized", Path())
     results = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache(), executor=Executor(here=True))
     (table,) = [one for one in results.tables if one.name == "sizing"]
+    (lines,) = [figure.made() for figure in results.figures if figure.name == "sizing_parallel"]
+    (panel,) = lines.panels
+    shares = np.array([one.y for one in panel.items])
+    assert shares.shape[0] == table.columns[0].si.size  # a line for each variant, each quantity from 0 to 1
+    assert (np.nanmin(shares, axis=0) == 0.0).all()
+    assert np.nanmax(shares, axis=0) == pytest.approx(1.0)
     return calls, {c.name: c.si for c in table.columns}, {v.name: v.si for v in results.values}
 
 
