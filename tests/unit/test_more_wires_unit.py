@@ -43,10 +43,10 @@ def test_the_largest_change_of_a_load_is_of_pairs_with_one_number(turned):
         grid = SimpleNamespace(contacts=SimpleNamespace(number=np.array(numbers)))
         return SimpleNamespace(grid=grid, loads=np.array(loads, dtype=float)[:, None, None])
 
-    less, more = state([0, 1], [60.0, 40.0]), state([-1, 0, 1, 2], [7.0, 50.0, 35.0, 8.0])
+    less, more = state([0, 1], [60.0, 40.0]), state([-1, 0, 1, 2], [50.0, 20.0, 15.0, 15.0])
     after, before = (less, more) if turned else (more, less)
     change = _load_change(lambda x: [after, before], np.zeros(1))
-    assert change.tolist() == [[10.0 if turned else -10.0]]
+    assert change.tolist() == [[-50.0 if turned else 50.0]]  # of the pair that the other state does not have
 
 
 @pytest.mark.parametrize(("cycles", "duration", "averaged"), [(3, 6.0, 2), (3, 3.0, 1), (4, 1.0, 1)])
@@ -294,3 +294,39 @@ def test_faces_of_cracks_that_may_close_are_pressed_on_each_other(monkeypatch):
     assert own({}).y.tolist() == curve.y.tolist()
     radius = np.clip(np.hypot(4.0, curve.x), 4.3, 4.9)
     assert own({2: "crack"}).y == pytest.approx(curve.y - 0.2 * radius)
+
+
+def test_sums_of_shifts_vary_slower_than_the_pinions():
+    from fegear.case.sizing import SizingPart
+    from fegear.results.sizing.basis import space_of
+
+    space = space_of(SizingPart.model_validate({
+        "power": "2.9 kW", "speed": "725 rpm", "ratio": 2.5, "ratio_tolerance": 0.2, "centre_distance": ["60 mm", "160 mm"],
+        "strength": {"material": "18CrNiMo7-6"}, "operation": {"life": "5000 h"}, "width_ratios": [0.6],
+        "normal_modules": ["2 mm"], "pinion_teeth": [18, 19], "pinion_shifts": [0.0, 0.3, 0.6], "shift_sums": [-0.2, 0.4],
+    }))  # fmt: skip
+    shift = space.pairs(np.arange(6)).profile_shift
+    assert shift[0] == pytest.approx([0.0, 0.3, 0.6] * 2)
+    assert shift.sum(axis=0) == pytest.approx([-0.2] * 3 + [0.4] * 3)
+
+
+def test_what_two_reliefs_take_off_is_found_again_by_amount_and_length():
+    from fegear.design.tip_relief import grindable
+
+    found = next(one for one in vars(grindable).values() if hasattr(one, "removal_error"))
+    ends = (SimpleNamespace(power=1.0, amount=10e-6), SimpleNamespace(power=2.0, amount=4e-6))
+    error = found.removal_error.fget(SimpleNamespace(driver=ends[0], driven=ends[1]))
+    assert error == pytest.approx(1e-6 * (2.0 * 10e-6 + 3.0 * 4e-6))
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_coarser_settings_of_a_solid_have_longer_edges_and_fewer_waves(factor):
+    from fegear.fem.solid.settings import SolidSettings
+
+    one = SolidSettings(least_degree=8, wave_reach=4.0, fewest_waves=6.0, waves_per_module=3.0, band_half_width=0.1)
+    other = one.scaled(factor)
+    assert other.section == one.section.scaled(factor)
+    assert (other.waves_per_module, other.wave_reach, other.fewest_waves) == (3.0 / factor, 4.0 / factor, 6.0 / factor)
+    assert other.least_degree == round(8 / factor)
+    assert other.band_half_width == pytest.approx(0.1 * math.sqrt(factor))
+    assert SolidSettings(band_half_width=0.4).scaled(2.0).band_half_width == 0.5
