@@ -145,6 +145,7 @@ def _path(**changes):
         "stopped": "surface", "fracture": None, "length": np.array([1e-3, 2e-3]), "x": np.array([2e-3, 3e-3]),
         "y": np.array([25e-3, 24.5e-3]), "k_1": np.array([4e6, 5e6]), "k_2": np.zeros(2), "turn": np.zeros(2),
         "load_radius": np.zeros(2), "stiffness": np.array([4e8, 3e8]), "stiffness_loss": np.array([0.0, 0.25]),
+        "tip_error": np.zeros(2),
     }  # fmt: skip
     gear = Gear(TOOTH, 3e-3, 3e-3 * bore(1.0), 0.02)
     return crack_path.Path("pinion", gear, 4, GrowingCrack(**fields | changes), 2e-3, None)

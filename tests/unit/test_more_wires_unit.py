@@ -202,9 +202,9 @@ def test_a_crack_of_either_gear_is_followed_under_the_loads_of_its_own_tooth(mon
     monkeypatch.setattr(crack_path, "over_revolution", lambda *given: given)
     monkeypatch.setattr(
         crack_path, "crack_in_mesh",
-        lambda *given: asked.append(given) or SimpleNamespace(gear_angle=angle, load=load),
+        lambda *given: asked.append(given) or SimpleNamespace(gear_angle=angle, load=load, k_1=0.1 * load - 7.0),
     )  # fmt: skip
-    found = SimpleNamespace(length=np.array([1e-3, 4e-3]), cycles_to_fracture=5e6)
+    found = SimpleNamespace(length=np.array([1e-3, 4e-3]), cycles_to_fracture=5e6, cycles_to_fracture_error=2e5)
     monkeypatch.setattr(crack_path, "growing_crack", lambda *given, **more: calls.append((given, more)) or found)
     engagement = SimpleNamespace(compliance=SimpleNamespace(face_width=0.02))
     loaded = SimpleNamespace(engagement=engagement, nominal=500.0, pair=pair)
@@ -222,6 +222,7 @@ def test_a_crack_of_either_gear_is_followed_under_the_loads_of_its_own_tooth(mon
         first, second = data.paths
         assert (first.gear, first.tooth, first.final_length, first.cycles) == ("a", 3, 4e-3, 5e6)
         assert (second.gear, second.tooth) == ("b", 4)
+        assert (first.cycles_error, first.k_1_max, first.k_1_min) == (2e5, 23.0, -7.0)
     assert [one[2] for one in asked[:2]] == ["driver", "driven"]
     at_pitch = math.tan(pair.working_pressure_angle)
     for (call, more), way in zip(calls[:2], (1.0, -1.0), strict=True):
@@ -301,9 +302,11 @@ def test_sums_of_shifts_vary_slower_than_the_pinions():
     from fegear.results.sizing.basis import space_of
 
     space = space_of(SizingPart.model_validate({
-        "power": "2.9 kW", "speed": "725 rpm", "ratio": 2.5, "ratio_tolerance": 0.2, "centre_distance": ["60 mm", "160 mm"],
-        "strength": {"material": "18CrNiMo7-6"}, "operation": {"life": "5000 h"}, "width_ratios": [0.6],
-        "normal_modules": ["2 mm"], "pinion_teeth": [18, 19], "pinion_shifts": [0.0, 0.3, 0.6], "shift_sums": [-0.2, 0.4],
+        "power": "2.9 kW", "speed": "725 rpm", "ratio": 2.5, "ratio_tolerance": 0.2,
+        "centre_distance": ["60 mm", "160 mm"], "strength": {"material": "18CrNiMo7-6"}, 
+        "operation": {"life": "5000 h"}, "width_ratios": [0.6],
+        "normal_modules": ["2 mm"], "pinion_teeth": [18, 19],
+        "pinion_shifts": [0.0, 0.3, 0.6], "shift_sums": [-0.2, 0.4],
     }))  # fmt: skip
     shift = space.pairs(np.arange(6)).profile_shift
     assert shift[0] == pytest.approx([0.0, 0.3, 0.6] * 2)
