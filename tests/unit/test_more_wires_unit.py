@@ -303,7 +303,7 @@ def test_sums_of_shifts_vary_slower_than_the_pinions():
 
     space = space_of(SizingPart.model_validate({
         "power": "2.9 kW", "speed": "725 rpm", "ratio": 2.5, "ratio_tolerance": 0.2,
-        "centre_distance": ["60 mm", "160 mm"], "strength": {"material": "18CrNiMo7-6"}, 
+        "centre_distance": ["60 mm", "160 mm"], "strength": {"material": "18CrNiMo7-6"},
         "operation": {"life": "5000 h"}, "width_ratios": [0.6],
         "normal_modules": ["2 mm"], "pinion_teeth": [18, 19],
         "pinion_shifts": [0.0, 0.3, 0.6], "shift_sums": [-0.2, 0.4],
