@@ -168,6 +168,22 @@ def test_the_largest_stress_of_a_fillet_is_that_of_its_smooth_curve_below_the_co
     assert 0.6 <= rough < 0.66
 
 
+def test_a_peak_is_narrowed_about_the_vertex_of_a_parabola():
+    for top in (0.4, 1.1, 1.6):
+        x = np.array([0.0, 1.0, 2.0])
+        f = 5.0 - (x - top) ** 2
+        place = over_fillets.vertex(x, f, -10.0)
+        assert place == pytest.approx(top, rel=1e-12)
+        over_fillets.narrowed(x, f, place, 5.0)
+        assert x[1] == place
+        assert x[0] <= place <= x[2]
+        assert f[1] == 5.0
+    x, f = np.array([0.0, 1.0, 2.0]), np.array([1.0, 5.0, 1.0])
+    assert abs(over_fillets.vertex(x, f, -10.0) - 1.0) == pytest.approx(0.04)  # away from what is known
+    over_fillets.narrowed(x, f, 1.3, 4.0)
+    assert x.tolist() == [0.0, 1.0, 1.3]
+
+
 def test_pairs_that_are_looked_up_in_parts_stand_in_their_order(many, monkeypatch):
     """What is asked of each part is recorded: the numbers themselves are those of the tests above."""
     three = ManySpurPairs(*(np.concatenate([a, a[..., :1]], axis=-1) for a in vars(many).values()))

@@ -333,3 +333,31 @@ def test_coarser_settings_of_a_solid_have_longer_edges_and_fewer_waves(factor):
     assert other.least_degree == round(8 / factor)
     assert other.band_half_width == pytest.approx(0.1 * math.sqrt(factor))
     assert SolidSettings(band_half_width=0.4).scaled(2.0).band_half_width == 0.5
+
+
+def test_lines_through_points_beside_a_kink_meet_in_it_and_points_in_one_place_have_no_line():
+    from fegear.contact.fourier import Panels
+
+    def above(x):
+        x = np.array(x)
+        values = np.where(x < 0.1, 1.0 + x, 1.1 - 2.0 * (x - 0.1))
+        points = Panels(x, np.ones(x.size), 4.0, np.zeros(1), kinks=True)
+        return points._kink_above(values, 2)
+
+    assert above([-2.0, -1.0, 0.0, 1.0, 2.0]) == pytest.approx(0.1)
+    for x in ([-1.0, -1.0, 0.0, 1.0, 2.0], [-2.0, -1.0, 0.0, 1.0, 1.0]):
+        assert above(x) == math.inf
+
+
+def test_what_a_gear_answers_for_each_quantity():
+    from fegear.studies.cost.answers import FiniteElements
+
+    known = SimpleNamespace(
+        self_compliance=lambda r, b: r + b, neighbour=lambda k, p, q: k * np.outer(p, q),
+        largest_root_stress=lambda k, side, r: (7.0 * r, None),
+    )  # fmt: skip
+    radii, answers = np.array([1.0, 2.0]), FiniteElements({"pinion": known})
+    asked = SimpleNamespace(gear="pinion", radii=radii, half_width=0.5)
+    assert answers.of_gear("c_0", asked).tolist() == [1.5, 2.5]
+    assert answers.of_gear("c_1", asked).tolist() == [1.0, 4.0]
+    assert answers.of_gear("root-stress", asked).tolist() == [7.0, 14.0]
