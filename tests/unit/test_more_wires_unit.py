@@ -114,8 +114,8 @@ def test_neighbours_of_fourth_order_err_no_less_than_usual_and_no_more_than_it()
     """The least is a share of the usual difference, which grows with the width of the pressure up to a limit."""
     from fegear.fem.plane import estimate
 
-    def least(order, share):
-        one = SimpleNamespace(
+    def least(order, share, beside=0.0):
+        one = SimpleNamespace(_least_beside=beside,
             _neighbour_at_samples=lambda k: np.full((99, 99), 2.0), common_errors=(0.0, 0.5),
             _for_width=lambda *_: share, fine=SimpleNamespace(flank=SimpleNamespace(order=order)),
         )  # fmt: skip
@@ -123,6 +123,7 @@ def test_neighbours_of_fourth_order_err_no_less_than_usual_and_no_more_than_it()
         return (kept - 0.5) / 2.0
 
     most = estimate._MOST_USUAL_NEIGHBOUR
+    assert least(4, 0.5 * most, 1e7) == pytest.approx(0.5 * (10.0 - 0.5))  # a millionth of what the gear turns
     assert least(4, 0.5 * most) == pytest.approx(0.5 * most)
     assert least(4, 2.0 * most) == pytest.approx(most)
     assert least(2, 0.5 * most) == pytest.approx(most)
