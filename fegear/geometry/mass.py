@@ -77,9 +77,16 @@ class MassProperties:
         return self.transverse_inertia + self.mass * self.centre_of_gravity**2
 
 
+@lru_cache(maxsize=1)
+def _points() -> tuple[Array, Array]:
+    """Gauss points of a panel, when they are asked for: a plan that asks for no mass loads no polynomials."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    return nodes, weights
+
+
 def _along(curve: Curve, panels: int) -> Array:
     """Integrals of p.n / 2 and |p|^2 p.n / 4 along a curve, shape (2,)."""
-    nodes, weights = np.polynomial.legendre.leggauss(12)  # here: a plan that asks for no mass loads no polynomials
+    nodes, weights = _points()
     edges = np.linspace(curve.start, curve.end, panels + 1)
     half = 0.5 * np.diff(edges)[:, None]
     at = (0.5 * (edges[:-1] + edges[1:])[:, None] + half * nodes).ravel()
