@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.case.flank_design import FlankDesignPart
     from fegear.case.gauge import GaugePart
     from fegear.case.planetary import PlanetaryPart
+    from fegear.case.rack import RackAndPinionPart
     from fegear.case.shaft import BearingPart, ShaftInSpacePart
     from fegear.case.sizing import SizingPart
     from fegear.case.train import TrainPart
@@ -40,6 +41,7 @@ else:  # tables that few cases have
     FlankDesignPart = Later("fegear.case.flank_design", "FlankDesignPart")
     GaugePart = Later("fegear.case.gauge", "GaugePart")
     PlanetaryPart = Later("fegear.case.planetary", "PlanetaryPart")
+    RackAndPinionPart = Later("fegear.case.rack", "RackAndPinionPart")
     BearingPart = Later("fegear.case.shaft", "BearingPart")
     ShaftInSpacePart = Later("fegear.case.shaft", "ShaftInSpacePart")
     SizingPart = Later("fegear.case.sizing", "SizingPart")
@@ -116,6 +118,9 @@ class Case(Part):
     compound: dict[str, Table[CompoundPart]] = Field(
         default_factory=dict,
         description="Planetary gear sets of any shafts, planets and meshes (stepped, Ravigneaux, Simpson), by name.",
+    )
+    rack: dict[str, Table[RackAndPinionPart]] = Field(
+        default_factory=dict, description="Racks, each with the pinion that rolls on it, by name."
     )
     shaft: dict[str, Table[ShaftInSpacePart]] = Field(
         default_factory=dict,

@@ -63,6 +63,8 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     for name, compound in case.compound.items():
         for gear in () if compound.search is None else compound.search.teeth:
             yield f"compound.{name}.search.teeth", gear, "gear"
+    for name, rack in case.rack.items():
+        yield f"rack.{name}.pinion", rack.pinion, "gear"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

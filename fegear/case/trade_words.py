@@ -63,7 +63,7 @@ _LETTERS = str.maketrans({
     "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "α": "alpha", "β": "beta", "ρ": "rho", "ν": "nu", "σ": "sigma",
     "-": "", " ": "", "_": "", "'": "",
 })  # fmt: skip
-_RACK = "racks are not supported; use a gear with 1000 teeth as an approximation"
+_RACK = "a rack has a table of its own, with its pinion: [rack.NAME]"
 _STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
 _DOUBLE = "the gears are the half at end I, with its hand and face width"
 _BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
@@ -218,7 +218,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("tip_contact premature_contact off_line_contact vorzeitiger_eingriff", ("effects.corner_contact", "effects"), ""),
     ("gravity weight_of_gears", (), "weight is not included; specify forces as shaft.NAME.loads"),
     # what is not there
-    ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", (), _RACK),
+    ("rack_gear gear_rack rack_and_pinion zahnstange rack_teeth", ("rack.NAME",), _RACK),
     ("herringbone double_helical double_helix pfeilverzahnung pfeilrad", ("pair.NAME.double_helical",), _DOUBLE),
     ("gap_width groove_width nutbreite", ("pair.NAME.double_helical.gap",), ""),
     ("apex apex_error apex_point pfeilspitze", ("pair.NAME.double_helical.apex_offset",), ""),

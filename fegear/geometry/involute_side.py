@@ -57,7 +57,7 @@ def check_given(tooth: GivenNumbers) -> None:
         raise GeometryError("helix_angle", angle, "must be between 0 and 60 deg", "the hand defines the sign")
     fewest = max(3, math.ceil(5.0 * math.cos(tooth.helix_angle) ** 3 - 1e-9))  # as many as five of a spur gear
     if not fewest <= z <= 1000:
-        remedy = "model a rack as a gear with many teeth"
+        remedy = "a rack has a table of its own: [rack.NAME]"
         raise GeometryError("teeth", z, f"must be between {fewest} and 1000", remedy)
     object.__setattr__(tooth, "teeth", int(z))
     for name in ("profile_shift", "thickness_allowance", "tip_rounding", "tip_chamfer"):

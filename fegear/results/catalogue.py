@@ -279,6 +279,17 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "numbers of teeth for a wanted ratio, with assembly, clearance and phasing of the planets",
               internal=True, table="compound.NAME"),
     ),
+    "Racks": (
+        Entry("rack-solution", "rack.solved_rack.RACK_SOLUTION", "Influence functions of a rack (2D)"),
+        Entry("rack-geometry", "rack.rack_geometry.RACK_GEOMETRY", "Geometry of rack and pinion", ("rack-geometry",),
+              "rack and pinion in mesh: contact ratio, path, backlash, clearances, stroke; drawing", table="rack.NAME"),
+        Entry("rack-stiffness", "rack.rack_stiffness.RACK_STIFFNESS", "Stiffness of the teeth of a rack",
+              ("rack-stiffness",),
+              "compliance and root stress of rack teeth at both ends and in the middle", table="rack.NAME"),
+        Entry("rack-transmission-error", "rack.rack_stroke.RACK_TRANSMISSION_ERROR",
+              "Transmission error of a rack over the stroke", ("rack-transmission-error",),
+              "load sharing, transmission error, root stress of rack and pinion over the stroke", table="rack.NAME"),
+    ),
     "Shafts and bearings": (
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,
               internal=True),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["text", "toml", "number", "choice", "switch", "several"]
 #: Tables that carry names of the user's choice.
-NAMED = ("gear", "pair", "shaft", "bearing", "transmissibility", "planetary", "compound", "gauge", "encoders")
+NAMED = ("gear", "pair", "shaft", "bearing", "transmissibility", "planetary", "compound", "rack", "gauge", "encoders")
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ COSTLY = {
     "gear-with-its-width", "helical", "helical-misalignment", "design",
     "load-over-the-face", "measured-root-strain", "measured-transmission-error", "mesh-as-fmu", "mesh-in-adams",
     "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python", "python-formulas",
-    "python-mechanics", "python-output", "python-planetary", "python-speeds", "python-wide-pair", "several-meshes",
+    "python-mechanics", "python-output", "python-planetary", "python-speeds", "python-wide-pair", "rack-and-pinion", "several-meshes",
     "relief-for-torques", "relieve-a-helical-pair", "results", "scuffing-micropitting-loss", "stiffness-table",
     "studies-and-output",
     "sweep-on-a-cluster",

@@ -111,7 +111,7 @@ TYPED = {
     "gear.a.alpha_t": '"transverse_pressure_angle"',
     "gear.a.Flankenspiel": "use pair.NAME.normal_backlash",
     "gear.a.Kopfrücknahme": '"relief"',
-    "gear.a.Zahnstange": "racks are not supported; use a gear with 1000 teeth as an approximation",
+    "gear.a.Zahnstange": "a rack has a table of its own, with its pinion: [rack.NAME]",
     "gear.a.Kegelrad": "only cylindrical gears on parallel axes are supported",
     "gear.a.rack.rhofP": '"tip_radius" (in modules)',
     "gear.a.rack.haP": '"addendum" (in modules)',
@@ -201,7 +201,7 @@ def test_no_word_hides_a_key_of_its_own_table():
     [
         ({"gear": {"a": {"teeth": 30, "normal_module": "1 mm", "helix_angle": "30 deg", "hand": "double"}}},
          "set pair.NAME.double_helical; the gears are the half at end I, with its hand and face width"),
-        ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "model a rack as a gear with many teeth"),
+        ({"gear": {"a": {"teeth": 1001, "module": "1 mm"}}}, "a rack has a table of its own"),
         ({"planetary": {"P": {"sun": "a", "planet": ["a", "b"], "torque": "1 N m"}}},
          "stepped planets are groups with two gears in compound.NAME.planet"),
     ],

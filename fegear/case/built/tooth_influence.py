@@ -46,6 +46,8 @@ def needed_reach(scene: Scene, name: str) -> int:
             extra = 1 if scene.case.effects.corner_contact else 0
             # A root's stress is followed from a base pitch before contact to one after it.
             reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) + extra, scene.gears[name].teeth // 2 - 1))
+    if any(rack.pinion == name for rack in scene.case.rack.values()):
+        reach = max(reach, min(2, scene.gears[name].teeth // 2 - 1))
     return reach
 
 

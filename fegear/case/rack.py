@@ -1,0 +1,104 @@
+"""``[rack.NAME]``: a rack, how it is held, and the pinion that rolls on it.
+
+It has a table of its own, for it is no gear: it has no bore, no circles and two ends. What it does not say of its teeth
+it has from the pinion.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.gear_material import MaterialPart
+from fegear.case.gear_tool import RackPart
+from fegear.case.part import (
+    Length,
+    LengthOrZero,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveTorque,
+    Table,
+    refuse,
+)
+
+if TYPE_CHECKING:
+    from fegear.geometry.toothed_rack import RackPins
+
+#: Keys of pins.
+_OF_PINS = ("pin_every", "first_pin", "pin_width")
+
+
+class RackAndPinionPart(Part):
+    """A rack and the pinion on it."""
+
+    pinion: str = Field(description="Pinion: an external spur gear of this case; its module is that of the rack.")
+    teeth: Annotated[int, Field(ge=1, le=1000)] = Field(description="Number of teeth of the rack.")
+    reference_height: PositiveLength = Field(
+        description="Height of the reference line above the back of the rack (catalogues: height of pitch line, h_0)."
+    )
+    face_width: PositiveLength | None = Field(default=None, description="Face width. Default: that of the pinion.")
+    basic_rack: Table[RackPart] | None = Field(
+        default=None,
+        description="Profile of the rack teeth: addendum, dedendum and root radius, by name or in modules. Default: "
+        "that of the pinion.",
+    )
+    thickness_allowance: LengthOrZero = Field(
+        default=0.0, description="Reduction of the tooth thickness on the reference line."
+    )
+    tip_radius_rounding: LengthOrZero = Field(default=0.0, description="Tip rounding radius; 0: sharp tip edge.")
+    tip_chamfer: LengthOrZero = Field(default=0.0, description="Height of the tip chamfer; 0: none.")
+    material: Table[MaterialPart] | None = Field(default=None, description="Material. Default: that of the pinion.")
+    support: Literal["back", "pins"] = Field(
+        default="back", description="Fixed over all of its `back`, or on `pins` (bolts, dowels) at its back."
+    )
+    pin_every: Annotated[int, Field(ge=1, le=1000)] | None = Field(
+        default=None, description="Number of teeth from one pin to the next. Default: 10."
+    )
+    first_pin: Annotated[int, Field(ge=1, le=1000)] | None = Field(
+        default=None, description="Number of the tooth above the first pin, from 1. Default: half of `pin_every`."
+    )
+    pin_width: PositiveLength | None = Field(
+        default=None, description="Length of the back that each pin fixes, below one tooth. Default: 2 modules."
+    )
+    distance: PositiveLength | None = Field(
+        default=None,
+        description="Distance from the axis of the pinion to the reference line of the rack. Default: from `backlash`.",
+    )
+    backlash: Length | None = Field(
+        default=None,
+        description="Backlash as travel of the rack, pinion fixed; alternatively `distance`. Default: 0 (for "
+        "`distance` not specified).",
+    )
+    force: PositiveForce | None = Field(
+        default=None, description="Force along the rack; alternatively `torque`. Required for results under load."
+    )
+    torque: PositiveTorque | None = Field(
+        default=None, description="Torque on the pinion, force x reference radius; alternatively `force`."
+    )
+    positions: Annotated[int, Field(ge=8, le=400)] = Field(
+        default=32, description="Number of positions per base pitch over the stroke."
+    )
+
+    @model_validator(mode="after")
+    def _once(self) -> Self:
+        for one, other in (("distance", "backlash"), ("force", "torque")):
+            if getattr(self, one) is not None and getattr(self, other) is not None:
+                raise refuse(f"contradicts {one}", f"specify either {one} or {other}", key=other, value="(given)")
+        if self.support == "back":
+            given = next((key for key in _OF_PINS if getattr(self, key) is not None), None)
+            if given is not None:
+                raise refuse("is used with pins only", f'set support = "pins", or remove {given}', key=given,
+                             value="(given)")  # fmt: skip
+        return self
+
+    def pins(self, module: float) -> RackPins | None:
+        """The pins of a rack of this module [m]; None where its back is fixed."""
+        from fegear.geometry.toothed_rack import RackPins
+
+        if self.support == "back":
+            return None
+        every = 10 if self.pin_every is None else self.pin_every
+        first = min(max(every // 2, 1), self.teeth) if self.first_pin is None else self.first_pin
+        return RackPins(every, first - 1, 2.0 * module if self.pin_width is None else self.pin_width)

@@ -1,0 +1,249 @@
+"""Stage ``rack-transmission-error``: loads, transmission error and root stress over the stroke of a rack."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.notes import neglecting
+from fegear.base.printed import figures, rounded
+from fegear.base.shown import shown
+from fegear.case.built.rack import loaded_rack_inputs, racks
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
+from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.number import Number, exact
+from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.stage import Stage
+from fegear.results import forecasts
+from fegear.results.forecasts import HERTZ, PATCH, RING
+from fegear.results.gear.solved_gear import solution_of
+from fegear.results.rack.solved_rack import compliances, needs_rack, rack_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.rack import RackInputs
+    from fegear.case.reading import Scene
+    from fegear.contact.rack.over_stroke import Stroke
+    from fegear.engine.sheet.seen import Seen
+    from fegear.engine.stage import Forecast, Upstream, Work
+
+
+@dataclass(frozen=True)
+class OverStroke:
+    """Positions of the stroke at which teeth are in contact, shape (N,)."""
+
+    travel: Array = shown("mm", "travel of the rack from the first contact of its first tooth")
+    tooth: NDArray[np.int64] = shown("", "tooth of the rack that came into contact last, from 1")
+    error: Array = shown("um", "transmission error: travel of the rack due to the load", name="te")
+    pairs: NDArray[np.int64] = shown("", "tooth pairs in contact", name="pairs_in_contact")
+    share: Array = shown("", "largest share of the load on one tooth pair", name="largest_share")
+    tension: Array = shown("MPa", "root stress of the pinion, tension side", name="pinion_root_stress")
+
+
+@dataclass(frozen=True)
+class OverTeeth:
+    """Teeth of the rack over the stroke, shape (teeth,)."""
+
+    number: NDArray[np.int64] = shown("", "tooth of the rack, from 1", name="tooth")
+    tension: Array = shown("MPa", "root stress, tension side: maximum over the stroke", name="root_tension")
+    compression: Array = shown("MPa", "root stress, compression side: minimum over the stroke", name="root_compression")
+
+
+@dataclass(frozen=True)
+class StrokeNumbers:
+    """What the stroke comes to; of all loads along the rack."""
+
+    mean: float = shown("um", "mean transmission error in the middle of the rack (travel)", name="te_mean")
+    peak_to_peak: float = shown(
+        "um", "peak-to-peak transmission error in the middle of the rack (travel)", name="te_peak_to_peak"
+    )
+    largest: float = shown("um", "maximum transmission error over the stroke (travel)", name="te_max")
+    stiffness: float = shown("N/um", "mean mesh stiffness along the rack, in its middle", name="mesh_stiffness")
+    pinion: float = shown("MPa", "maximum root stress of the pinion, tension side", name="pinion_root_stress")
+    middle: float = shown(
+        "MPa", "maximum root stress in the middle of the rack, tension side", name="middle_root_stress"
+    )
+    rack: float = shown("MPa", "maximum root stress of all teeth of the rack, tension side", name="rack_root_stress")
+
+
+@dataclass(frozen=True)
+class RackStroke:
+    """A loaded rack and pinion over the stroke.
+
+    Parameters
+    ----------
+    positions : OverStroke
+    teeth : OverTeeth
+    numbers, errors : StrokeNumbers
+        Errors are not numbers where they are not estimated.
+    root_stress, contact_stress : float
+        Nominal ones of ISO 6336 with z -> infinity [Pa].
+    """
+
+    positions: OverStroke
+    teeth: OverTeeth
+    numbers: StrokeNumbers
+    errors: StrokeNumbers
+    root_stress: float = shown(
+        "MPa", "nominal root stress of the rack to ISO 6336-3 (z -> infinity, all K factors 1)", name="sigma_F0"
+    )
+    contact_stress: float = shown(
+        "MPa", "nominal contact stress to ISO 6336-2 (u -> infinity, all K factors 1)", name="sigma_H0"
+    )
+
+
+def _numbers(stroke: Stroke, force: float) -> StrokeNumbers:
+    middle = stroke.error[stroke.middle]
+    x = stroke.travel[stroke.middle]
+    mean = float(np.trapezoid(middle, x) / (x[-1] - x[0]))
+    teeth = stroke.rack_tension
+    return StrokeNumbers(
+        mean, float(np.nanmax(middle) - np.nanmin(middle)), float(np.nanmax(stroke.error)), force / mean,
+        float(np.nanmax(stroke.pinion_tension)), float(teeth[(teeth.size - 1) // 2]), float(teeth.max()),
+    )  # fmt: skip
+
+
+def _sampling(stroke: Stroke) -> float:
+    """By how much every second position changes the peak to peak in the middle [m]."""
+    middle = stroke.error[stroke.middle]
+    fewer = [middle[first::2] for first in (0, 1)]
+    return float(np.ptp(middle) - max(np.ptp(one) for one in fewer))
+
+
+def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
+    from fegear.contact.rack.over_stroke import over_stroke
+    from fegear.contact.rack.rack_contacts import RackContacts
+    from fegear.formulas.iso6336.rack_limit import nominal_contact_stress, nominal_root_stress_of_rack
+
+    pair, force = asked.pair, asked.force
+    fine, coarse = compliances(pair, rack_of(upstream, asked.name), solution_of(upstream, asked.pinion))
+    found = RackContacts(pair)
+    stroke = over_stroke(fine, found, force, asked.positions)
+    work.progress(0.6)
+    numbers = _numbers(stroke, force)
+    names = StrokeNumbers.__dataclass_fields__
+    errors = StrokeNumbers(*(math.nan for _ in names))
+    if coarse is not None:
+        other = _numbers(over_stroke(coarse, found, force, asked.positions), force)
+        off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
+        off["peak_to_peak"] += _sampling(stroke)
+        errors = StrokeNumbers(**off)
+    there = ~np.isnan(stroke.error)
+    tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
+    count = np.arange(1, pair.rack.teeth + 1)
+    return RackStroke(
+        OverStroke(
+            stroke.travel[there], tooth[there] + 1, stroke.error[there], stroke.pairs[there],
+            stroke.largest_share[there], stroke.pinion_tension[there],
+        ),
+        OverTeeth(count, stroke.rack_tension, stroke.rack_compression),
+        numbers, errors, nominal_root_stress_of_rack(pair, force), nominal_contact_stress(pair, force),
+    )  # fmt: skip
+
+
+def _answer(seen: Seen) -> Iterator[str]:
+    data, error = seen.data.numbers, seen.data.errors
+
+    def said(name: str, scale: float) -> str:
+        return rounded(getattr(data, name) * scale, getattr(error, name) * scale)
+
+    yield (
+        f"Rack {seen.name}: {figures(seen.asked.force)} N moves it by {said('mean', 1e6)} µm (mesh stiffness "
+        f"{said('stiffness', 1e-6)} N/µm), {said('peak_to_peak', 1e6)} µm peak to peak over a pitch."
+    )
+    worst = int(np.argmax(seen.data.teeth.tension)) + 1
+    yield (
+        f"Maximum root stress: pinion {said('pinion', 1e-6)} MPa, rack {said('middle', 1e-6)} MPa in the middle, "
+        f"{said('rack', 1e-6)} MPa at tooth {worst}."
+    )
+    yield f"Maximum transmission error over the stroke: {said('largest', 1e6)} µm."
+
+
+def _remarks(seen: Seen) -> Iterator[str]:
+    name = seen.name
+    yield (
+        f"Rack {name}: ISO 6336 with z -> infinity gives nominal stresses only; K factors, safety factors and life "
+        "are not available."
+    )
+    yield neglecting(
+        f"Rack {name}: friction, profile modifications, deviations and misalignment are not included; the pinion is "
+        "fixed at its bore."
+    )
+    if seen.asked.pair.pinion.tooth.undercut:
+        yield f"Rack {name}: the pinion is undercut; contact starts at its root form circle."
+
+
+_VALUES = tuple(StrokeNumbers.__dataclass_fields__)
+
+
+def _error(name: str):  # type: ignore[no-untyped-def]
+    return lambda seen: None if math.isnan(found := getattr(seen.data.errors, name)) else found
+
+
+_SHEET = Sheet(
+    answer=Answer(_answer, figure=lambda seen: f"rack_transmission_error_{seen.name}"),
+    tables=(
+        Rows(
+            "rack_transmission_error_{name}", "Transmission error of rack {name} over the stroke",
+            ("travel", "tooth", "error", "pairs", "share", "tension"), of="positions",
+        ),
+        Rows("rack_root_stress_{name}", "Root stress of the teeth of rack {name}", ("number", "tension", "compression"),
+             of="teeth"),
+    ),
+    values=(
+        *(Number(f"numbers.{one}", _error(one)) for one in _VALUES),
+        Number("root_stress", exact), Number("contact_stress", exact),
+    ),
+    figures=(
+        Chart(
+            "rack_transmission_error_{name}", "Transmission error of rack {name} over the stroke",
+            "Rack {name}: travel of the rack due to the load, and root stress of the pinion, over the travel; fewer "
+            "teeth are in contact at both ends.",
+            (Over("travel", (Line("error", look={"markers": False}),)),
+             Over("travel", (Line("tension", look={"markers": False}),))),
+            of="positions",
+        ),
+        Chart(
+            "rack_root_stress_{name}", "Root stress of the teeth of rack {name}",
+            "Rack {name}: maximum root stress of each tooth over the stroke, tension side.",
+            (Over(Axis("tooth of the rack", whole=True), (Line("tension", x="number", kind="bars"),)),),
+            of="teeth",
+        ),
+    ),
+    remarks=(_remarks,),
+    settings={"positions": "positions.travel.size"},
+)  # fmt: skip
+
+
+def _check(scene: Scene, name: str) -> None:
+    loaded_rack_inputs(scene, name)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    part = scene.case.rack[name]
+    return forecasts.constant(0.5 + 0.004 * min(part.teeth, 35) * part.positions)
+
+
+RACK_TRANSMISSION_ERROR = Stage(
+    subjects=racks,
+    needs=needs_rack,
+    inputs=loaded_rack_inputs,
+    compute=_compute,
+    present=_SHEET.present,
+    check=_check,
+    cites=citing(
+        *RING, PATCH, HERTZ,
+        Citation("iso-6336-3", "Y_F and Y_S in their limits", "method B"),
+    ),
+    forecast=_forecast,
+)  # fmt: skip
