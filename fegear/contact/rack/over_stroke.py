@@ -87,8 +87,8 @@ class Stroke:
 
     @property
     def middle(self) -> int:
-        """The base pitch farthest from both ends of the rack that all pairs pass."""
-        return int(self.tooth[len(self.tooth) // 2])
+        """The base pitch farthest from both ends of the rack, in contact throughout."""
+        return min(self.tooth.size // 2, self.rack_tension.size - 1)
 
 
 def positions(found: RackContacts, count: int) -> Array:

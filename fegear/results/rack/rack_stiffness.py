@@ -38,10 +38,14 @@ class ToothOfRack:
 
     number: int
     height: Array = shown("mm", "height of the load above the reference line")
-    own: Array = shown("um.mm/N", "self-compliance c_0 (contact half-width 0.02 modules)", name="c_self")
+    own: Array = shown(
+        "um.mm/N", "self-compliance c_0 (contact half-width 0.02 modules)", name="c_self", label="self-compliance c_0"
+    )
     before: Array = shown("um.mm/N", "coupling compliance of the tooth before; blank: none", name="c_prev")
     after: Array = shown("um.mm/N", "coupling compliance of the tooth after; blank: none", name="c_next")
-    tension: Array = shown("MPa.mm/N", "root stress, tension side, per line load", name="root_tension")
+    tension: Array = shown(
+        "MPa.mm/N", "root stress, tension side, per line load", name="root_tension", label="root stress"
+    )
     compression: Array = shown("MPa.mm/N", "root stress, compression side, per line load", name="root_compression")
     own_error: Array = shown("um.mm/N", "estimated error of c_self", name="c_self_error")
     tension_error: Array = shown("MPa.mm/N", "estimated error of root_tension", name="root_tension_error")

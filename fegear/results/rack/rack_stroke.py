@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.base.notes import neglecting
 from fegear.base.printed import figures, rounded
 from fegear.base.shown import shown
@@ -42,12 +43,18 @@ if TYPE_CHECKING:
 class OverStroke:
     """Positions of the stroke at which teeth are in contact, shape (N,)."""
 
-    travel: Array = shown("mm", "travel of the rack from the first contact of its first tooth")
+    travel: Array = shown(
+        "mm", "travel of the rack from the first contact of its first tooth", label="travel of the rack"
+    )
     tooth: NDArray[np.int64] = shown("", "tooth of the rack that came into contact last, from 1")
-    error: Array = shown("um", "transmission error: travel of the rack due to the load", name="te")
+    error: Array = shown(
+        "um", "transmission error: travel of the rack due to the load", name="te", label="transmission error"
+    )
     pairs: NDArray[np.int64] = shown("", "tooth pairs in contact", name="pairs_in_contact")
     share: Array = shown("", "largest share of the load on one tooth pair", name="largest_share")
-    tension: Array = shown("MPa", "root stress of the pinion, tension side", name="pinion_root_stress")
+    tension: Array = shown(
+        "MPa", "root stress of the pinion, tension side", name="pinion_root_stress", label="pinion root stress"
+    )
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,9 @@ class OverTeeth:
     """Teeth of the rack over the stroke, shape (teeth,)."""
 
     number: NDArray[np.int64] = shown("", "tooth of the rack, from 1", name="tooth")
-    tension: Array = shown("MPa", "root stress, tension side: maximum over the stroke", name="root_tension")
+    tension: Array = shown(
+        "MPa", "root stress, tension side: maximum over the stroke", name="root_tension", label="root stress"
+    )
     compression: Array = shown("MPa", "root stress, compression side: minimum over the stroke", name="root_compression")
 
 
@@ -128,7 +137,10 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     pair, force = asked.pair, asked.force
     fine, coarse = compliances(pair, rack_of(upstream, asked.name), solution_of(upstream, asked.pinion))
     found = RackContacts(pair)
-    stroke = over_stroke(fine, found, force, asked.positions)
+    try:
+        stroke = over_stroke(fine, found, force, asked.positions)
+    except InputError as error:  # of the load on one pair of teeth
+        raise InputError(f"rack.{asked.name}.force", f"{force:.6g} N", error.rule, error.remedy) from None
     work.progress(0.6)
     numbers = _numbers(stroke, force)
     names = StrokeNumbers.__dataclass_fields__
@@ -155,7 +167,8 @@ def _answer(seen: Seen) -> Iterator[str]:
     data, error = seen.data.numbers, seen.data.errors
 
     def said(name: str, scale: float) -> str:
-        return rounded(getattr(data, name) * scale, getattr(error, name) * scale)
+        off = getattr(error, name) * scale
+        return rounded(getattr(data, name) * scale, None if math.isnan(off) else off)
 
     yield (
         f"Rack {seen.name}: {figures(seen.asked.force)} N moves it by {said('mean', 1e6)} µm (mesh stiffness "
