@@ -90,6 +90,8 @@ RATING = shipped("rating_spur", "rating")
 ROUGH = joined(RATING, {"gear.pinion.roughness": {"flank": "0.8 um", "root": "3 um"}})
 SET = shipped("planetary_set", "planet-set", "planet-modes")
 COMPOUND = shipped("ravigneaux_set", "compound-set")
+RACK = joined(shipped("rack_and_pinion", "rack-geometry"), {"rack.axis.backlash": None})
+ON_PINS = joined(RACK, {"rack.axis.support": "pins", "results": ["rack-stiffness"]})
 GROWTH = joined(shipped("cracked_tooth", "crack-path"), {"crack_growth": {"steps": 2}})
 SURFACE = joined(
     shipped("surface_and_loss", "flank-surface"), {"pair.I.compliance": {"source": "weber-banaschek"}, "effects": {}}
@@ -215,6 +217,14 @@ ROWS = {
                 "planet": {"step": {"carrier": "carrier", "gears": ["first", "second"], "planets": 1}},
                 "mesh": [{"gears": ["one", "step.first"]}, {"gears": ["two", "step.second"]}]}}},
         "compound.S.output", "carrier"),
+    "RackAndPinionPart.face_width": (RACK, "rack.axis.face_width", "20 mm"),
+    "RackAndPinionPart.basic_rack": (RACK, "rack.axis.basic_rack", "ISO 53 C"),
+    "RackAndPinionPart.material": (RACK, "rack.axis.material", {"young_modulus": "206.8 GPa"}),
+    "RackAndPinionPart.distance": (RACK, "rack.axis.distance", "20.6 mm"),
+    "RackAndPinionPart.backlash": (RACK, "rack.axis.backlash", "0 mm"),
+    "RackAndPinionPart.pin_every": (ON_PINS, "rack.axis.pin_every", 10),
+    "RackAndPinionPart.first_pin": (ON_PINS, "rack.axis.first_pin", 5),
+    "RackAndPinionPart.pin_width": (ON_PINS, "rack.axis.pin_width", "4 mm"),
     "PlanetaryPart.centre_distance": (SET, "planetary.P.centre_distance", "54 mm"),
     "PlanetaryPart.harmonics": (SET, "planetary.P.harmonics", 12),
     "MeshStiffnessPart.mu": (

@@ -91,6 +91,7 @@ def test_outline_encloses_teeth_and_body():
         ({"support": "pins", "first_pin": 9}, "rack.r.first_pin = 9"),
         ({"support": "pins", "pin_width": "9 mm"}, "rack.r.pin_width"), ({"distance": "30 mm"}, "rack.r.distance"),
         ({"basic_rack": {"addendum": 1.4}}, "rack.r.distance"), ({"tip_chamfer": "3 mm"}, "rack.r.tip_chamfer"),
+        ({"basic_rack": {"coast_tip_radius": 0.2}}, "rack.r.basic_rack.coast_tip_radius = 0.2"),
         ({"material": {"poisson_ratio": 0.7}}, "rack.r.material.poisson_ratio"), ({"face": 1}, "rack.r.face"),
     ],
 )  # fmt: skip

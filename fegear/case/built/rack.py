@@ -104,6 +104,9 @@ def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
                          "use a spur pinion")  # fmt: skip
     if part.basic_rack is None:
         basic = replace(tooth.rack, protuberance=0.0, grinding_allowance=0.0) if tooth.rack.protuberance else tooth.rack
+    elif part.basic_rack.coast_tip_radius is not None:
+        raise InputError("basic_rack.coast_tip_radius", part.basic_rack.coast_tip_radius,
+                         "is not available for racks (equal flanks)", "remove it")  # fmt: skip
     else:
         basic = part.basic_rack.build(tooth.rack.pressure_angle, module)
     straight = RackTooth(
