@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.case.derived import keys_of
 from fegear.case.gear_material import MaterialPart
 from fegear.case.gear_tool import RackPart
 from fegear.case.part import (
@@ -22,22 +23,29 @@ from fegear.case.part import (
     Table,
     refuse,
 )
-
-if TYPE_CHECKING:
-    from fegear.geometry.toothed_rack import RackPins
+from fegear.geometry.toothed_rack import Rack, RackPins
 
 #: Keys of pins.
 _OF_PINS = ("pin_every", "first_pin", "pin_width")
 
 
-class RackAndPinionPart(Part):
+class _PinionPart(Part):
+    pinion: str = Field(description="Pinion: an external spur gear of this case; its module is that of the rack.")
+
+
+if TYPE_CHECKING:
+
+    class _RackKeys(_PinionPart):
+        teeth: int
+        reference_height: float
+
+else:
+    _RackKeys = keys_of(Rack, base=_PinionPart)
+
+
+class RackAndPinionPart(_RackKeys):
     """A rack and the pinion on it."""
 
-    pinion: str = Field(description="Pinion: an external spur gear of this case; its module is that of the rack.")
-    teeth: Annotated[int, Field(ge=1, le=1000)] = Field(description="Number of teeth of the rack.")
-    reference_height: PositiveLength = Field(
-        description="Height of the reference line above the back of the rack (catalogues: height of pitch line, h_0)."
-    )
     face_width: PositiveLength | None = Field(default=None, description="Face width. Default: that of the pinion.")
     basic_rack: Table[RackPart] | None = Field(
         default=None,
@@ -95,8 +103,6 @@ class RackAndPinionPart(Part):
 
     def pins(self, module: float) -> RackPins | None:
         """The pins of a rack of this module [m]; None where its back is fixed."""
-        from fegear.geometry.toothed_rack import RackPins
-
         if self.support == "back":
             return None
         every = 10 if self.pin_every is None else self.pin_every

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.base.given import given
 from fegear.geometry.gear import Material, Plane
 from fegear.geometry.rack_tooth import PITCH, RackTooth
 
@@ -71,8 +72,12 @@ class Rack:
 
     tooth: RackTooth
     module: float
-    teeth: int
-    reference_height: float
+    teeth: int = given(meaning="Number of teeth of the rack.", at_least=1, at_most=MOST_TEETH)
+    reference_height: float = given(
+        "length",
+        "Height of the reference line above the back of the rack (catalogues: height of pitch line, h_0).",
+        above=0.0,
+    )
     face_width: float
     material: Material = field(default_factory=Material)
     plane: Plane = "strain"
