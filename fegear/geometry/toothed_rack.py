@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.given import given
+from fegear.base.shown import shown
 from fegear.geometry.gear import Material, Plane
 from fegear.geometry.rack_tooth import PITCH, RackTooth
 
@@ -78,7 +79,7 @@ class Rack:
         "Height of the reference line above the back of the rack (catalogues: height of pitch line, h_0).",
         above=0.0,
     )
-    face_width: float
+    face_width: float = shown("mm", "face width")
     material: Material = field(default_factory=Material)
     plane: Plane = "strain"
     pins: RackPins | None = None

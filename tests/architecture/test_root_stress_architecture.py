@@ -16,6 +16,7 @@ PLACE = Path("contact/plane/root_stress.py")
 UNIT_LOADS = {
     Path("contact/plane/both_flanks.py"),  # arc lengths of a fillet's points, no stress
     Path("contact/wide/rated.py"),
+    Path("results/rack/rack_stiffness.py"),
     Path("studies/check.py"),
     Path("studies/cost/answers.py"),
     Path("verify/calculix.py"),

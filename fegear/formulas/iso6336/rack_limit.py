@@ -56,14 +56,28 @@ def outer_single_contact_height(pair: RackAndPinion) -> float:
     return float(pair.height(pair.x_end - pitch if pair.contact_ratio < 2.0 else pair.x_start))
 
 
-def nominal_root_stress_of_rack(pair: RackAndPinion, force: float) -> float:
-    """sigma_F0 = F_t / (b m) Y_F Y_S of the rack [Pa], all K factors 1."""
+def nominal_root_stress_of_rack(pair: RackAndPinion, tangential: float) -> float:
+    """sigma_F0 = F_t / (b m) Y_F Y_S of the rack [Pa], all K factors 1.
+
+    Parameters
+    ----------
+    pair : RackAndPinion
+    tangential : float
+        F_t, along the rack [N].
+    """
     form = rack_root_form(pair.rack.tooth, outer_single_contact_height(pair) / pair.rack.module)
-    return force / (pair.face_width * pair.rack.module) * form.Y_F * form.Y_S
+    return tangential / (pair.face_width * pair.rack.module) * form.Y_F * form.Y_S
 
 
-def nominal_contact_stress(pair: RackAndPinion, force: float) -> float:
-    """sigma_H0 [Pa] at the pitch point with u -> infinity, (u + 1)/u -> 1, all K factors 1; Z_beta = 1."""
+def nominal_contact_stress_on_rack(pair: RackAndPinion, tangential: float) -> float:
+    """sigma_H0 [Pa] at the pitch point with u -> infinity, (u + 1)/u -> 1, all K factors 1; Z_beta = 1.
+
+    Parameters
+    ----------
+    pair : RackAndPinion
+    tangential : float
+        F_t, along the rack [N].
+    """
     alpha, ratio = pair.rack.pressure_angle, pair.contact_ratio
     z_h = math.sqrt(2.0 / (math.cos(alpha) * math.sin(alpha)))
     z_eps = math.sqrt((4.0 - ratio) / 3.0) if ratio < 4.0 else 0.0
@@ -71,4 +85,4 @@ def nominal_contact_stress(pair: RackAndPinion, force: float) -> float:
         (1.0 - one.poisson_ratio**2) / one.young_modulus for one in (pair.pinion.material, pair.rack.material)
     )
     z_e = math.sqrt(1.0 / (math.pi * softness))
-    return z_h * z_e * z_eps * math.sqrt(force / (2.0 * pair.pinion.pitch_radius * pair.face_width))
+    return z_h * z_e * z_eps * math.sqrt(tangential / (2.0 * pair.pinion.pitch_radius * pair.face_width))

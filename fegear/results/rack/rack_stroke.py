@@ -132,7 +132,7 @@ def _sampling(stroke: Stroke) -> float:
 def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     from fegear.contact.rack.over_stroke import over_stroke
     from fegear.contact.rack.rack_contacts import RackContacts
-    from fegear.formulas.iso6336.rack_limit import nominal_contact_stress, nominal_root_stress_of_rack
+    from fegear.formulas.iso6336.rack_limit import nominal_contact_stress_on_rack, nominal_root_stress_of_rack
 
     pair, force = asked.pair, asked.force
     fine, coarse = compliances(pair, rack_of(upstream, asked.name), solution_of(upstream, asked.pinion))
@@ -150,7 +150,7 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
         off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
         off["peak_to_peak"] += _sampling(stroke)
         errors = StrokeNumbers(**off)
-    there = ~np.isnan(stroke.error)
+    there, tangential = ~np.isnan(stroke.error), asked.force
     tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
     count = np.arange(1, pair.rack.teeth + 1)
     return RackStroke(
@@ -159,7 +159,8 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
             stroke.largest_share[there], stroke.pinion_tension[there],
         ),
         OverTeeth(count, stroke.rack_tension, stroke.rack_compression),
-        numbers, errors, nominal_root_stress_of_rack(pair, force), nominal_contact_stress(pair, force),
+        numbers, errors, nominal_root_stress_of_rack(pair, tangential),
+        nominal_contact_stress_on_rack(pair, tangential),
     )  # fmt: skip
 
 
