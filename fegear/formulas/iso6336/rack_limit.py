@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 class RackForm(NamedTuple):
     """Part 3, method B, of a rack's tooth; lengths in modules."""
 
-    s_Fn: float  # noqa: N815
-    h_Fe: float  # noqa: N815
-    rho_F: float  # noqa: N815
+    s_Fn: float  # noqa: N815  (symbol of the standard)
+    h_Fe: float  # noqa: N815  (symbol of the standard)
+    rho_F: float  # noqa: N815  (symbol of the standard)
     Y_F: float
     Y_S: float
 

@@ -27,7 +27,7 @@ from fegear.results.gear.solved_gear import solution_of
 from fegear.results.rack.solved_rack import compliances, needs_rack, rack_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -200,7 +200,7 @@ def _remarks(seen: Seen) -> Iterator[str]:
 _VALUES = tuple(StrokeNumbers.__dataclass_fields__)
 
 
-def _error(name: str):  # type: ignore[no-untyped-def]
+def _error(name: str) -> Callable[[Seen], float | None]:
     return lambda seen: None if math.isnan(found := getattr(seen.data.errors, name)) else found
 
 
