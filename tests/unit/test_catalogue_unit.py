@@ -70,7 +70,8 @@ EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
     "fillet-design", "flank-design",
     "flank-fracture", "flank-generation",
-    "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response", "rack-geometry", "rack-solution",
+    "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response",
+    "rack-geometry", "rack-solution",
     "rack-stiffness", "rack-transmission-error", "sizing", "tooth-contact",
     "transmissibility",
 }  # fmt: skip
