@@ -36,11 +36,14 @@ class GroundTip:
     gear : Gear
     left : TransmissionError or None
         What the reliefs of both gears leave.
+    left_error : float or None
+        Of its peak-to-peak and its effective value [m].
     """
 
     ground: TipReliefPair
     gear: Gear
     left: TransmissionError | None
+    left_error: float | None
     shape: str = shown("", "of the tip relief")
     member: Member = shown("", "driver or driven", name="gear")
 
@@ -125,10 +128,14 @@ class GroundTip:
 
 
 def tips_of(
-    ground: TipReliefPair, pair: GearPair, shape: str = "", left: TransmissionError | None = None
+    ground: TipReliefPair,
+    pair: GearPair,
+    shape: str = "",
+    left: TransmissionError | None = None,
+    left_error: float | None = None,
 ) -> tuple[GroundTip, ...]:
     """The tip reliefs of both gears of a pair, driver first."""
-    return tuple(GroundTip(ground, pair.gear(member), left, shape, member) for member in MEMBERS)
+    return tuple(GroundTip(ground, pair.gear(member), left, left_error, shape, member) for member in MEMBERS)
 
 
 def tip_numbers(tips: Where, head: str) -> Each:
@@ -160,6 +167,12 @@ def _errors(which: str, what: int) -> Callable[[Seen], Array]:
     return lambda seen: np.array([getattr(tip, which)[what] for tip in seen.data.tips])
 
 
+def _left(seen: Seen) -> Array | None:
+    """Errors of what they leave, a number for each row."""
+    known = [tip.left_error for tip in seen.data.tips]
+    return None if None in known else np.array(known)
+
+
 def _end(which: str, quantity: str, name: str, meaning: str) -> Cell:
     return Cell(quantity, lambda seen: [getattr(tip.band[which == "high"], quantity) for tip in seen.data.tips],
                 lambda seen: seen.data.tips[0].relief, name, meaning)  # fmt: skip
@@ -180,7 +193,7 @@ GRINDABLE = Rows(
         Off("relief.start", _errors("error", 1)), "start_radius",
         Off("start_radius", lambda seen: [tip.start_radius_error for tip in seen.data.tips]),
         Cell("left.peak_to_peak", meaning="remaining at design load"),
-        Off("left.peak_to_peak", "ground.objective_error", "estimated error of te_peak_to_peak and te_effective"),
+        Off("left.peak_to_peak", _left, "estimated error of te_peak_to_peak and te_effective"),
         Cell("left.effective_error", meaning="remaining A_e"), "least", "least_error",
         _end("low", "amount", "amount_from", "lower end of near-optimum range (within 1 % of the minimum)"),
         _end("high", "amount", "amount_to", "equally good"),

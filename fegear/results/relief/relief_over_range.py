@@ -14,12 +14,16 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.results.relief.left_errors import left_error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.relief_design import ReliefDesign
+    from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair
 
@@ -65,8 +69,10 @@ class LeftOverRange:
         return None if self.error is None else np.broadcast_to(self.error, self.torque.shape)
 
 
-def left_over_range(design: ReliefDesign, pair: GearPair) -> dict[str, LeftOverRange]:
-    """What every relief leaves at the loads of the range, or of the pair."""
+def left_over_range(
+    design: ReliefDesign, pair: GearPair, shifted: Sequence[Engagement] = ()
+) -> dict[str, LeftOverRange]:
+    """What every relief leaves at the loads of the range, or of the pair; `shifted` as in `left_error`."""
     over, load = design.task.over, np.array(design.task.over_loads)
     weights = np.asarray(load == design.task.load, dtype=float)
     if over is not None:
@@ -78,10 +84,19 @@ def left_over_range(design: ReliefDesign, pair: GearPair) -> dict[str, LeftOverR
         label: LeftOverRange(
             load * pair.driver.base_radius, load, weights / weights.max(),
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
-            within.get(label), searched[label].objective_error if label in searched else None,
+            within.get(label), _errors(found, shifted, searched.get(label)),
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
+
+
+def _errors(
+    found: Sequence[TransmissionError], shifted: Sequence[Engagement], ground: TipReliefPair | None
+) -> Array | None:
+    """Of the peak-to-peak value at each torque [m]."""
+    searched = None if ground is None else ground.objective_error
+    known = [left_error(te, shifted, searched).peak_to_peak for te in found]
+    return None if None in known else np.array(known)
 
 
 def said_of_range(seen: Seen) -> Iterator[str]:

@@ -26,6 +26,7 @@ from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
 from fegear.results.relief.harris import OVER_ROLL, HarrisMap
+from fegear.results.relief.left_errors import LeftError, left_error
 from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, LeftOverRange, left_over_range
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.minimum_excitation import ReliefTable
+    from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.figure.items import Mark
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.relief import Shape
@@ -94,8 +96,8 @@ class Leaves:
     ----------
     te : TransmissionError
         At the design load.
-    error : float or None
-        Of its peak-to-peak and its effective value [m].
+    error : LeftError
+        Of its peak-to-peak and its effective value.
     map : HarrisMap
         Of all loads.
     searched : float or None
@@ -103,7 +105,7 @@ class Leaves:
     """
 
     te: TransmissionError
-    error: float | None
+    error: LeftError
     map: HarrisMap
     searched: float | None
 
@@ -200,13 +202,17 @@ class ReliefShown:
         return tuple(
             tip
             for shape, ground in design.ground.items()
-            for tip in tips_of(ground, pair, shape, design.te[f"{shape} tip relief"])
+            for te in (design.te[f"{shape} tip relief"],)
+            for tip in tips_of(ground, pair, shape, te, self._left_error(te, ground).larger)
         )
 
     @cached_property
     def over_range(self) -> dict[str, LeftOverRange]:
         """What each relief leaves at each torque."""
-        return left_over_range(self.data.design, self.data.pair.pair)
+        return left_over_range(self.data.design, self.data.pair.pair, self.data.pair.shifted)
+
+    def _left_error(self, te: TransmissionError, ground: TipReliefPair | None) -> LeftError:
+        return left_error(te, self.data.pair.shifted, None if ground is None else ground.objective_error)
 
     @property
     def for_range(self) -> bool:
@@ -246,7 +252,7 @@ class ReliefShown:
         searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
         for label, te in design.te.items():
             curve, ground = design.curves[label], searched.get(label)
-            error = design.left if label == "designed" else None if ground is None else ground.objective_error
+            error = LeftError(design.left, design.left) if label == "designed" else self._left_error(te, ground)
             harris = HarrisMap(
                 pair, curve.x, curve.load, curve.transmission_error.T, at=self.load, word="design", over=over
             )
@@ -264,9 +270,9 @@ def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_")
 
 
-def _is_exact(seen: Seen) -> bool:
-    """Whether the relief leaves nothing by theory."""
-    return seen.key == "designed"
+def _is_taken_away(seen: Seen) -> bool:
+    """Whether it is what a designed relief leaves: a difference of nearly alike numbers, with the errors of both."""
+    return seen.key not in ("no relief", "present relief")
 
 
 def _removal(y: str, label: str, **options: Any) -> Line:
@@ -357,10 +363,10 @@ RELIEF_SHEET = Sheet(
         Number("hertz_pressure", of="least_stress", name="design_hertz_pressure"),
         Each(
             "left",
-            Number("te.peak_to_peak", "error", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
-                   meaning="{key}, design load", zero=_is_exact),
-            Number("te.effective_error", "error", name=lambda seen: f"te_effective.{_key(seen)}",
-                   meaning="A_e, {key}, design load", zero=_is_exact),
+            Number("te.peak_to_peak", "error.peak_to_peak", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
+                   meaning="{key}, design load", zero=_is_taken_away),
+            Number("te.effective_error", "error.effective", name=lambda seen: f"te_effective.{_key(seen)}",
+                   meaning="A_e, {key}, design load", zero=_is_taken_away),
         ),
         Number("te.peak_to_peak", of="left.designed", si="data.design.tables_leave",
                name="te_peak_to_peak.relief_tables",
