@@ -32,7 +32,7 @@ OFF = {"corner_contact": "false", "neighbour_coupling": "false", "hertz": "none"
 WORK = {
     "corner_contact": ("contact/plane/corner.py", ""),
     "neighbour_coupling": ("contact/plane/fe_compliance.py", "FiniteElementCompliance.neighbour"),
-    "hertz": ("contact/plane/pair_compliance.py", "PairCompliance.half_width"),
+    "hertz": ("contact/plane/coupled_teeth.py", "CoupledTeeth.half_width"),
     "relief": ("geometry/relief.py", ("CombinedRelief.removal", "EndRelief.removal")),
     "spacing_errors": ("contact/plane/engagement.py", "Engagement.spacing"),
     "neglected": ("contact/plane/neglected_effects.py", ""),
