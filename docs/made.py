@@ -7,6 +7,7 @@ which take a second each, so that no processor waits long for the last one.
 
 from __future__ import annotations
 
+import logging
 import os
 from concurrent.futures import ThreadPoolExecutor, as_completed
 
@@ -15,10 +16,22 @@ import film
 import gallery
 import window_tutorial
 
+log = logging.getLogger("mkdocs.plugins.made")
+
+#: A browser on a busy machine may lose its page in the middle: what is filmed is taken so many times at most.
+_TAKES = 3
+
 
 def _window() -> None:
-    film.make()
-    window_tutorial.make()
+    for make in (film.make, window_tutorial.make):
+        for left in reversed(range(_TAKES)):
+            try:
+                make()
+                break
+            except (RuntimeError, TimeoutError):
+                if not left:
+                    raise
+                log.info("The browser lost the page of the window: taken again", exc_info=True)
 
 
 def on_files(files, **_others):
