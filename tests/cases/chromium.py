@@ -156,9 +156,9 @@ class Browser:
             raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description", "script failed"))
         return answer["result"].get("value")
 
-    def until(self, script: str) -> None:
+    def until(self, script: str, patience: float = _PATIENCE) -> None:
         """Wait until a condition holds; of a page that another one takes the place of meanwhile it is asked again."""
-        end = time.monotonic() + _PATIENCE
+        end = time.monotonic() + patience
         while not self._holds(script):
             if time.monotonic() > end:
                 raise TimeoutError(f"waited in vain for {script}")
@@ -195,6 +195,18 @@ class Browser:
                          "return [b.x + b.width / 2, b.y + b.height / 2]; })()")  # fmt: skip
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             self("Input.dispatchMouseEvent", type=kind, x=where[0], y=where[1], button="left", clickCount=1)
+
+    def click_until(self, script: str, condition: str) -> None:
+        """Click, and again where a bar that was laid out anew meanwhile was missed, until a condition holds."""
+        for patience in (0.2 * _PATIENCE, 0.4 * _PATIENCE, _PATIENCE):
+            self.click(script)
+            try:
+                self.until(condition, patience)
+            except TimeoutError:
+                if patience == _PATIENCE:
+                    raise
+            else:
+                return
 
     def downloaded(self, name: str) -> bytes:
         """Wait for a download and return what arrived."""

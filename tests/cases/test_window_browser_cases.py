@@ -353,8 +353,7 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     ] == []
 
     # A template, without a file.
-    browser.click(button("Other case"))
-    browser.until("document.querySelector('.start') !== null")
+    browser.click_until(button("Other case"), "document.querySelector('.start') !== null")
     browser.click("[...document.querySelectorAll('.offer')].find(one => one.textContent.startsWith('pair'))")
     browser.until(f"{field('gear.pinion.teeth')}?.value === '21'")
     assert browser.run("document.querySelector('.unsaved').textContent") == "has no file yet"
