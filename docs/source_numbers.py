@@ -151,7 +151,10 @@ class Number(Part):
                 "give `grid` where it is the place of a maximum, and only there",
             ),
             (
-                self.kind in REPRODUCED and bool(printed and self.grid) and self.grid.step >= self.accuracy(),  # type: ignore[union-attr]
+                self.kind in REPRODUCED
+                and printed is not None
+                and self.grid is not None
+                and self.grid.step >= self.accuracy(),
                 "was found on a grid that is not finer than the print is read",
             ),
             (in_print and self.printed is None, f"is {self.kind}, and no printed number is given"),

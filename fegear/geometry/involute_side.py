@@ -19,6 +19,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line
 from fegear.geometry.involute import polar_angle
+from fegear.geometry.tooth_side import outline_of
 
 #: Largest helix angle on the reference cylinder [rad].
 LARGEST_HELIX_ANGLE = math.radians(60.0)
@@ -298,11 +299,4 @@ class InvoluteSide(ABC):
     @property
     def outline(self) -> dict[str, Curve]:
         """Half of the outline from the middle of the tooth space to the middle of the tip land, by name."""
-        pieces: dict[str, Curve | None] = {
-            "root_land": self.root_land,
-            "fillet": self.fillet,
-            "flank": self.involute,
-            "tip_edge": self.tip_edge,
-            "tip_land": self.tip_land,
-        }
-        return {name: piece for name, piece in pieces.items() if piece is not None}
+        return outline_of(self)

@@ -20,6 +20,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Line
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth_side import outline_of
 
 #: Root roundings and tip lands below this [modules] are none.
 _SMALLEST = 1e-3
@@ -189,11 +190,4 @@ class RackTooth:
     @property
     def outline(self) -> dict[str, Curve]:
         """Half of the outline from the middle of the tooth space to the middle of the tip land, by name."""
-        pieces: dict[str, Curve | None] = {
-            "root_land": self.root_land,
-            "fillet": self.fillet,
-            "flank": self.involute,
-            "tip_edge": self.tip_edge,
-            "tip_land": self.tip_land,
-        }
-        return {name: piece for name, piece in pieces.items() if piece is not None}
+        return outline_of(self)

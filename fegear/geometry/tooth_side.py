@@ -55,5 +55,21 @@ class ToothSide(Protocol):
         """Bottom of the middle of the tooth space on the right [modules]."""
 
     @property
+    def tip_land(self) -> Curve:
+        """Half of the tip, on this side."""
+
+    @property
     def outline(self) -> dict[str, Curve]:
         """Half of the outline from the middle of the tooth space to the middle of the tip land, by name."""
+
+
+def outline_of(tooth: ToothSide) -> dict[str, Curve]:
+    """Half of the outline from the middle of the tooth space to the middle of the tip land, by name: what there is."""
+    pieces: dict[str, Curve | None] = {
+        "root_land": tooth.root_land,
+        "fillet": tooth.fillet,
+        "flank": tooth.involute,
+        "tip_edge": tooth.tip_edge,
+        "tip_land": tooth.tip_land,
+    }
+    return {name: piece for name, piece in pieces.items() if piece is not None}
