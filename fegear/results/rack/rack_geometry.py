@@ -111,7 +111,7 @@ def _drawing(seen: Seen) -> tuple[Figure, ...]:
 _NAMES = tuple(RackGeometry.__dataclass_fields__)
 
 _SHEET = Sheet(
-    answer=Answer(_answer, figure=lambda seen: f"rack_{seen.name}"),
+    answer=Answer(_answer, figure=lambda seen: f"rack_{seen.name}", background=True),
     tables=(
         Rows(
             "rack_geometry_{name}", "Rack {name} and pinion in mesh", _NAMES, of=lambda seen: (seen.data,), printed=True
