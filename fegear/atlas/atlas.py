@@ -14,7 +14,7 @@ import numpy as np
 
 from fegear.atlas.atlas_gear import AtlasGear
 from fegear.atlas.common_rows import KEPT, CommonRows
-from fegear.atlas.domain import KEYS, ROUND_OFF, Domain
+from fegear.atlas.domain import KEYS, Domain
 from fegear.atlas.family import REMEDY, Family, place_of
 from fegear.atlas.polynomials import products
 from fegear.atlas.tables import VERSION, Layout
@@ -196,7 +196,7 @@ class Atlas:
     def pieces_of(self, places: Array) -> NDArray[np.int64]:
         """Number of the region that holds each gear, -1 where none does, shape (G,)."""
         found = np.full(places.shape[1], -1)
-        below = places[1] < self.family.least_shift_of(places[0]) - ROUND_OFF
+        below = self.family.undercut(places)
         for number, piece in reversed(list(enumerate(self.pieces))):
             side = below == (piece.domain.side == "undercut")
             found[side & piece.domain.holds(self.family, places)] = number
@@ -204,10 +204,10 @@ class Atlas:
 
     def _refuse_outside(self, place: Place) -> None:
         """Refuse a gear that no region holds on its side of the undercut line, by the nearest region."""
-        if self.pieces_of(np.array(place, dtype=float)[:, None])[0] >= 0:
+        at = np.array(place, dtype=float)[:, None]
+        if self.pieces_of(at)[0] >= 0:
             return
-        below = place.shift < self.family.least_shift(place.teeth) - ROUND_OFF
-        side = "undercut" if below else "whole"
+        side = "undercut" if self.family.undercut(at)[0] else "whole"
         outside = [piece.domain.outside(self.family, place) for piece in self.pieces if piece.domain.side == side]
         nearest = max((one for one in outside if one is not None), key=lambda one: one[0], default=None)
         if nearest is None:

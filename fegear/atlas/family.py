@@ -10,12 +10,13 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.fillet import NO_UNDERCUT
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.thickness import ToothNumbers
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
     from fegear.geometry.gear import Plane
 
 #: Proportions that differ by no more than this are the same: decimal numbers that were converted from other units.
@@ -132,9 +133,13 @@ class Family:
         reach = rack.tip_centre_depth + rack.tip_radius * math.sin(alpha)
         return np.asarray(reach - 0.5 * teeth * math.cos(alpha) * math.sin(alpha) * math.tan(alpha))
 
+    def undercut(self, places: Array) -> Mask:
+        """Whether the rack cuts off part of the involute, as `Tooth.undercut`, shape (N,) of places (4, N)."""
+        return np.asarray(places[1] < self.least_shift_of(places[0]) - NO_UNDERCUT)
+
     def lowest_roll_length(self, teeth: Array, shift: Array) -> Array:
         """Roll length where the flank of a gear without undercut begins [modules], (N,)."""
-        return np.asarray((shift - self.least_shift_of(teeth)) / math.sin(self.pressure_angle))
+        return np.asarray(np.maximum(shift - self.least_shift_of(teeth), 0.0) / math.sin(self.pressure_angle))
 
     def turning(self, places: Array) -> Array:
         """Deflection of all teeth by how the body turns as a ring up to the root circle, per unit load and 1/E, (N,).

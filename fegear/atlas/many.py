@@ -165,7 +165,7 @@ def known_pairs(
         beside.append(np.stack([layout.neighbour(found.rows, k) for k in range(1, atlas.reach + 1)], axis=1)
                       / modulus[:, None, None, None])  # fmt: skip
         ends = layout.ends(found.rows) if root_stress else atlas.ends(places)
-        lowest.append(m * np.where(places[1] < family.least_shift_of(places[0]), ends[:, 0],
+        lowest.append(m * np.where(family.undercut(places), ends[:, 0],
                                    family.lowest_roll_length(places[0], places[1])))  # fmt: skip
         errors.append(found.errors)
         length.append(ends[:, 1])

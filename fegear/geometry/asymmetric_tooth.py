@@ -313,7 +313,7 @@ class AsymmetricSide(InvoluteSide):
     @property
     def undercut(self) -> bool:
         """Whether the rack's tip cuts away part of this involute."""
-        return self._flank_line.tangent_roll(self.rack) < 0.0
+        return self._flank_line.undercut_by(self.rack)
 
     @property
     def least_profile_shift(self) -> float:

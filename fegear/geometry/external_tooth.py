@@ -176,7 +176,7 @@ class Tooth(InvoluteTooth):
     @property
     def undercut(self) -> bool:
         """Whether the rack's tip, or its protuberance, cuts away part of the involute."""
-        return self.rack.residual_undercut > 0.0 or self._flank_line.tangent_roll(self.rack) < 0.0
+        return self.rack.residual_undercut > 0.0 or self._flank_line.undercut_by(self.rack)
 
     @cached_property
     def _root(self) -> tuple[Trochoid | ProtuberanceFillet, float]:

@@ -23,6 +23,8 @@ from fegear.geometry.curves import Curve, Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
 from fegear.geometry.rack import BasicRack, transverse_angle
 
+#: Profile shift by which a rack may lie below the undercut line and cut nothing: round-off of units and conversions.
+NO_UNDERCUT = 1e-9
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
 _SLIGHT_UNDERCUT = 1e-4
 
@@ -170,6 +172,11 @@ class RackFlankLine:
         alpha = self.pressure_angle
         height = self.shift - rack.tip_centre_depth - rack.tip_radius * math.sin(self.normal_angle)
         return math.tan(alpha) + height / (self.base_radius * math.sin(alpha))
+
+    def undercut_by(self, rack: RoundedTip) -> bool:
+        """Whether the tip rounding cuts away part of the involute: more than round-off of a gear on the line itself."""
+        shift = self.tangent_roll(rack) * self.base_radius * math.sin(self.pressure_angle)
+        return shift < -NO_UNDERCUT
 
     def roll(self, radius: float) -> float:
         """Roll angle [rad] at a radius [modules], zero inside the base circle."""

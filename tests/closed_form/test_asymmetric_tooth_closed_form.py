@@ -166,6 +166,7 @@ def test_the_steeper_flank_has_the_smaller_base_circle_and_the_flatter_one_is_cu
     just = replace(tooth, profile_shift=tooth.least_profile_shift + 1e-6)
     below = replace(tooth, profile_shift=tooth.least_profile_shift - 1e-6)
     assert not just.coast.undercut
+    assert not replace(tooth, profile_shift=tooth.least_profile_shift - 1e-13).coast.undercut
     assert below.coast.undercut
 
 

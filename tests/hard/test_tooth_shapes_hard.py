@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import FegearError, GeometryError, InputError, RangeError
+from fegear.fem.plane.contact_width import corner_angles
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
@@ -121,6 +122,21 @@ def test_the_limit_of_undercut_is_crossed_without_a_jump():
         ]  # fmt: skip
     for beside, found in answers.items():
         assert np.abs(np.array(found) / answers[0.0] - 1.0).max() < 1e-4 + 5.0 * abs(beside)
+
+
+@pytest.mark.parametrize("beside", [-9e-10, -1e-14, -2.3e-17, 0.0, 1e-14])
+@pytest.mark.parametrize("dedendum", [1.25, 1.4])
+def test_an_undercut_below_round_off_is_none(beside, dedendum):
+    """A gear on the line itself began its flank in a corner or without one by the last bit of its rack's numbers."""
+    for rounding in (0.25, 0.3, 0.38):
+        rack = BasicRack(1.0, dedendum, rounding)
+        for teeth in (11, 12, 14, 17):
+            shift = undercut_limit(teeth, rack) + beside
+            tooth = Tooth(teeth, rack, shift, tip_radius=0.5 * teeth + shift + 0.7)
+            assert not tooth.undercut
+            assert tooth.form_radius - tooth.base_radius < 1e-12
+            assert corner_angles(tooth)[0] == math.pi
+            assert Tooth(teeth, rack, shift - 1e-8, tip_radius=tooth.tip_radius).undercut
 
 
 def test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_reported_error():
