@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.output.fields import FieldFile
+    from fegear.output.picture_process import PictureProcess
 
 
 def run(
@@ -70,6 +71,23 @@ def run_case(
     only_needs: bool = False,
 ) -> None:  # fmt: skip
     """Compute what a case asks for, write it and say it; what `run` and `size` have in common."""
+    from fegear.output.picture_process import PictureProcess
+
+    start = time.perf_counter()
+    with contextlib.ExitStack() as early:
+        # Before all else: it loads what draws while this process loads what computes.
+        process = early.enter_context(PictureProcess()) if plots and not only_needs else None
+        _run_case(
+            case, asked, out, voice, early, process, start, scheduler=scheduler, workers=workers, cache=cache,
+            with_fields=with_fields, only_needs=only_needs, plots=plots,
+        )  # fmt: skip
+
+
+def _run_case(
+    case: Path, asked: list[str], out: Path | None, voice: Voice, early: contextlib.ExitStack,
+    process: PictureProcess | None, start: float, *, scheduler: str | None, workers: int | None, cache: bool,
+    with_fields: bool, only_needs: bool, plots: bool,
+) -> None:  # fmt: skip
     from fegear.base.solution_cache import SolutionCache, cache_on_disk
     from fegear.case.reading import read_scene
     from fegear.engine.executor import Executor
@@ -78,13 +96,11 @@ def run_case(
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing
     from fegear.output.folder import default_folder, whole_or_nothing
-    from fegear.output.picture_process import PictureProcess
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
     from fegear.output.tables import sheet_lines
     from fegear.results.catalogue import STAGES
 
-    start = time.perf_counter()
     try:
         scene = read_scene(case, asked)
         planned = make_plan(scene, STAGES)
@@ -96,9 +112,9 @@ def run_case(
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(voice.watcher())
+            stack.enter_context(early.pop_all())  # it ends before the folder that it draws into is moved
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
-            process = stack.enter_context(PictureProcess()) if plots else None
             drawing = (
                 Drawing(scratch / "plots", process, scene.name, scene.gears if with_fields else None)
                 if process

@@ -117,8 +117,6 @@ class Drawing:
         missing : list of str
             Sentences about pictures that could not be drawn for want of a system library.
         """
-        if self._process:
-            self._process.close()
         written = (write_field(figure, self._folder.parent / FOLDER) for _, figure, _ in self._begun)
         self.fields += [one for one in written if one]
         drawn: list[Drawn] = []

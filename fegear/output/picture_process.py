@@ -1,5 +1,8 @@
 """A second process that draws, so that one core makes pictures while another computes.
 
+A copy of it, made once its libraries are loaded, draws every other figure: when nothing is left to compute, both cores
+draw.
+
 Nothing depends on it: where there is none (a single core, no processes, one that died) the same figures are drawn in
 this process, to the same bytes.
 """
@@ -14,14 +17,16 @@ import signal
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from queue import SimpleQueue
+from typing import IO, TYPE_CHECKING
 
-from fegear.engine.figure.figure import Figure
 from fegear.engine.processes import cores
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fegear.engine.figure.figure import Figure
     from fegear.output.draw_png import Picture
 
     Pictures = tuple[Picture, ...] | None
@@ -29,18 +34,50 @@ if TYPE_CHECKING:
 
 #: What the other process runs, with the search path of this one. Not multiprocessing's: that would load the main
 #: module once more, and run a script whose main part nothing guards a second time.
-_PROGRAM = "import sys; sys.path[:] = sys.argv[1:]; from fegear.output.picture_process import serve; serve()"
+_PROGRAM = (
+    "import sys; copy = [int(one) for one in sys.argv[1].split()]; sys.path[:] = sys.argv[2:]; "
+    "from fegear.output.picture_process import serve; serve(*copy)"
+)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Both ends of what is said with one process that draws, one figure at a time."""
+
+    requests: IO[bytes]
+    answers: IO[bytes]
+
+    def drawn(self, figure: Figure, folder: Path) -> Pictures:
+        """Have a figure drawn; None if that fails."""
+        try:
+            request = pickle.dumps(
+                (figure, folder)
+            )  # whole before it is sent: half of one would confuse the other side
+            self.requests.write(request)
+            self.requests.flush()
+            return pickle.load(self.answers)  # noqa: S301  (our own process's answer)
+        except (OSError, EOFError, ValueError, TypeError, AttributeError, pickle.PickleError):
+            return None
+
+    def close(self) -> None:
+        """Hang up."""
+        for pipe in (self.requests, self.answers):
+            with contextlib.suppress(OSError):  # what was not read any more
+                pipe.close()
 
 
 class PictureProcess:
-    """Draws figures in another process, one after the other, in the order in which they are sent.
+    """Draws figures in another process and its copy, begun in the order in which they are sent.
 
-    A context: leaving it ends the process, whatever it is doing.
+    A context: leaving it ends the process and its copy, whatever they are doing.
     """
 
     def __init__(self) -> None:
-        self._child = _started()
-        self._talk = ThreadPoolExecutor(1)
+        self._child, self._lines = _started()
+        self._talk = ThreadPoolExecutor(max(len(self._lines), 1))
+        self._free: SimpleQueue[_Line | None] = SimpleQueue()
+        for line in self._lines or (None,):
+            self._free.put(line)
 
     def __enter__(self) -> PictureProcess:
         """Itself."""
@@ -49,13 +86,12 @@ class PictureProcess:
     def __exit__(self, *_problem: object) -> None:
         """End it."""
         if self._child is not None:
-            self._child.kill()
+            _end(self._child)
         self._talk.shutdown(wait=True, cancel_futures=True)
         if self._child is not None:
             self._child.wait()
-            for pipe in (self._child.stdin, self._child.stdout):
-                with contextlib.suppress(OSError):  # what was not read any more
-                    pipe.close()  # type: ignore[union-attr]  # both are pipes
+        for line in self._lines:
+            line.close()
 
     def draw(self, figure: Figure, folder: Path) -> Future[Pictures]:
         """Begin to draw a figure into a folder; the pictures are None if it must be drawn here instead.
@@ -64,23 +100,12 @@ class PictureProcess:
         """
         return self._talk.submit(self._drawn, figure, folder)
 
-    def close(self) -> None:
-        """Send no more figures: the process may end."""
-        if self._child is not None:
-            self._talk.submit(self._child.stdin.close)  # type: ignore[union-attr]  # a pipe
-
     def _drawn(self, figure: Figure, folder: Path) -> Pictures:
-        if self._child is None:
-            return None
+        line = self._free.get()
         try:
-            request = pickle.dumps(
-                (figure, folder)
-            )  # whole before it is sent: half of one would confuse the other side
-            self._child.stdin.write(request)  # type: ignore[union-attr]  # a pipe
-            self._child.stdin.flush()  # type: ignore[union-attr]  # a pipe
-            return pickle.load(self._child.stdout)  # type: ignore[arg-type]  # noqa: S301  (our own process's answer)
-        except (OSError, EOFError, ValueError, TypeError, AttributeError, pickle.PickleError):
-            return None
+            return None if line is None else line.drawn(figure, folder)
+        finally:
+            self._free.put(line)
 
 
 def _pays() -> bool:
@@ -88,25 +113,52 @@ def _pays() -> bool:
     return cores() > 1 and "matplotlib" not in sys.modules
 
 
-def _started() -> subprocess.Popen[bytes] | None:
-    """Start the process; none where it would not pay or cannot be had."""
+def _started() -> tuple[subprocess.Popen[bytes] | None, list[_Line]]:
+    """Start the process, with lines to it and to its copy; nothing where it would not pay or cannot be had."""
     if not _pays() or not sys.executable or getattr(sys, "frozen", False):
-        return None
+        return None, []
+    # Only on Linux may a process that has loaded its libraries be copied, whatever these are.
+    (its_requests, requests), (answers, its_answers) = (
+        (os.pipe(), os.pipe()) if sys.platform == "linux" else ((-1, -1), (-1, -1))
+    )
+    its = tuple(end for end in (its_requests, its_answers) if end >= 0)
+    lines = [_Line(os.fdopen(requests, "wb"), os.fdopen(answers, "rb"))] if its else []
     try:
-        return subprocess.Popen(  # noqa: S603  (this Python, running this program)
-            [sys.executable, "-c", _PROGRAM, *sys.path],
+        child = subprocess.Popen(  # noqa: S603  (this Python, running this program)
+            [sys.executable, "-c", _PROGRAM, " ".join(map(str, its)), *sys.path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            pass_fds=its,
             # Ctrl-C on the terminal is this process's business.
             start_new_session=True,
             creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
         )
     except OSError:
-        return None
+        for line in lines:
+            line.close()
+        return None, []
+    finally:
+        for end in its:
+            os.close(end)
+    return child, [_Line(child.stdin, child.stdout), *lines]  # type: ignore[arg-type]  # both are pipes
 
 
-def serve() -> None:
-    """Draw what arrives on stdin and answer on stdout, until stdin ends: the other side of `PictureProcess`."""
+def _end(child: subprocess.Popen[bytes]) -> None:
+    """End the process and its copy, which is of its session."""
+    if sys.platform == "linux":
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child.pid, signal.SIGKILL)
+    child.kill()
+
+
+def serve(*copy: int) -> None:
+    """Draw what arrives on stdin and answer on stdout, until stdin ends: the other side of `PictureProcess`.
+
+    Parameters
+    ----------
+    *copy : int
+        Descriptors on which requests come to a copy of the process, and its answers go.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(100_000)  # as in the program itself; what is drawn is freed figure by figure
     answers = os.fdopen(os.dup(1), "wb")
@@ -114,6 +166,12 @@ def serve() -> None:
     from fegear.output.draw_png import warm_up
 
     warm_up()
+    if copy:
+        if os.fork() == 0:  # it holds no end of a pipe that the other process reads or writes
+            os.dup2(copy[0], 0)
+            os.dup2(copy[1], answers.fileno())
+        for end in copy:
+            os.close(end)
     with contextlib.suppress(EOFError, pickle.UnpicklingError, BrokenPipeError):  # until the other side ends
         while True:
             figure, target = pickle.load(sys.stdin.buffer)  # noqa: S301  (from the process that started this one)

@@ -69,6 +69,17 @@ def test_it_draws_the_same_bytes_in_the_same_order(process, tmp_path):
         assert drawn.path.read_bytes() == own.path.read_bytes()
 
 
+def test_its_copy_draws_the_same_bytes(process, tmp_path):
+    if sys.platform == "linux":
+        assert len(process._lines) == 2
+    drawn = []
+    for number, line in enumerate(process._lines):
+        (tmp_path / str(number)).mkdir()
+        (picture,) = line.drawn(figure(), tmp_path / str(number)) or ()
+        drawn.append(picture.path.read_bytes())
+    assert len(set(drawn)) == 1
+
+
 def test_what_it_cannot_draw_is_drawn_here_or_fails_here_in_its_own_words(process, tmp_path, monkeypatch):
     unsent = Figure("lambda", "", "", (Panel(Axis("x"), Axis("y"), (lambda: None,)),))  # type: ignore[arg-type]
     wrong = Figure("wrong", "", "", (Panel(Axis("x"), Axis("y"), (Curve([0.0, 1.0], [0.0]),)),))
