@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         stiffness_table,
         transmission_error,
     )
+    from fegear.workbench.rack import Rack
     from fegear.workbench.rating import rating
     from fegear.workbench.results import Results
     from fegear.workbench.run import run
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 __version__ = "0.2.0"
 
 __all__ = [
-    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "load_sharing",
+    "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "load_sharing",
     "mesh_stiffness_revolution", "rating", "relief",
     "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
@@ -42,6 +43,7 @@ _HOMES = {
     "Gear": "workbench.gear",
     "InputError": "base.errors",
     "Pair": "workbench.pair",
+    "Rack": "workbench.rack",
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
     "load_sharing": "workbench.questions",

@@ -23,6 +23,7 @@ from fegear.case.part import (
     Table,
     refuse,
 )
+from fegear.geometry.rack_relief import RackReliefSpec
 from fegear.geometry.toothed_rack import Rack, RackPins
 
 #: Keys of pins.
@@ -43,6 +44,17 @@ else:
     _RackKeys = keys_of(Rack, base=_PinionPart)
 
 
+if TYPE_CHECKING:
+
+    class RackTipReliefPart(Part, RackReliefSpec):  # type: ignore[misc]  # frozen by pydantic
+        """``tip_relief = { amount, height | length, shape }``."""
+
+else:
+
+    class RackTipReliefPart(keys_of(RackReliefSpec)):
+        """``tip_relief = { amount, height | length, shape }``."""
+
+
 class RackAndPinionPart(_RackKeys):
     """A rack and the pinion on it."""
 
@@ -57,6 +69,11 @@ class RackAndPinionPart(_RackKeys):
     )
     tip_radius_rounding: LengthOrZero = Field(default=0.0, description="Tip rounding radius; 0: sharp tip edge.")
     tip_chamfer: LengthOrZero = Field(default=0.0, description="Height of the tip chamfer; 0: none.")
+    tip_relief: Table[RackTipReliefPart] | None = Field(
+        default=None,
+        description="Tip relief of all teeth of the rack; active with the effect `relief`, as the `relief` of the "
+        "pinion is.",
+    )
     material: Table[MaterialPart] | None = Field(default=None, description="Material. Default: that of the pinion.")
     support: Literal["back", "pins"] = Field(
         default="back", description="Fixed over all of its `back`, or on `pins` (bolts, dowels) at its back."

@@ -15,7 +15,7 @@ from fegear.output.formats import FORMATS
 def export(
     case: CaseFile,
     overrides: Overrides = None,
-    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear. Default: all gears.")] = None,
+    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear or rack. Default: all.")] = None,
     formats: Annotated[
         str,
         typer.Option(

@@ -45,8 +45,8 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="gear, pair, relief, helical, gearbox, train, planetary, ring or study. Default: from the numbers of "
-            "teeth.",
+            help="gear, pair, relief, helical, gearbox, train, planetary, ring, rack or study. Default: from the "
+            "numbers of teeth.",
             autocompletion=complete_kinds,
         ),
     ] = None,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +29,11 @@ from fegear.geometry.relief import (
     root_relief,
     tip_relief,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,13 +171,44 @@ class ReliefSpec:
         InputError
             If it lies elsewhere than the active profile, or takes more than the tooth has.
         """
-        gear = pair.gear(member)
-        low, high = _active_ends(pair, member)
+        first, last = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+
+        def normalised(tip: TipReliefSpec, amount: float) -> EndRelief:
+            return normalised_tip_relief(pair, member, amount, tip.normalised_length or math.nan, tip.shape)
+
+        return self.over(pair.gear(member), _active_ends(pair, member), (first, last), normalised, delta)
+
+    def over(
+        self,
+        gear: Gear,
+        radii: tuple[float, float],
+        rolls: tuple[float, float],
+        normalised: Callable[[TipReliefSpec, float], EndRelief],
+        delta: float = math.nan,
+    ) -> Relief:
+        """The modification of a gear with a given active profile.
+
+        Parameters
+        ----------
+        gear : Gear
+        radii, rolls : (float, float)
+            Of the ends of the active profile [m], that toward the root first, and their roll angles, rising [rad].
+        normalised : callable
+            Tip relief of a normalised length, by its spec and its amount.
+        delta : float
+            Welbourn's Delta [m].
+
+        Raises
+        ------
+        InputError
+            As `built`.
+        """
+        low, high = radii
         found: list[EndRelief | Crowning] = []
         for tip in self.tip:
             amount = tip.removed(delta)
             if tip.normalised_length is not None:
-                found.append(normalised_tip_relief(pair, member, amount, tip.normalised_length, tip.shape))
+                found.append(normalised(tip, amount))
                 continue
             found.append(
                 tip_relief(
@@ -190,10 +227,9 @@ class ReliefSpec:
             crowning(gear, crown.amount, crown.start_radius or low, crown.end_radius or high) for crown in self.crowning
         ]
         whole = CombinedRelief((*found, *self.tables))
-        first, last = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
         for part in (*found, *self.tables):
-            refuse_relief_elsewhere(part, first, last)
-        refuse_deep_relief(gear, whole, first, last)
+            refuse_relief_elsewhere(part, *rolls)
+        refuse_deep_relief(gear, whole, *rolls)
         return whole
 
 

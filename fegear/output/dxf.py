@@ -31,7 +31,8 @@ AS_GENERATED = "as generated, without relief"
 Splines = dict[int, Spline]
 
 
-def _drawing(flanks: str) -> tuple[Any, Any]:
+def drawing(flanks: str) -> tuple[Any, Any]:
+    """A new document in millimetres that says what its flanks are, and its space."""
     import ezdxf
     from ezdxf import units
 
@@ -42,16 +43,20 @@ def _drawing(flanks: str) -> tuple[Any, Any]:
     return document, document.modelspace()
 
 
-def _add_polyline(space: Any, points: Array, layer: str) -> None:
+def add_polyline(space: Any, points: Array, layer: str) -> None:
+    """Add a closed polyline through points, shape (2, N) [mm]."""
     space.add_lwpolyline([(x, y) for x, y in points.T], close=True, dxfattribs={"layer": layer})
 
 
-def _add_curve(space: Any, curve: Drawn, scale: float, turn: float, *, mirrored: bool, known: Splines) -> None:
-    """Add one piece of the outline as the entity that holds it best, mirrored about +y and turned clockwise."""
+def add_curve(
+    space: Any, curve: Drawn, scale: float, turn: float, *, mirrored: bool, known: Splines,
+    beside: Array | float = 0.0,
+) -> None:  # fmt: skip
+    """Add one piece of the outline as the entity that holds it best, mirrored about +y, turned clockwise and moved."""
     side = np.array([[-1.0 if mirrored else 1.0], [1.0]])
 
     def place(points: Array) -> Array:
-        return turned(points * side, turn) * scale
+        return np.asarray(turned(points * side, turn) * scale + beside)
 
     layer = {"layer": "OUTLINE"}
     if isinstance(curve, Line):
@@ -114,30 +119,30 @@ def write_dxf(
         written.append(folder / f"{name}_{part}.dxf")
         document.saveas(written[-1])
 
-    document, space = _drawing(flanks)
-    _add_polyline(space, np.hstack([sector, bore * np.stack([np.sin(arc), np.cos(arc)])]), "OUTLINE")
+    document, space = drawing(flanks)
+    add_polyline(space, np.hstack([sector, bore * np.stack([np.sin(arc), np.cos(arc)])]), "OUTLINE")
     save(document, "tooth_polyline")
 
-    document, space = _drawing(flanks)
-    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE, pieces, back) * _MM, "OUTLINE")
+    document, space = drawing(flanks)
+    add_polyline(space, gear_outline(gear, CHORD_TOLERANCE, pieces, back) * _MM, "OUTLINE")
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_polyline")
 
     smooth = smooth_pieces(pieces)
     halves = ((smooth, False), (smooth_pieces(back) if gear.asymmetric else smooth, True))
-    document, space = _drawing(flanks)
+    document, space = drawing(flanks)
     for curve, mirrored in _one_by_one(halves):
-        _add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
+        add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
     for end, corner in zip(ends, (sector[:, -1], sector[:, 0]), strict=True):
         space.add_line(tuple(end[:, 0]), tuple(corner), dxfattribs={"layer": "OUTLINE"})
     low, high = 90.0 - math.degrees(pitch) / 2, 90.0 + math.degrees(pitch) / 2
     space.add_arc((0.0, 0.0), bore, low, high, dxfattribs={"layer": "BORE"})
     save(document, "tooth_spline")
 
-    document, space = _drawing(flanks)
+    document, space = drawing(flanks)
     for k in range(gear.teeth):
         for curve, mirrored in _one_by_one(halves):
-            _add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
+            add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_spline")
     return written

@@ -82,7 +82,7 @@ def export_gears(
     scene : Scene
     folder : Path
     names : sequence of str
-        Gears of the scene; none for all of them.
+        Gears and racks of the scene; none for all of them.
     formats : str
         Formats separated by commas.
     results : Side, optional
@@ -97,10 +97,11 @@ def export_gears(
         because all gears are helical or there is none.
     """
     wanted = wanted_formats(formats)
-    chosen = _chosen(scene, names)
+    racks = _racks(scene, names, wanted)
+    chosen = [] if names and set(names) <= set(racks) else _chosen(scene, [one for one in names if one not in racks])
     plane, of_gears = _of(wanted, "plane mesh"), [name for name, row in wanted.items() if row.holds != "case"]
     helical = [name for name in chosen if name not in scene.spur_gears]
-    if len(helical) == len(chosen) and plane and len(plane) == len(wanted):
+    if chosen and len(helical) == len(chosen) and plane and len(plane) == len(wanted):
         spur = "a spur gear" if len(helical) == 1 else "spur gears"
         others = " or ".join(name for name, row in FORMATS.items() if row.holds == "flanks")
         rule = f"must be {spur} for {', '.join(sorted(plane))} (plane meshes)"
@@ -111,8 +112,9 @@ def export_gears(
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {', '.join(sorted(plane))} is written for it." for name in helical if plane]
 
-    def write(name: str, gears: Sequence[str], cache: SolutionCache) -> None:
-        files, said = wanted[name].written(Request(scene, folder, tuple(gears), results, cache))
+    def write(name: str, gears: Sequence[str], cache: SolutionCache, *, rack: bool = False) -> None:
+        request = Request(scene, folder, tuple(gears), results, cache)
+        files, said = wanted[name].written_rack(request) if rack else wanted[name].written(request)
         written.extend(_inside(files, name, folder))
         remarks.extend(said)
 
@@ -126,7 +128,13 @@ def export_gears(
                 say(f"Gear {gear}, {name.upper()}: about {predicted:.0f} s of CPU time for {teeth} teeth.")
             write(name, (gear,), cache)
         remarks += _left_out(scene, gear, wanted, fitting)
-    for name in _of(wanted, "case"):
+    for rack in racks:
+        fitting = [name for name, row in wanted.items() if row.racks]
+        for name in fitting:
+            write(name, (rack,), SolutionCache(), rack=True)
+        others = sorted(name for name in of_gears if name not in fitting)
+        remarks += [f"Rack {rack}: no {', '.join(others)} is written for racks."] if others else []
+    for name in _of(wanted, "case") if chosen else ():
         write(name, chosen, SolutionCache())
     if not written and "relief" not in wanted:
         rule = f"wrote nothing: {remarks[0].rstrip('.')}" if remarks else "wrote nothing and said nothing"
@@ -146,8 +154,22 @@ def _chosen(scene: Scene, names: Sequence[str]) -> list[str]:
         raise InputError("gear", "(not given)", "is required for export", "add [gear.NAME]")
     for name in names:
         if name not in every:
-            raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, every))
+            known = [*every, *scene.case.rack]
+            raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, known))
     return list(names or every)
+
+
+def _racks(scene: Scene, names: Sequence[str], wanted: Mapping[str, Format]) -> list[str]:
+    """The racks that are asked for: those that are named, all of them where nothing is and a format holds racks."""
+    held = [name for name, row in FORMATS.items() if row.racks]
+    some = any(row.racks for row in wanted.values())
+    if not names:
+        return list(scene.case.rack) if some else []
+    found = [name for name in names if name in scene.case.rack and name not in scene.gears]
+    if found and not some:
+        raise InputError("--format", f'"{", ".join(wanted)}"', f"is not available for rack {found[0]}",
+                         f"use {', '.join(held)}")  # fmt: skip
+    return found
 
 
 def _refuse_asymmetric(scene: Scene, chosen: Sequence[str], wanted: Mapping[str, Format]) -> None:

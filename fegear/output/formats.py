@@ -87,6 +87,8 @@ class Format:
         Whether the folder of a run may stand in the place of the case.
     asymmetric : bool
         Whether it holds teeth with two different flanks; gears with such teeth are refused by the others.
+    racks : callable or str
+        ``racks(request)`` as `write`, for a rack of the case; empty where the format holds none.
     """
 
     holds: Holds
@@ -98,10 +100,16 @@ class Format:
     seconds: Callable[[Gear], float] | str = ""
     takes_results: bool = False
     asymmetric: bool = False
+    racks: Callable[[Request], Written] | str = ""
 
     def written(self, request: Request) -> Written:
         """Write what is asked for."""
         found: Written = _called(self.write)(request)
+        return found
+
+    def written_rack(self, request: Request) -> Written:
+        """Write the rack that is asked for."""
+        found: Written = _called(self.racks)(request)
         return found
 
     def require(self) -> None:
@@ -126,8 +134,10 @@ def _called(function: Callable[..., Any] | str) -> Callable[..., Any]:
 #: Formats of fegear by their names, in the order in which lists have them and a gear's files are written.
 FORMATS: Mapping[str, Format] = MappingProxyType({
     "dxf": Format(
-        "flanks", "drawing of a tooth and of the gear", "fegear.output.dxf:written_dxf", "*_spline.dxf, *_polyline.dxf",
-        "CAD, wire erosion: the exact outline of tooth and gear with its relief, mm", asymmetric=True,
+        "flanks", "drawing of a tooth and of the gear, or of a rack", "fegear.output.dxf:written_dxf",
+        "*_spline.dxf, *_polyline.dxf",
+        "CAD, wire erosion: the exact outline of tooth and gear, or of a rack, with its relief, mm", asymmetric=True,
+        racks="fegear.output.rack_dxf:written_rack",
     ),
     "step": Format(
         "flanks", "solid of the gear", "fegear.output.step:written_step", "*.step",

@@ -19,6 +19,7 @@ from fegear.base.effects import (
     PAIR_EFFECTS,
     PARAMETRIC,
     PLANE_EFFECTS,
+    RELIEF,
     ROOT_EFFECTS,
     TORQUE_RIPPLE,
     WIDE_EFFECTS,
@@ -288,7 +289,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "compliance and root stress of rack teeth at both ends and in the middle", table="rack.NAME"),
         Entry("rack-transmission-error", "rack.rack_stroke.RACK_TRANSMISSION_ERROR",
               "Transmission error of a rack over the stroke", ("rack-transmission-error",),
-              "load sharing, transmission error, root stress of rack and pinion over the stroke", table="rack.NAME"),
+              "load sharing, transmission error, root stress of rack and pinion over the stroke",
+              effects=(RELIEF.name,), table="rack.NAME"),
     ),
     "Shafts and bearings": (
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,

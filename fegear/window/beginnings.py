@@ -31,7 +31,7 @@ class Job(NamedTuple):
 #: Jobs by name; pictures of them have these names, too.
 JOBS = {
     "pair": Job(
-        "Gear pair under load", "Load sharing, transmission error, mesh stiffness, strength", ("pair",)
+        "Gear pair under load", "Load sharing, transmission error, mesh stiffness, strength; racks", ("pair", "rack")
     ),
     "relief": Job(
         "Profile relief", "Relief to be ground, for one torque or a range, within its tolerances", ("relief",)
@@ -52,7 +52,7 @@ _BY_RESULT = (
     ("relief", ("relief", "design-chart", "flank-design", "fillet-design", "robustness", "sizing")),
     ("train", ("natural-modes", "gear-train", "dynamic", "mesh-force", "torque-ripple", "transmissibility")),
     ("face", ("load-distribution", "tooth-contact", "measured-flanks")),
-    ("pair", ("load-sharing", "rating", "flank-surface", "gear-mesh-power-loss", "transmission-error")),
+    ("pair", ("load-sharing", "rating", "flank-surface", "gear-mesh-power-loss", "transmission-error", "rack-")),
 )  # fmt: skip
 
 

@@ -1,15 +1,18 @@
 """A row of rack teeth: the limit of gears, an own assembly of all teeth, reciprocity; loads as gears' limit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
-from fegear.contact.pair_spec import PairSpec
+from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.rack.over_stroke import base_pitch
 from fegear.contact.rack.rack_contacts import RackContacts
+from fegear.contact.rack.rack_flanks import RackFlanks
 from fegear.contact.rack.rack_teeth import RackCompliance, RackTeeth
 from fegear.fem.plane.elasticity import assemble_two_orders
 from fegear.fem.plane.rack.solved_rack import solve_rack_teeth
@@ -20,7 +23,10 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rack_and_pinion import RackAndPinion, distance_of_backlash
+from fegear.geometry.rack_relief import RackReliefSpec
 from fegear.geometry.rack_tooth import RackTooth
+from fegear.geometry.relief import tip_relief
+from fegear.geometry.relief_spec import ReliefSpec, TipReliefSpec
 from fegear.geometry.toothed_rack import Rack
 
 TEETH, BODY, MODULE = (200, 500, 1000), 3.0, 2e-3
@@ -68,7 +74,11 @@ def limits():
     )
     load = 2000.0
     found = base_pitch(compliance, RackContacts(pair), load, 12, _positions(pair))
-    teeth, errors = [], []
+    of_pinion, of_rack = TipReliefSpec(amount=8e-6, length=1.8e-3), RackReliefSpec(amount=12e-6, length=2e-3)
+    flanks = RackFlanks(tip_relief(pinion, 8e-6, length=1.8e-3), of_rack.built(rack))
+    relieved = base_pitch(compliance, RackContacts(pair), load, 12, _positions(pair), flanks)
+    ground = [FlankSpec(ReliefSpec((of_pinion,))), FlankSpec(ReliefSpec((TipReliefSpec(amount=12e-6, length=2e-3),)))]
+    teeth, errors, with_relief = [], [], []
     for z in TEETH:
         tooth = Tooth(z, basic)
         gear = Gear(tooth, MODULE, (tooth.root_radius - BODY) * MODULE, 0.02)
@@ -77,7 +87,10 @@ def limits():
         spec = PairSpec(GearPair(pinion, gear), (load,), corner_contact=True)
         engaged, x = load_plane(spec, (driving, known)).engagement, _positions(spec.pair)
         errors.append(engaged.solve(engaged.grid(x), [load]).transmission_error[:, 0])
-    return _asked(solved.loaded(12), height), teeth, found, errors
+        spec = replace(spec, driver=ground[0], driven=ground[1], relief=True)
+        engaged = load_plane(spec, (driving, known)).engagement
+        with_relief.append(engaged.solve(engaged.grid(x), [load]).transmission_error[:, 0])
+    return _asked(solved.loaded(12), height), teeth, (found, errors), (relieved, with_relief)
 
 
 @pytest.mark.dear
@@ -95,11 +108,21 @@ def test_tooth_is_the_limit_of_gears(limits):
 @pytest.mark.dear
 def test_transmission_error_is_the_limit_of_gears(limits):
     """Loads, Hertzian contacts and tip corners included; at a corner the limit is reached later."""
-    _, _, found, errors = limits
+    _, _, (found, errors), _ = limits
     off = np.abs(_extrapolated(errors) / found.error - 1.0)
     assert off[:4].max() < 1e-4
     assert off.max() < 1e-3
     assert np.abs(errors[2] / found.error - 1.0).max() > 2e-3
+
+
+@pytest.mark.dear
+def test_transmission_error_with_tip_relief_is_the_limit_of_gears(limits):
+    """Reliefs of equal length along the line of action on both; tip corners included."""
+    _, _, (without, _), (found, errors) = limits
+    off = np.abs(_extrapolated(errors) / found.error - 1.0)
+    assert off[:4].max() < 1e-4
+    assert off.max() < 1e-3
+    assert np.abs(found.error - without.error).max() > 2e-6
 
 
 COARSE = settings_at(-4)

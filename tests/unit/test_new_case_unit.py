@@ -130,7 +130,7 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
         (("x", "--tip-relief", "20 um", "none"), "must have both amount and length"),
         (("x", "--kind", "pair", "--lead-error", "9 um"), 'is not used for a case of kind "pair"'),
-        (("x", "--kind", "bevel"), "known here: gear, gearbox, helical, pair, planetary, relief, ring, study, train"),
+        (("x", "--kind", "bevel"), "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, train"),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "is in a folder that does not exist"),

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fegear
 from fegear.base.errors import InputError
 from fegear.case.built.rack import loaded_rack_inputs, rack_inputs
 from fegear.case.reading import build_scene as scene_of
@@ -19,6 +20,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rack_outline import rack_outline
 from fegear.geometry.rack_tooth import RackTooth
+from fegear.output.export import export_gears
 from fegear.results.catalogue import STAGES
 
 CASE = {
@@ -130,6 +132,105 @@ def results():
     given = case(["rack-geometry", "rack-stiffness", "rack-transmission-error"]) | {"accuracy": {"tolerance": 0.05}}
     scene = build_scene(given)
     return run_plan(scene, make_plan(scene, STAGES))
+
+
+RELIEVED = {"tip_relief": {"amount": "6 um", "height": "0.6 mm"}}
+
+
+def relieved(amount, *, relief, **effects):
+    """The results of the short rack with a relief of its pinion and of itself."""
+    given = case(["rack-transmission-error"], tip_relief=RELIEVED["tip_relief"] | {"amount": amount})
+    given |= {"accuracy": {"tolerance": 0.05}, "effects": {"relief": relief}}
+    given["gear"]["p"]["relief"] = {"tip": {"amount": amount, "length": "1 mm"}}
+    scene = build_scene(given)
+    return run_plan(scene, make_plan(scene, STAGES))
+
+
+def test_relief_of_nothing_changes_nothing_and_relief_that_is_off_is_said(results):
+    before = {value.name: value.value for value in results.values}
+    none, off = relieved("0 um", relief=True), relieved("6 um", relief=False)
+    for found in (none, off):
+        assert all(value.value == before[value.name] for value in found.values)
+    assert not any("relief" in one for one in none.remarks)
+    assert any("leaves out gear.p.relief and rack.r.tip_relief" in one for one in off.remarks)
+
+
+def test_relief_delays_the_contact_of_corners(results):
+    """The transmission error of the single pair stays; where tips enter and leave it changes."""
+    before = {value.name: value.value for value in results.values}
+    after = {value.name: value.value for value in relieved("6 um", relief=True).values}
+    assert after["r.pinion_root_stress"] == pytest.approx(before["r.pinion_root_stress"], rel=1e-9)
+    assert after["r.te_mean"] > before["r.te_mean"] + 0.2
+    assert after["r.te_max"] > before["r.te_max"] + 2.0
+
+
+@pytest.mark.parametrize(
+    ("relief", "words"),
+    [
+        ({"amount": "6 um"}, "rack.r.tip_relief.height = (not given): must be specified, or length"),
+        ({"amount": "6 um", "height": "1 mm", "length": "1 mm"}, "not both"),
+        ({"amount": "6 um", "height": "5 mm"}, "rack.r.tip_relief.height = 5 mm: must be between"),
+        ({"amount": "6 mm", "height": "1 mm"}, "rack.r.tip_relief.amount"),
+        ({"amount": "6 um", "height": "1 mm", "shape": "round"}, "rack.r.tip_relief.shape"),
+    ],
+)
+def test_reliefs_that_do_not_fit_a_rack_are_refused(relief, words):
+    given = case(tip_relief=relief) | {"effects": {"relief": True}}
+    with pytest.raises(InputError) as refused:
+        rack_inputs(build_scene(given), "r")
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "more", [{"amount_over_delta": 1.0, "length": "1 mm"}, {"amount": "6 um", "normalised_length": 1.0}]
+)
+def test_reliefs_of_pairs_only_are_refused_for_the_pinion_of_a_rack(more):
+    given = case() | {"effects": {"relief": True}}
+    given["gear"]["p"]["relief"] = {"tip": more}
+    with pytest.raises(InputError, match=r"gear\.p\.relief\..*requires a pair of gears"):
+        rack_inputs(build_scene(given), "r")
+
+
+def _outline(path):
+    """Points of all entities of a drawing, and their number."""
+    import ezdxf
+    from ezdxf.path import make_path
+
+    entities = list(ezdxf.readfile(path).modelspace())
+    return [np.array([(v.x, v.y) for v in make_path(one).flattening(1e-4)]).T for one in entities]
+
+
+@pytest.mark.parametrize("shape", [None, "linear", "parabolic"])
+def test_drawings_of_a_rack_are_its_outline_with_its_relief(tmp_path, shape):
+    """Closed, of the area of its outline, the relieved flank at the removal's distance."""
+    relief = {} if shape is None else {"tip_relief": {"amount": "50 um", "height": "1 mm", "shape": shape}}
+    scene = build_scene(case(tip_radius_rounding="0.2 mm", **relief))
+    written = export_gears(scene, tmp_path, ("r",), "dxf").files
+    assert written == ("r_rack_polyline.dxf", "r_rack_spline.dxf")
+    (closed,), pieces = _outline(tmp_path / written[0]), _outline(tmp_path / written[1])
+    ends = np.array([[one[:, 0], one[:, -1]] for one in pieces]).reshape(-1, 2)
+    assert all(np.sort(np.hypot(*(ends - end).T))[1] < 1e-6 for end in ends)  # each end meets another
+    area = 0.5 * float(np.sum(closed[0] * np.roll(closed[1], -1) - np.roll(closed[0], -1) * closed[1]))
+    rack = rack_inputs(scene, "r").pair.rack
+    x, y = rack_outline(rack) * 1e3
+    generated = 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+    wide = {None: 0.0, "linear": 1 / 2, "parabolic": 1 / 3}[shape]
+    rounding = 0.2 * (1.0 - math.sin(rack.pressure_angle))  # moved inwards as it is
+    ground = 0.0 if shape is None else 2 * rack.teeth * 0.05 / math.cos(rack.pressure_angle) * (wide + rounding)
+    assert generated - area == pytest.approx(ground, rel=0.05, abs=1e-3)
+
+
+def test_a_rack_in_a_script_answers_as_its_case(results):
+    pinion = fegear.Gear(20, "2 mm", profile_shift=0.3, face_width="20 mm", name="p")
+    rack = fegear.Rack(pinion, 6, "10 mm", name="r", positions=8)
+    found = rack.transmission_error(force="2 kN", tolerance=0.05)
+    assert found.values["r.te_mean"].value == {value.name: value.value for value in results.values}["r.te_mean"]
+    assert rack == fegear.Rack(pinion, 6, "10 mm", name="r", positions=8) != fegear.Rack(pinion, 7, "10 mm", name="r")
+    assert eval(repr(rack), {"Rack": fegear.Rack, "Gear": fegear.Gear}) == rack  # noqa: S307  (what it says of itself)
+    with pytest.raises(InputError, match=r"rack\.r\.force = \(not given\)"):
+        rack.transmission_error()
+    with pytest.raises(InputError, match=r"must be a fegear\.Gear"):
+        fegear.Rack("p", 6, "10 mm")
 
 
 def test_results_state_errors_and_ends(results):

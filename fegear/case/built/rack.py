@@ -7,17 +7,24 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.nearest import nearest
 from fegear.case.part import at
+from fegear.contact.rack.rack_flanks import RackFlanks
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack_and_pinion import RackAndPinion, distance_of_backlash
+from fegear.geometry.rack_relief import RackReliefSpec
 from fegear.geometry.rack_tooth import RackTooth
+from fegear.geometry.relief import UNMODIFIED
 from fegear.geometry.toothed_rack import Rack
 
 if TYPE_CHECKING:
     from fegear.case.rack import RackAndPinionPart
     from fegear.case.reading import Scene
     from fegear.geometry.gear import Gear
+    from fegear.geometry.rack_relief import RackRelief
+    from fegear.geometry.relief import EndRelief, Relief
+    from fegear.geometry.relief_spec import ReliefSpec, TipReliefSpec
 
 #: Keys of the rack's teeth under other names in a case.
 _KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "contact_ratio": "distance", "body":
@@ -35,15 +42,21 @@ class RackInputs:
         Along the rack [N]; 0 where the case has none.
     positions : int
         In a base pitch.
+    flanks : RackFlanks
+        Reliefs of both; none where the effect is off.
     name, pinion : str
         Of the rack and of its pinion.
+    left_out : tuple of str
+        Keys of reliefs that do not count, for the effect is off.
     """
 
     pair: RackAndPinion
     force: float
     positions: int
+    flanks: RackFlanks
     name: str = field(compare=False)
     pinion: str = field(compare=False)
+    left_out: tuple[str, ...] = field(default=(), compare=False)
 
 
 def racks(scene: Scene) -> tuple[str, ...]:
@@ -86,7 +99,58 @@ def rack_inputs(scene: Scene, name: str) -> RackInputs:
     force = part.force or 0.0
     if part.torque is not None:
         force = part.torque / gear.pitch_radius
-    return RackInputs(pair, force, part.positions, name, pinion)
+    if scene.case.effects.relief:
+        return RackInputs(pair, force, part.positions, _flanks(scene, name, pair), name, pinion)
+    return RackInputs(pair, force, part.positions, RackFlanks(), name, pinion, relieved_parts(scene, name))
+
+
+def relieved_parts(scene: Scene, name: str) -> tuple[str, ...]:
+    """Keys of the reliefs that a case gives a rack and its pinion."""
+    pinion = rack_pinion(scene, name)
+    gear = scene.case.gear[pinion]
+    found = [f"gear.{pinion}.{key}" for key in ("relief", "measured") if getattr(gear, key) is not None]
+    return (*found, *([f"rack.{name}.tip_relief"] if scene.case.rack[name].tip_relief is not None else []))
+
+
+def _flanks(scene: Scene, name: str, pair: RackAndPinion) -> RackFlanks:
+    """Reliefs of pinion and rack.
+
+    Raises
+    ------
+    InputError
+        If one does not fit its teeth, or is given by what only a pair of gears has.
+    """
+    part, pinion = scene.case.rack[name], rack_pinion(scene, name)
+    given, relief = gear_flanks(scene, pinion), UNMODIFIED
+    if given.relief is not None:
+        try:
+            relief = _pinion_relief(given.relief, pair)
+        except InputError as error:
+            raise at(f"gear.{pinion}", error) from None
+    return RackFlanks(relief, _rack_relief(part, name, pair.rack))
+
+
+def _rack_relief(part: RackAndPinionPart, name: str, rack: Rack) -> RackRelief | None:
+    if part.tip_relief is None:
+        return None
+    try:
+        return RackReliefSpec(**dict(part.tip_relief)).built(rack)
+    except InputError as error:
+        raise at(f"rack.{name}", error) from None
+
+
+def _pinion_relief(spec: ReliefSpec, pair: RackAndPinion) -> Relief:
+    if spec.wants_delta:
+        raise InputError("relief.amount_over_delta", "(given)", "requires a pair of gears", "set amount")
+    ends = pair.x_start, pair.x_end
+    rolls = [float(pair.roll_length(x)) / pair.pinion.base_radius for x in ends]
+
+    def normalised(tip: TipReliefSpec, _amount: float) -> EndRelief:
+        raise InputError("relief.tip.normalised_length", tip.normalised_length, "requires a pair of gears",
+                         "set length, start_radius or start_roll_angle")  # fmt: skip
+
+    radii = float(pair.radius(ends[0])), float(pair.radius(ends[1]))
+    return spec.over(pair.pinion, radii, (rolls[0], rolls[1]), normalised)
 
 
 def replace_key(error: InputError, key: str) -> InputError:
@@ -124,6 +188,18 @@ def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
             raise InputError("backlash", f"{backlash * 1e6:.6g} um", "must not be negative")
         distance = distance_of_backlash(gear, rack, backlash)
     return RackAndPinion(gear, rack, distance)
+
+
+def drawn_rack(scene: Scene, name: str) -> tuple[Rack, RackRelief | None]:
+    """A rack and the tip relief that the case gives it, whether or not it counts.
+
+    Raises
+    ------
+    InputError
+        Under its key in the case.
+    """
+    rack, part = rack_inputs(scene, name).pair.rack, scene.case.rack[name]
+    return rack, _rack_relief(part, name, rack)
 
 
 def loaded_rack_inputs(scene: Scene, name: str) -> RackInputs:

@@ -47,5 +47,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
                       _LOADED),
     "ring": Kind("internal gear: tooth stiffness and root stress", ("ring",),
                  ("pressure_angle", "profile_shift", "face_width")),
+    "rack": Kind("rack and pinion under load: transmission error and root stress over the stroke", ("pinion",),
+                 (*_TOOTH, "torque", "tip_relief", "relief_length")),
     "study": Kind("root-stress formulas compared with FE for many gears", ("gear",), _TOOTH),
 })  # fmt: skip

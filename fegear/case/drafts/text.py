@@ -110,6 +110,10 @@ _SLOWEST, _FASTEST = 0.5, 1.5
 _ALONG, _CROWNING = 1.6, 0.3
 _ROUNDED = 'relief = {{ tip = {{ amount = {amount}, length = {length}, shape = "parabolic" }} }}'
 _CROWNED = "lead = {{ crowning = {crowning} }}"
+#: Height of a rack's reference line above its back, assumed [modules].
+_RACK_HEIGHT = 9.0
+_RACK_RELIEF = "tip_relief = {{ amount = {tip_relief}, length = {relief_length} }}"
+_NO_RACK_RELIEF = '# tip_relief = { amount = "15 um", length = "2 mm" }'
 #: What a rating asks of a gear besides, assumed.
 _RATED = """\
 tolerance_class = 6     # ISO 1328; assumed
@@ -163,7 +167,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "first": kind.gears[0],
         "second": kind.gears[-1],
         "gears": "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
-        "pair": _pair(answers) if "torque" in kind.asks else "",
+        "pair": _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -174,6 +178,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_gearbox(answers) if answers.kind == "gearbox" else {}),
         **(_study(answers) if answers.kind == "study" else {}),
+        **(_rack(answers) if answers.kind == "rack" else {}),
     }
     template = files("fegear.case.drafts").joinpath("templates", _template(answers)).read_text("utf-8")
     hint = f"#:schema ./{schema}\n" if schema else ""
@@ -358,3 +363,18 @@ def _study(answers: Answers) -> Mapping[str, str]:
         "study_teeth": str(sorted({17, 20, 28, 50, 100, teeth})),
         "study_shift": str(sorted({0.0, 0.3, shift})),
     }
+
+
+def _rack(answers: Answers) -> Mapping[str, str]:
+    """A rack of usual height, with the relief of the pinion."""
+    module, relieved = answers.si("module"), answers.has("tip_relief")
+    texts = _texts(answers, ("torque", "tip_relief", "relief_length") if relieved else ("torque",))
+    return {
+        "reference_height": _length(_RACK_HEIGHT * module),
+        "backlash": _amount(_BACKLASH * module, "um"),
+        "torque": texts["torque"],
+        "torque_note": ", assumed" if answers.assumed("torque") else "",
+        "rack_relief": _RACK_RELIEF.format(**texts) if relieved else _NO_RACK_RELIEF,
+        "rack_relief_effect": "relief = true     # on: tip relief of pinion and rack" if relieved
+        else "# relief = true     # off: for a pinion with relief or a rack with tip_relief",
+    }  # fmt: skip

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.plane.root_stress import Felt, RootStress
+from fegear.contact.rack.rack_flanks import RackFlanks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 #: Roll positions to either side of a place where a pair enters or leaves [base pitches].
 _BESIDE = 1e-6
+#: No relief.
+AS_GENERATED = RackFlanks()
 
 
 @dataclass(frozen=True)
@@ -91,18 +94,23 @@ class Stroke:
         return min(self.tooth.size // 2, self.rack_tension.size - 1)
 
 
-def positions(found: RackContacts, count: int) -> Array:
-    """Roll positions of one base pitch [m]: evenly, and where pairs enter and leave."""
+def positions(found: RackContacts, count: int, flanks: RackFlanks = AS_GENERATED) -> Array:
+    """Roll positions of one base pitch [m]: evenly, where pairs enter and leave, and where a relief has a kink."""
     pair = found.pair
     pitch, start = pair.rack.base_pitch, pair.x_start
     even = (np.arange(count) + 0.5) / count
     leaves = math.fmod((pair.x_end - start) / pitch, 1.0)
     marks = [_BESIDE, 1.0 - _BESIDE]
     marks += [leaves - _BESIDE, leaves + _BESIDE] if _BESIDE < leaves < 1.0 - _BESIDE else []
-    return np.asarray(start + pitch * np.unique(np.concatenate([even, marks])))
+    kinks = np.mod((flanks.breaks(pair) - start) / pitch, 1.0)
+    kinks = kinks[(kinks > _BESIDE) & (kinks < 1.0 - _BESIDE)]
+    return np.asarray(start + pitch * np.unique(np.concatenate([even, marks, kinks])))
 
 
-def base_pitch(compliance: RackCompliance, found: RackContacts, load: float, tooth: int, x: Array) -> BasePitch:
+def base_pitch(
+    compliance: RackCompliance, found: RackContacts, load: float, tooth: int, x: Array,
+    flanks: RackFlanks = AS_GENERATED,
+) -> BasePitch:  # fmt: skip
     """Share a load [N, along the line of action] at positions of pair 0 on a tooth of the rack.
 
     Positions at which no tooth is on the path any more are left out.
@@ -115,7 +123,7 @@ def base_pitch(compliance: RackCompliance, found: RackContacts, load: float, too
         return BasePitch(x, contacts, np.zeros(contacts.x.shape), x)
     # The compliance numbers the rack's teeth as cycle - pair.
     matrices = compliance.matrices(contacts, tooth)
-    shared = matrices.share(contacts.gap, load)
+    shared = matrices.share(flanks.separation(contacts), load)
     return BasePitch(x, contacts, shared.loads[..., 0], shared.transmission_error[:, 0])
 
 
@@ -188,7 +196,9 @@ def root_stresses(unit: UnitStress, found: BasePitch, tooth: int, here: Mask) ->
     return sign * worst, teeth
 
 
-def over_stroke(compliance: RackCompliance, found: RackContacts, force: float, count: int) -> Stroke:
+def over_stroke(
+    compliance: RackCompliance, found: RackContacts, force: float, count: int, flanks: RackFlanks = AS_GENERATED
+) -> Stroke:
     """Roll the pinion along the rack.
 
     Parameters
@@ -199,10 +209,12 @@ def over_stroke(compliance: RackCompliance, found: RackContacts, force: float, c
         Along the rack [N].
     count : int
         Even positions in a base pitch.
+    flanks : RackFlanks
+        Reliefs of both.
     """
     pair = compliance.pair
     cos = math.cos(pair.rack.pressure_angle)
-    x, pitch = positions(found, count), pair.rack.base_pitch
+    x, pitch = positions(found, count, flanks), pair.rack.base_pitch
     tooth = np.arange(pair.rack.teeth + math.ceil(pair.contact_ratio) - 1)
     shape = (tooth.size, x.size)
     travel, error, share = (np.full(shape, np.nan) for _ in range(3))
@@ -215,7 +227,7 @@ def over_stroke(compliance: RackCompliance, found: RackContacts, force: float, c
     for c in tooth:
         key = tuple(_standing(compliance, found, int(c)))
         if key not in known:
-            at = base_pitch(compliance, found, force / cos, int(c), x)
+            at = base_pitch(compliance, found, force / cos, int(c), x, flanks)
             sides: dict[Side, tuple[Array, dict[int, Array]]] = {}
             for side in pinion:
                 worst, teeth = root_stresses(units[side], at, int(c), np.isin(x, at.x))

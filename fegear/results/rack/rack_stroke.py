@@ -138,7 +138,7 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     fine, coarse = compliances(pair, rack_of(upstream, asked.name), solution_of(upstream, asked.pinion))
     found = RackContacts(pair)
     try:
-        stroke = over_stroke(fine, found, force, asked.positions)
+        stroke = over_stroke(fine, found, force, asked.positions, asked.flanks)
     except InputError as error:  # of the load on one pair of teeth
         raise InputError(f"rack.{asked.name}.force", f"{force:.6g} N", error.rule, error.remedy) from None
     work.progress(0.6)
@@ -146,7 +146,7 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     names = StrokeNumbers.__dataclass_fields__
     errors = StrokeNumbers(*(math.nan for _ in names))
     if coarse is not None:
-        other = _numbers(over_stroke(coarse, found, force, asked.positions), force)
+        other = _numbers(over_stroke(coarse, found, force, asked.positions, asked.flanks), force)
         off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
         off["peak_to_peak"] += _sampling(stroke)
         errors = StrokeNumbers(**off)
@@ -190,9 +190,13 @@ def _remarks(seen: Seen) -> Iterator[str]:
         "are not available."
     )
     yield neglecting(
-        f"Rack {name}: friction, profile modifications, deviations and misalignment are not included; the pinion is "
-        "fixed at its bore."
+        f"Rack {name}: friction, deviations and misalignment are not included; the pinion is fixed at its bore."
     )
+    if seen.asked.left_out:
+        yield neglecting(
+            f"Rack {name}: relief is off, which leaves out {' and '.join(seen.asked.left_out)}. Set relief = true "
+            "under [effects]."
+        )
     if seen.asked.pair.pinion.tooth.undercut:
         yield f"Rack {name}: the pinion is undercut; contact starts at its root form circle."
 
