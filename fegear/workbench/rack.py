@@ -60,9 +60,7 @@ class Rack(Described):
     >>> axis.transmission_error(force="2 kN").values["rack.te_mean"]
     """
 
-    def __init__(
-        self, pinion: Gear, teeth: int, reference_height: Length, *, name: str = "rack", **keys: Any
-    ) -> None:
+    def __init__(self, pinion: Gear, teeth: int, reference_height: Length, *, name: str = "rack", **keys: Any) -> None:
         if not isinstance(pinion, Gear):
             raise InputError("pinion", shown(pinion), "must be a fegear.Gear", 'set pinion = fegear.Gear(20, "3 mm")')
         self.pinion, self.name = pinion, name_of(name)
