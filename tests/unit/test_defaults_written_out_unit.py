@@ -126,6 +126,8 @@ MORE = {
     "line error": ("spur_misaligned", {"pair": {"I": {"line_error": {"crowning": "3 um"}}}}),
     "fillet design": ("nasa_four_square", {
         "results": ["fillet-design"], "fillet_design": {"pair": "I", "gear": "test"}}),
+    "rack relief": ("rack_and_pinion", {"effects": {"relief": True}, "rack": {"axis": {
+        "tip_relief": {"amount": "5 um", "height": "0.5 mm"}}}}),
     "grid": ("helical_flank_design", {"flank_design": {"grid": {"crownings": ["2 um"]}}}),
     "followed": ("blankenship_singh", {"transmissibility": {"I": {"follow": {
         "bearing_stiffness": {"start": 0.5, "stop": 2.0},
