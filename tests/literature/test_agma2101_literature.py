@@ -9,6 +9,7 @@ safeties of 14-5 and the helical rows of AGMA 908's tables are recalled. They fo
 """
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -85,6 +86,30 @@ def test_shigley_14_4_a_spur_pair():
     # the metric edition's line of sigma_FP is 8 psi above that of the inch edition: 6.83 for 6.82
     assert list(found.S_F) == pytest.approx([5.62, 6.82], abs=8e-3)
     assert [round(s, 2) for s in found.S_H] == [1.69, 1.52]
+
+
+def test_factors_of_both_gears_stand_beside_each_other():
+    """Of unlike steels, sizes and rims every factor that both gears have has the pinion's value first."""
+    one, service = shigley(0.0, (1.1, 1.2))
+    unlike = allowable_stress("carburized", 2, 600.0), STEELS[1]
+    service = replace(service, backup_ratio=(0.9, 1.1))
+    found = agma2101.rate(one, service, unlike, agma2101.Geometry(0.121, (0.30, 0.40)))
+    values = {factor.symbol: factor.values for factor in found.factors}
+    assert values["sigma_HP"] == (unlike[0].contact, unlike[1].contact)
+    assert values["sigma_FP"] == (unlike[0].bending, unlike[1].bending)
+    assert (values["K_s"], values["Y_J"]) == ((1.1, 1.2), (0.30, 0.40))
+    assert values["K_B"] == pytest.approx([agma2101_factors.rim_factor(m) for m in (0.9, 1.1)])
+    assert (values["sigma_H"], values["sigma_F"]) == (found.contact, found.bending)
+    assert (values["S_H"], values["S_F"]) == (found.S_H, found.S_F)
+    for symbol in ("F_t", "v_t", "K_v", "K_H", "Z_E", "Z_I", "Y_Z"):
+        assert values[symbol][0] == values[symbol][1]
+    less = values["Y_theta"][0] * values["Y_Z"][0]
+    for k in range(2):
+        borne = values["sigma_HP"][k] * values["Z_N"][k] * values["Z_W"][k] / less
+        assert values["S_H"][k] == pytest.approx(borne / values["sigma_H"][k], rel=1e-12)
+        borne = values["sigma_FP"][k] * values["Y_N"][k] / less
+        assert values["S_F"][k] == pytest.approx(borne / values["sigma_F"][k], rel=1e-12)
+    assert values["Z_W"][0] == 1.0
 
 
 def test_shigley_14_5_a_helical_pair():

@@ -38,6 +38,41 @@ def test_tolerances_of_din_3967_are_one_row_of_steps_moved_on():
     assert [din3967._TOLERANCE[0], din3967._TOLERANCE[5]] == rows
 
 
+def test_every_row_of_din_3967_is_read_as_it_is_printed():
+    """Tables 1 and 2 once more, by series: upper allowance and tolerance [um] of the eleven rows of diameters."""
+    ends = (10, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6300, 10000)
+    upper = {
+        "a": (100, 135, 180, 250, 330, 450, 600, 820, 1100, 1500, 2000),
+        "ab": (85, 110, 150, 200, 280, 370, 500, 680, 920, 1250, 1650),
+        "b": (70, 95, 125, 170, 230, 310, 420, 560, 760, 1020, 1350),
+        "bc": (58, 75, 105, 140, 190, 260, 340, 460, 620, 840, 1150),
+        "c": (48, 65, 85, 115, 155, 210, 290, 390, 520, 700, 940),
+        "cd": (40, 54, 70, 95, 130, 175, 240, 320, 430, 580, 780),
+        "d": (33, 44, 60, 80, 110, 145, 200, 270, 360, 480, 640),
+        "e": (22, 30, 40, 56, 75, 100, 135, 180, 250, 330, 450),
+        "f": (10, 14, 19, 26, 35, 48, 64, 85, 115, 155, 210),
+        "g": (5, 7, 9, 12, 17, 22, 30, 41, 56, 75, 100),
+        "h": (0,) * 11,
+    }
+    tolerance = {
+        21: (3, 5, 6, 8, 10, 12, 16, 20, 25, 30, 40), 22: (5, 8, 10, 12, 16, 20, 25, 30, 40, 50, 60),
+        23: (8, 12, 16, 20, 25, 30, 40, 50, 60, 80, 100), 24: (12, 20, 25, 30, 40, 50, 60, 80, 100, 130, 160),
+        25: (20, 30, 40, 50, 60, 80, 100, 130, 160, 200, 250), 26: (30, 50, 60, 80, 100, 130, 160, 200, 250, 300, 400),
+        27: (50, 80, 100, 130, 160, 200, 250, 300, 400, 500, 600),
+        28: (80, 130, 160, 200, 250, 300, 400, 500, 600, 800, 1000),
+        29: (130, 200, 250, 300, 400, 500, 600, 800, 1000, 1300, 1600),
+        30: (200, 300, 400, 500, 600, 800, 1000, 1300, 1600, 2000, 2400),
+    }  # fmt: skip
+    for row, end in enumerate(ends):
+        for millimetres in (end, (ends[row - 1] if row else 0) + 1e-3):
+            for letter, of_rows in upper.items():
+                found = din3967.thickness_limits(f"{letter}25", millimetres * 1e-3)
+                assert found == pytest.approx((of_rows[row] * 1e-6, tolerance[25][row] * 1e-6), rel=1e-9)
+            for number, of_rows in tolerance.items():
+                found = din3967.thickness_limits(f"cd{number}", millimetres * 1e-3)
+                assert found == pytest.approx((upper["cd"][row] * 1e-6, of_rows[row] * 1e-6), rel=1e-9)
+
+
 def test_allowances_of_din_3967_fall_along_the_letters_and_grow_with_the_diameter():
     table = np.array(din3967._UPPER, dtype=float)
     assert (table[:, -1] == 0.0).all()

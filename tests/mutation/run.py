@@ -59,6 +59,8 @@ CALLERS = {
     "fegear/contact/many/over_fillets.py": "fegear/contact/many/many_roots.py",
 }
 COMPILED = tuple(CALLERS)
+#: What looks at the numbers of all modules as they are once imported: constants, defaults, bounds.
+OF_CONSTANTS = "tests/golden/test_constants_golden.py"
 HEAVY = [
     *("numpy", "scipy.optimize", "scipy.interpolate", "scipy.sparse.linalg", "scipy.integrate", "scipy.stats"),
     *("pytest", "hypothesis.strategies", "pint", "pydantic", "skfem", "gmsh", "meshio", "typer", "numba"),
@@ -125,7 +127,7 @@ class Record:
             for maker, heirs in found["heirs"].items():
                 self.heirs[maker].update(heirs)
         self.seconds = {name: taken for name, taken in self.seconds.items() if (ROOT / name.split("::")[0]).exists()}
-        self.of_file = defaultdict(list)
+        self.of_file: dict[str, list[str]] = defaultdict(list)
         for name in self.seconds:
             self.of_file[name.split("::")[0]].append(name)
 
@@ -188,6 +190,8 @@ class Record:
             users = {path}.union(*(self.importers[module, name] for name in names))
             found = set().union(*(self.executed(user, _function_lines(user)) for user in users))
             found |= {name for name in self.seconds if self._names(name, path)}  # a table is read where nothing runs
+        if not isinstance(outer[-1], ast.FunctionDef) or mutant.line < outer[-1].body[0].lineno:
+            found |= set(self.of_file[OF_CONSTANTS])
         more = {heir for name in found for heir in self.heirs.get(name, ())}
         files = {name.split("::")[0] for name in found if "::" in name}
         remembering = [
@@ -196,6 +200,7 @@ class Record:
         more |= {name for one in remembering for name in self.of_file[one]}
         more |= {name for one in found if one.endswith("::*") for name in self.of_file[one[:-3]]}
         far = {name: not self._names(name, path) for name in self.seconds}
+        far |= dict.fromkeys(self.of_file[OF_CONSTANTS], False)
         first = sorted(found & set(self.seconds), key=lambda name: (far[name], self.seconds[name]))
         return first + sorted((more - found) & set(self.seconds), key=self.seconds.__getitem__)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.results.helical.contact_lines import LengthOverCycle, ShownLines
+from fegear.results.helical.tooth_contact_shown import ShownContact
 
 
 @pytest.fixture
@@ -55,3 +56,13 @@ def test_a_cycle_ends_with_its_first_position_and_its_axis_has_room():
     assert LengthOverCycle(found).ends == pytest.approx((9.8, 10.2))
     found.least, found.largest = 0.1e-3, 7e-3
     assert LengthOverCycle(found).ends[0] == 0.0
+
+
+@pytest.mark.parametrize(("kinds", "share", "changes"), [("sssss", 1.0, 1), ("ssees", 0.6, 2), ("sesee", 0.4, 4)])
+def test_share_of_the_cycle_between_edges_is_known_to_a_position_for_each_change(kinds, share, changes):
+    """The last position is beside the first: contact that begins and ends within the cycle changes twice."""
+    names = {"s": "surface", "e": "edge"}
+    mesh = SimpleNamespace(kind=np.array([names[one] for one in kinds]))
+    found = ShownContact(SimpleNamespace(contact=SimpleNamespace(mesh=mesh)))
+    assert found.surface_share == pytest.approx(share)
+    assert found.surface_share_error == pytest.approx(changes / 5)

@@ -11,7 +11,7 @@ from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import root_stress_history, superposed_stress, touching_radius
-from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
+from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth
@@ -114,3 +114,23 @@ def test_a_formula_knows_no_compression_and_no_error(engagement):
     off = tooth_stress(engagement, states, "driver", estimates=False)
     assert off.compression_off(0) is off.range_off(0) is None
     assert off.largest_pressed(0) is not None
+
+
+def test_what_a_formula_does_not_know_is_neither_largest_nor_least():
+    """At the ends of a path a formula may give none: extremes and their errors are those of the rest."""
+    tension = np.array([[np.nan, 5.0], [3.0, np.nan], [7.0, 2.0], [1.0, np.nan]])
+    error = np.array([[np.nan, 0.5], [0.3, np.nan], [0.7, 0.2], [0.1, np.nan]])
+    pressed = np.array([[-4.0, -1.0], [-9.0, -3.0], [-2.0, -8.0], [-1.0, -2.0]])
+    found = ToothStress(np.arange(4.0), tension, pressed, error, -0.01 * pressed)
+    assert [found.worst(i) for i in (0, 1)] == [2, 0]
+    assert [found.error(i) for i in (0, 1)] == [0.7, 0.5]
+    assert found.largest_tension.tolist() == [7.0, 5.0]
+    assert found.tension_range.tolist() == [6.0, 3.0]
+    assert [found.range_off(i) for i in (0, 1)] == pytest.approx([0.8, 0.7])
+    assert found.largest_compression.tolist() == [-9.0, -8.0]
+    assert [found.largest_pressed(i) for i in (0, 1)] == [1, 2]
+    assert [found.compression_off(i) for i in (0, 1)] == pytest.approx([0.09, 0.08])
+    assert not found.knows_error
+    alone = replace(found, compression=None, compression_error=None, tension_error=np.full((4, 2), np.nan))
+    assert (alone.largest_compression, alone.largest_pressed(0), alone.compression_off(0)) == (None, None, None)
+    assert (alone.error(0), alone.range_off(1)) == (None, None)

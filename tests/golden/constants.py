@@ -1,0 +1,166 @@
+"""Numbers that the code states, kept in ``constants.json``: constants and tables, defaults, flags and bounds of fields.
+
+    python tests/golden/constants.py [--accept]
+
+Where a curve is searched in 60 steps instead of 66, a marker is 7 points wide or two inputs differ for no key, most
+results stay as they are, so that nothing else would notice a slip in such a number. Of each module it is kept: what its
+names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
+count in comparisons, and bounds. Long tables are kept as a sum in which every number has a weight of its own. Only what
+is kept and still there is compared; after a change that is meant, ``--accept`` keeps what is found.
+"""
+
+import argparse
+import dataclasses
+import enum
+import importlib
+import inspect
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = Path(__file__).with_suffix(".json")
+#: What ends the program as soon as it is imported.
+PROGRAM = "fegear.__main__"
+#: So many numbers are kept as they are.
+FEW = 12
+_GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
+#: How deep what a name stands for is looked into: rows of tables of dataclasses.
+DEEP = 8
+
+
+def modules():
+    """Names of all modules, with what is written in them."""
+    for path in sorted((ROOT / "fegear").rglob("*.py")):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        if name != PROGRAM:
+            yield name, path
+
+
+def assigned(path):
+    """Names in capitals that a module gives a value at its top; what begins empty is filled as the program runs."""
+    for names in _GIVEN.findall(path.read_text("utf-8")):
+        yield from names.split(", ")
+
+
+def numbers(thing, deep=0):
+    """All numbers in what a name stands for, in its order."""
+    if isinstance(thing, (bool, int, float, np.number, np.bool_)):
+        return [float(thing)]
+    if isinstance(thing, np.ndarray):
+        return [float(one) for one in thing.ravel()] if thing.dtype.kind in "biuf" else []
+    if isinstance(thing, dict):
+        thing = [part for pair in thing.items() for part in pair]
+    elif isinstance(thing, (set, frozenset)):
+        thing = sorted(thing, key=repr)
+    elif dataclasses.is_dataclass(thing) and not isinstance(thing, type) and not isinstance(thing, enum.Enum):
+        thing = [getattr(thing, field.name, None) for field in dataclasses.fields(thing)]
+    if isinstance(thing, (list, tuple)) and deep < DEEP:
+        return [number for part in thing for number in numbers(part, deep + 1)]
+    return []
+
+
+def short(found):
+    """Few numbers as they are; of many their count and a weighted sum over the largest."""
+    if len(found) <= FEW:
+        return [float(f"{one:.10g}") for one in found]
+    known = np.nan_to_num(found, nan=-1.2345, posinf=1e9, neginf=-1e9)
+    largest = max(float(np.abs(known).max()), 1e-300)
+    weights = np.cos(1.0 + 2.399963 * np.arange(len(found)))  # turned by the golden angle: no two alike
+    return [float(len(found)), float(f"{largest:.10g}"), float(f"{np.dot(weights, known / largest):.10g}")]
+
+
+def of_class(kind):
+    """Defaults, flags and bounds of the fields that a class of data declares."""
+    found = {}
+    for name, field in getattr(kind, "model_fields", {}).items():
+        if name in inspect.get_annotations(kind):
+            found[name] = [*numbers(field.default), *numbers(list(field.metadata))]
+    if dataclasses.is_dataclass(kind):
+        for field in dataclasses.fields(kind):
+            if field.name in inspect.get_annotations(kind):
+                flags = [] if field.compare and field.repr else [float(field.compare), float(field.repr)]
+                found[field.name] = [*numbers(field.default), *flags]
+    return found
+
+
+def defaults(function):
+    """What a function takes where nothing is given, by argument."""
+    function = inspect.unwrap(getattr(function, "py_func", getattr(function, "fget", None) or function))
+    try:
+        given = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return {}
+    return {one.name: numbers(one.default) for one in given if one.default is not inspect.Parameter.empty}
+
+
+def of_module(name, path):
+    """All that is kept of a module."""
+    module, found = importlib.import_module(name), {}
+    for known in dict.fromkeys(assigned(path)):
+        found[known] = numbers(getattr(module, known, None))
+    for known, thing in list(vars(module).items()):
+        if getattr(thing, "__module__", None) != name:
+            continue
+        if isinstance(thing, type):
+            found |= {f"{known}.{field}": kept for field, kept in of_class(thing).items()}
+            for method, function in list(vars(thing).items()):
+                if not (dataclasses.is_dataclass(thing) and method.startswith("__")):
+                    given = defaults(getattr(function, "__func__", function))
+                    found |= {f"{known}.{method}({one})": kept for one, kept in given.items()}
+        elif callable(thing):
+            found |= {f"{known}({one})": kept for one, kept in defaults(thing).items()}
+    return {known: short(kept) for known, kept in found.items() if kept}
+
+
+def found():
+    """Of all modules."""
+    every = {name: of_module(name, path) for name, path in modules()}
+    return {name: kept for name, kept in every.items() if kept}
+
+
+def kept():
+    """All that is kept, by module."""
+    return json.loads(KEPT.read_text("utf-8")) if KEPT.exists() else {}
+
+
+def differences(old, new):
+    """What differs of what is in both, in words."""
+    return [
+        f"{module}.{name}: {old[module][name]} was kept, {new[module][name]} is found"
+        for module in old if module in new
+        for name in old[module] if name in new[module]
+        if not same(old[module][name], new[module][name])
+    ]  # fmt: skip
+
+
+def whole(number):
+    """The same, written without a point where it has no digits after it."""
+    return int(number) if number.is_integer() and abs(number) < 1e15 else number
+
+
+def same(one, other):
+    """Whether two lists have the same numbers."""
+    return len(one) == len(other) and bool(
+        np.allclose(np.array(one, float), other, rtol=1e-8, atol=0.0, equal_nan=True)
+    )
+
+
+def main():
+    """Compare, or keep."""
+    wishes = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    wishes.add_argument("--accept", action="store_true", help="keep what is found")
+    asked, new = wishes.parse_args(), found()
+    print(*differences(kept(), new), sep="\n")
+    if asked.accept:
+        parts = []
+        for module in sorted(new):
+            told = {name: [whole(one) for one in of_name] for name, of_name in new[module].items()}
+            parts.append(f" {json.dumps(module)}: {json.dumps(told, sort_keys=True)}")
+        KEPT.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
