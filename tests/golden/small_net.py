@@ -5,17 +5,25 @@
 The golden net (net.py) computes every case at its own tolerance, digit by digit, and takes hours of a processor; this
 one is part of the ordinary tests and notices a wrong line of code: of every column, value and figure it keeps the
 number of numbers, the smallest, largest and mean, and a sum in which every number has a weight of its own, so that none
-changes place unnoticed; of the notes the numbers in them. Words do not count, nor differences below a millionth of the
-largest number, or in notes of one in the last digit printed. Cases of the folder ``small`` take each key of a subject.
+changes place unnoticed; of notes and answer the numbers in them, and how many notes there are of each class; in which
+order values, tables and figures come; of a figure and of the report how many texts they have, of the report how many
+parts of each kind. Words do not count, nor differences below a millionth of the largest number, or in sentences of one
+in the last digit printed. Cases of the folder ``small`` take each key of a subject.
 """
 
 import argparse
+import dataclasses
 import json
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
+
+from fegear.base.notes import NoteClass, class_of
+from fegear.output.figures import described
+from fegear.output.report.run import run_page
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
@@ -173,8 +181,6 @@ def kept_of(values):
 
 def _numbers(thing, into):
     """All numbers of a description of a figure."""
-    import dataclasses
-
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
         thing = [getattr(thing, field.name) for field in dataclasses.fields(thing)]
     if isinstance(thing, dict):
@@ -212,7 +218,33 @@ def of_run(found):
         kept[f"figure {figure.name}"] = of_figure(figure)
     notes = [note for note in found.remarks if "keys of the gears" not in note]  # of a flat optimum, too
     kept["notes"] = sorted((text for note in notes for text in numbers_of(note)), key=float)
+    classes = Counter(class_of(note) for note in found.remarks)
+    kept["notes of each class"] = [classes[kind] for kind in NoteClass]
+    if not any(".optimum_" in value.name for value in found.values):
+        kept["answer"] = [text for sentence in found.answer.sentences for text in numbers_of(sentence)]
+    for kind in ("values", "tables", "figures"):
+        names = [one.name for one in getattr(found, kind)]
+        kept[f"order of {kind}"] = kept_of(np.argsort(names))
+    kept["texts of figures"] = [_parts(figure.made())["text"] for figure in found.figures]
+    parts = _parts(run_page(found, described(found), list(found.remarks)).sections)
+    kept["parts of the report"] = [parts[kind] for kind in sorted(parts)]
     return kept
+
+
+def _parts(thing):
+    """How many texts and how many objects of each kind a description is made of."""
+    if isinstance(thing, str):
+        return Counter(text=1) if thing else Counter()
+    found = Counter()
+    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+        found[type(thing).__name__] = 1
+        thing = [getattr(thing, field.name) for field in dataclasses.fields(thing)]
+    if isinstance(thing, dict):
+        thing = list(thing.values())
+    if isinstance(thing, (list, tuple)):
+        for one in thing:
+            found += _parts(one)
+    return found
 
 
 def numbers_of(note):
@@ -249,7 +281,7 @@ def _same(name, old, new):
     """Whether two summaries say the same numbers; errors, which are estimates, to a half."""
     if len(old) != len(new):
         return False
-    if name == "notes":
+    if name in ("notes", "answer"):
         return all(abs(float(one) - float(other)) <= last_digit(one) for one, other in zip(old, new, strict=True))
     of_value = name.startswith("value ")
     size = 0.0 if of_value else max((abs(one) for one in (*old[1:], *new[1:])), default=0.0)

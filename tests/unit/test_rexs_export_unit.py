@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rexs_cases import imported, same, there_and_back
+from rexs_cases import imported, same, there_and_back, with_all_of_a_flank
 from rexs_models import in_json, planetary_set, two_stages
 
 import fegear.cli
@@ -24,41 +24,6 @@ from fegear.exchange.rexs.written_gearbox import model_text
 
 CASES = Path(__file__).parents[2] / "cases"
 HERE = Path("model.rexs")
-
-
-def with_all_of_a_flank():
-    """Two stages whose first gear has a tool with protuberance, reliefs, a crown, a material, oil and K_A."""
-    document = tomllib.loads(case_of(model_of(in_json(two_stages()), HERE)))
-    document["gear"]["gear_11"] |= {
-        "rack": {"dedendum": 1.4, "tip_radius": 0.3, "protuberance": 0.05, "grinding_allowance": 0.03},
-        "relief": {"tip": [{"amount": "8 um", "start_radius": "20.7 mm"}, {"amount": "2 um", "length": "0.8 mm",
-                   "shape": "parabolic"}], "crowning": [{"amount": "3 um"}]},
-        "lead": {"crowning": "4 um", "slope": "-6 um", "end_relief": [
-            {"amount": "9 um", "length": "4 mm", "end": "I"},
-            {"amount": "7 um", "length": "3 mm", "end": "II", "shape": "parabolic"}]},
-        "tip_diameter": "44.4 mm", "tip_chamfer": "0.1 mm",
-        "strength": {"material": "nitrided-nitriding-steel", "hardness": "700 HV", "contact": "1250 MPa"},
-        "roughness": {"flank": "0.4 um", "root_rz": "9 um"}, "tolerance_class": 4, "bore_radius": "12 mm",
-    }  # fmt: skip
-    document["pair"]["I"] |= {
-        "operation": {"application_factor": 1.35, "life": "8000 h"},
-        "lubricant": {"viscosity_40": "150 mm^2/s", "kind": "polyglycol", "temperature": "80 degC"},
-    }  # fmt: skip
-    document["pair"]["II"]["operation"]["life"] = "8000 h"
-    document["bearing"]["bearing_52"] = {
-        "elements": {"kind": "ball", "count": 9, "diameter": "8 mm", "pitch_diameter": "39 mm", "clearance": "12 um"},
-        "life": {"dynamic_rating": "14 kN", "axial_factor": 1.6, "limit": 0.27, "radial_factor": 0.56},
-    }  # fmt: skip
-    document["bearing"]["bearing_54"] = {"radial": "300 N/um", "radial_clearance": "10 um"}
-    document["shaft"]["shaft_5"] |= {
-        "sections": [{"length": "70 mm", "outer": "40 mm", "inner": "10 mm"},
-                     {"length": "50 mm", "outer": "44 mm", "outer_end": "36 mm"}],
-        "loads": [{"at": "118 mm", "force": ["100 N", "-800 N", "25 N"], "moment": ["3 N*m", "0 N*m", "0 N*m"]}],
-        "material": {"young_modulus": "190 GPa"},
-    }  # fmt: skip
-    document["gear"]["gear_12"]["lead"] = {"slope": "5 um"}
-    document["shaft"]["shaft_4"]["rigid"] = True
-    return build_scene(document, "case", Path())
 
 
 @pytest.mark.parametrize("made", [lambda: imported(two_stages()), with_all_of_a_flank], ids=["plain", "everything"])
