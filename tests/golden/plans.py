@@ -1,4 +1,4 @@
-"""What plans predict, kept in ``plans.json``: seconds and settings of every task of every case.
+"""What plans predict, kept in ``plans.json``: seconds, settings and inputs of every task of every case.
 
     python tests/golden/plans.py [--accept]
 
@@ -8,15 +8,18 @@ but what is promised.
 
 import argparse
 import json
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
+sys.path.insert(0, str(Path(__file__).parent))
 
 
 def of_plan(scene, plan):
-    """Seconds and settings by task; settings as a sum in which every number has a weight of its own."""
+    """Seconds, settings and inputs by task; both as a sum in which every number has a weight of its own."""
     import numpy as np
+    from changed_cases import of_asked
 
     from fegear.engine.plan_in_words import forecast_seconds
 
@@ -26,7 +29,8 @@ def of_plan(scene, plan):
         numbers = np.array([float(one) for one in settings.values() if isinstance(one, (int, float))])
         weights = np.cos(1.0 + 2.399963 * np.arange(numbers.size))
         size = float(weights @ numbers) if numbers.size else 0.0
-        kept[str(step.task)] = [None if seconds is None else float(f"{seconds:.6g}"), float(f"{size:.6g}") + 0.0]
+        kept[str(step.task)] = [None if seconds is None else float(f"{seconds:.6g}"), float(f"{size:.6g}") + 0.0,
+                                *of_asked(step.inputs(scene))]  # fmt: skip
     return kept
 
 

@@ -1,4 +1,4 @@
-"""REXS models become the cases that are kept, as they are and with one attribute changed at a time, and models again."""
+"""REXS models become the cases that are kept, as they are and with one attribute changed, and models again."""
 
 import importlib.util
 from pathlib import Path

@@ -15,7 +15,7 @@ def test_plans_predict_what_they_did():
     assert plans.differences(kept, plans.planned()) == []
     changed = copy.deepcopy(kept)
     case = next(iter(changed))
-    task = next(task for task, (seconds, _) in changed[case].items() if seconds)
+    task = next(task for task, (seconds, *_) in changed[case].items() if seconds)
     changed[case][task][0] *= 1.001
     assert len(plans.differences(kept, changed)) == 1
     del changed[case][task]
