@@ -63,6 +63,6 @@ def test_share_of_the_cycle_between_edges_is_known_to_a_position_for_each_change
     """The last position is beside the first: contact that begins and ends within the cycle changes twice."""
     names = {"s": "surface", "e": "edge"}
     mesh = SimpleNamespace(kind=np.array([names[one] for one in kinds]))
-    found = ShownContact(SimpleNamespace(contact=SimpleNamespace(mesh=mesh)))
+    found = ShownContact(SimpleNamespace(contact=SimpleNamespace(mesh=mesh)), None)
     assert found.surface_share == pytest.approx(share)
     assert found.surface_share_error == pytest.approx(changes / 5)
