@@ -9,7 +9,7 @@
 - ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
   (after ``+-``) by a factor of five; ``...`` stands for anything in a line, alone for any lines but notes: a command
   that has notes for its reader (``Note: ...``) is followed by a block with all of them, whole; their numbers may differ
-  by 5 %, errors in them by a factor of five.
+  by 5 %, errors in them by a factor of five. Columns may stand elsewhere: a number that ends in a zero is shorter.
 - a number of the prose that comes from a run is followed by a comment that no reader sees and that says where from:
   ``229<!-- loaded: I.driver.largest_root_tension -->`` is a value of ``results/loaded``, ``41<!-- = EXPRESSION -->``
   whatever Python makes of the names of the page's programs, of ``value("loaded", "I.te_mean")``, ``error`` and
@@ -178,17 +178,27 @@ def _parts(expected: str) -> list[str]:
     return re.split(rf"((?<![\w.]){_NUMBER}|\.\.\.)", expected.rstrip())
 
 
-def _numbers(expected: str, got: str) -> list[tuple[str, str, str]] | None:
-    """Numbers of two lines that are the same but for them, each with the words before it; None for other lines."""
-    parts = _parts(expected)
+def _texts(part: str) -> str:
+    """Pattern of a line's words: columns of a table move as their numbers have a digit more or less."""
+    return "  +".join(re.escape(words) for words in re.split(r"  +", part))
+
+
+def _printed(expected: str, got: str) -> list[str] | None:
+    """Another line cut as that of the page, if both are the same but for numbers; None for other lines."""
     pattern = "".join(
-        re.escape(part) if i % 2 == 0 else (".*?" if part == "..." else f"({_NUMBER})") for i, part in enumerate(parts)
+        f"({_texts(part) if i % 2 == 0 else '.*?' if part == '...' else _NUMBER})"
+        for i, part in enumerate(_parts(expected))
     )
     found = re.fullmatch(pattern, got)
-    if not found:
+    return list(found.groups()) if found else None
+
+
+def _numbers(expected: str, got: str) -> list[tuple[str, str, str]] | None:
+    """Numbers of two lines that are the same but for them, each with the words before it; None for other lines."""
+    said, printed = _parts(expected), _printed(expected, got)
+    if printed is None:
         return None
-    said = [(parts[i - 1], part) for i, part in enumerate(parts) if i % 2 and part != "..."]
-    return [(before, part, printed) for (before, part), printed in zip(said, found.groups(), strict=True)]
+    return [(said[i - 1], said[i], printed[i]) for i in range(1, len(said), 2) if said[i] != "..."]
 
 
 def _same_numbers(expected: str, got: str) -> bool:
@@ -204,14 +214,15 @@ def _same_in_note(before: str, expected: str, got: str) -> bool:
 
 
 def _renewed(expected: str, got: str) -> str:
-    numbers = iter(_numbers(expected, got) or ())
-    parts = _parts(expected)
-    for i in range(1, len(parts), 2):
-        if parts[i] != "...":
-            before, said, printed = next(numbers)
-            same = _same_in_note if expected.startswith(_NOTE) else _same_number
-            parts[i] = said if same(before, said, printed) else printed
-    return "".join(parts)
+    same = _same_in_note if expected.startswith(_NOTE) else _same_number
+    said, printed = _parts(expected), _printed(expected, got) or ()
+    stays = [part == "..." or same(said[i - 1], part, printed[i]) for i, part in enumerate(said) if i % 2]
+    if all(stays) or "..." in said:
+        return "".join(part if i % 2 == 0 or stays[i // 2] else printed[i] for i, part in enumerate(said))
+    # The columns of a line with a new number are those that are printed.
+    return "".join(
+        said[i] if i % 2 and stays[i // 2] and len(said[i]) == len(part) else part for i, part in enumerate(printed)
+    )
 
 
 def _same_number(before: str, expected: str, got: str) -> bool:

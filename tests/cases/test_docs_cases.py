@@ -235,6 +235,7 @@ def _equations():
             "Note: it moves gaps by 3.95 um; the error reaches 5e-02.",
         ),
         ("Note: te = 7.84 +- 0.02 um (0.26 %).", "Note: te = 7.9 +- 0.03 um (0.38 %)."),
+        ("te [um]    1.205077     2.43", "te [um]     1.20348     2.43"),
     ],
 )
 def test_what_a_page_says_is_what_is_printed(said, printed):
@@ -251,6 +252,8 @@ def test_what_a_page_says_is_what_is_printed(said, printed):
         ("a", "a\nb"),
         ("a\n...\nc", "a\nb"),
         ("x = 1.0 um", "x = 1.0 mm"),
+        ("te [um]    1.205077     2.43", "te [um] 1.205077     2.43"),
+        ("te [um]    1.205077     2.43", "te [um]    1.215077     2.43"),
         ("Note: it moves gaps by 3.93 um.", "Note: it moves gaps by 4.2 um."),
         ("Note: it moves gaps by 3.93 um.", "Note: it closes gaps by 3.93 um."),
         ("Note: te = 7.84 +- 0.02 um (0.2 %).", "Note: te = 7.84 +- 0.2 um (0.2 %)."),
@@ -270,6 +273,12 @@ def test_numbers_that_are_printed_now_are_written_into_a_page_and_words_are_not(
     assert page.read_text() == text.format("a = 2.50 um\n...\nb = 7.01 +- 0.1 mm")
     with pytest.raises(snippets.DifferentError):
         snippets.accepted("c = 2.40 um", "a = 2.40 um")
+
+
+def test_a_row_with_a_new_number_is_written_in_the_columns_that_are_printed():
+    said = "te [um]    1.205077     2.43"
+    assert snippets.accepted(said, "te [um]     1.20348     2.43") == f"{said}\n"  # the same: it stays
+    assert snippets.accepted(said, "te [um]     1.25348     2.44") == "te [um]     1.25348     2.43\n"
 
 
 RUN = """```sh
