@@ -42,7 +42,7 @@ def run(
     scheduler: Scheduler = None,
     cache: Annotated[
         bool,
-        typer.Option("--cache", help="Use the disk cache for tooth FE solutions and chart points."),
+        typer.Option("--cache", help="Use the disk cache for tooth FE solutions, relief searches and chart points."),
     ] = False,
     fields: Annotated[
         bool,

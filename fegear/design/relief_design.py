@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.base.solution_cache import SolutionCache
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
@@ -81,9 +82,9 @@ class DesignTask:
         """Loads at which reliefs are compared: those of the range, or all of the curves [N]."""
         return self.loads if self.over is None else self.over.loads
 
-    def grind_on(self, engagement: Engagement, shape: Shape) -> TipReliefPair:
+    def grind_on(self, engagement: Engagement, shape: Shape, cache: SolutionCache | None = None) -> TipReliefPair:
         """The reliefs of a shape to grind, for the range or for the design load."""
-        return grindable(engagement, self.load if self.over is None else self.over, shape, self.metric)
+        return grindable(engagement, self.load if self.over is None else self.over, shape, self.metric, cache=cache)
 
 
 @dataclass(frozen=True)
@@ -161,6 +162,7 @@ def design_relief(
     shifted: Sequence[Engagement],
     task: DesignTask,
     progress: Callable[[float], None] | None = None,
+    cache: SolutionCache | None = None,
 ) -> ReliefDesign:
     """Design the relief of both gears of a pair.
 
@@ -173,6 +175,8 @@ def design_relief(
         The same with one compliance each off by its estimated error.
     task : DesignTask
     progress : callable, optional
+    cache : SolutionCache, optional
+        Where searches for tip reliefs are recalled from and kept.
     """
     report = progress or (lambda _fraction: None)
     load, chosen = task.load, None
@@ -196,10 +200,10 @@ def design_relief(
     ground: dict[Shape, TipReliefPair] = {}
     for_one_load: dict[Shape, TipReliefPair] = {}
     for number, shape in enumerate(dict.fromkeys(task.grind)):
-        ground[shape] = task.grind_on(designed, shape)
+        ground[shape] = task.grind_on(designed, shape, cache)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         if task.over is not None:
-            for_one_load[shape] = grindable(designed, load, shape, task.metric)
+            for_one_load[shape] = grindable(designed, load, shape, task.metric, cache=cache)
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
     if (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):

@@ -6,14 +6,19 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize
 
+from fegear.atlas.shipped import shipped_atlas
+from fegear.base.keys import has_content
+from fegear.base.solution_cache import cache_on_disk
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.charts import bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
+from fegear.design.tip_relief.grindable import optimise_tip_relief
 from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.search import (
     _RULE,
+    FOUND,
     _apart,
     _are_like,
     _driver_deeper,
@@ -420,6 +425,34 @@ def test_the_course_of_searches(teeth, power, metric, count, solved, least, best
     if metric == "peak_to_peak":
         # Two searches of an end may be 1.8e-3 of the path apart after changes of 1e-16 of the compliances.
         assert (found.band_error <= 2.0 * known).all()
+
+
+@pytest.mark.dear
+def test_searches_are_recalled_and_under_several_loads_ends_of_bands_are_within_their_errors(tmp_path):
+    loads, atlas, rack = np.array([0.5 * LOAD, LOAD]), shipped_atlas("A"), BasicRack(1.0, 1.25, 0.38)
+    gears = [Gear(tooth, 3e-3, 0.5 * 3e-3 * tooth.root_radius, 0.03) for tooth in (Tooth(24, rack), Tooth(36, rack))]
+    e = Engagement(PairCompliance(GearPair(*gears), *(atlas.compliance(gear) for gear in gears)))
+    fresh, again = (
+        optimise_tip_relief(e, loads, "parabolic", "peak_to_peak", cache=cache_on_disk(tmp_path)) for _ in range(2)
+    )
+    found = cache_on_disk(tmp_path).call_kept(FOUND, search, e, loads, 2.0, "peak_to_peak").value
+    assert fresh.seconds == again.seconds == found.seconds  # not searched again
+    np.testing.assert_array_equal(fresh.error, again.error)
+    assert (fresh.driver, fresh.driven, fresh.driver_band) == (again.driver, again.driven, again.driver_band)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fegear.design.tip_relief.search._LAST", 40)
+        thorough = search(e, loads, 2.0, "peak_to_peak")
+    np.testing.assert_allclose(thorough.best, found.best, rtol=1e-6)
+    assert (np.abs(found.band - thorough.band) <= found.band_error + thorough.band_error).all()
+    assert (found.band[0] <= found.best * (1.0 + 1e-9)).all()
+    assert (found.best <= found.band[1] * (1.0 + 1e-9)).all()
+
+
+def test_compliances_of_which_no_key_is_made_are_searched_each_time(pair, tmp_path):
+    assert not has_content(pair)  # a formula is a function
+    cache = cache_on_disk(tmp_path)
+    assert optimise_tip_relief(pair, [LOAD], cache=cache).driver == optimise_tip_relief(pair, [LOAD]).driver
+    assert cache.shapes.computed == 0
 
 
 def test_even_positions_stand_on_both_sides_of_every_change_and_weigh_a_pitch(pair):

@@ -18,6 +18,7 @@ from fegear.geometry.pair import MEMBERS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from fegear.base.solution_cache import SolutionCache
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.engagement import Engagement
     from fegear.design.relief_design import DesignTask
@@ -96,6 +97,7 @@ def neglected_in_design(
     ground: tuple[Shape, TipReliefPair] | None,
     task: DesignTask,
     tolerance: float,
+    cache: SolutionCache | None = None,
 ) -> dict[str, tuple[str, ...]]:
     """What an effect that is off does to a designed relief, and to what it leaves, where that exceeds the tolerance.
 
@@ -134,7 +136,7 @@ def neglected_in_design(
                     sizes.append(f"the {member}'s relief by {figures(size * 1e6, signed=True)} um ({where})")
         if effect == CORNER_CONTACT.name and ground is not None:
             shape, best = ground
-            other_best = task.grind_on(other, shape)
+            other_best = task.grind_on(other, shape, cache)
             if abs(other_best.objective - best.objective) > max(tolerance, _EQUALLY_GOOD) * best.objective:
                 to_grind = f"{_to_grind(other_best)}, instead of {_to_grind(best)}"
                 sizes.append(f"the best {shape} tip relief to grind: {to_grind}")

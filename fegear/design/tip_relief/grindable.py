@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,12 +9,14 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
+from fegear.base.keys import has_content
+from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import effective_error
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import Metric
 from fegear.design.load_range import LoadRange, proportions
-from fegear.design.tip_relief.search import SHARE, search
+from fegear.design.tip_relief.search import FOUND, SHARE, search
 from fegear.geometry.gear import Gear
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 
@@ -103,6 +104,8 @@ def optimise_tip_relief(
     shape: Shape = "linear",
     metric: Metric = "effective_error",
     weights: ArrayLike | None = None,
+    *,
+    cache: SolutionCache | None = None,
 ) -> TipReliefPair:
     """Find amount and length of tip relief on both gears for the least excitation over a range of loads.
 
@@ -119,6 +122,8 @@ def optimise_tip_relief(
     metric : {"effective_error", "peak_to_peak"}
     weights : array_like, shape (L,), optional
         What each load counts, over the largest of them; one of weight zero does not count. All the same by default.
+    cache : SolutionCache, optional
+        Where searches are recalled from and kept.
 
     Raises
     ------
@@ -131,10 +136,14 @@ def optimise_tip_relief(
     if not (np.isfinite(w).all() and (w > 0.0).all()):
         raise InputError("design.loads", f"{w.min()} N", "must be positive and finite")
     power = 1.0 if shape == "linear" else 2.0
-    begun = time.process_time()
     weight, counts = _weights(weights, w)
-    found = search(engagement, w[counts], power, metric, weight)
-    seconds = time.process_time() - begun
+    plain = replace(
+        engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED,
+        driver_spacing=np.empty(0), driven_spacing=np.empty(0),
+    )  # fmt: skip
+    asked = plain, w[counts], power, metric, weight
+    kept = cache is not None and has_content(plain)  # compliances may be functions, of which no key is made
+    found = cache.call_kept(FOUND, search, *asked).value if cache is not None and kept else search(*asked)
     pair = engagement.pair
     gears = pair.driver, pair.driven
     tips, *ends = (
@@ -142,8 +151,7 @@ def optimise_tip_relief(
         for p in (found.best, *found.band)
     )
     driver_band, driven_band = ((ends[0][i], ends[1][i]) for i in (0, 1))
-    plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
-    before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
+    before = _left(plain, w)
     after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
     objective = float((after[metric][counts] * proportions(w[counts], weight)).max())
     # More may be left than the search saw, or less: what is allowed moves by as much; over the whole band it is SHARE.
@@ -154,7 +162,7 @@ def optimise_tip_relief(
     return TipReliefPair(
         tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
         driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
-        max(found.spread, off), off, seconds,
+        max(found.spread, off), off, found.seconds,
     )  # fmt: skip
 
 
@@ -188,8 +196,9 @@ def _left(engagement: Engagement, loads: Array) -> dict[str, Array]:
 
 
 def grindable(
-    engagement: Engagement, load: float | LoadRange, shape: Shape = "linear", metric: Metric = "peak_to_peak"
-) -> TipReliefPair:
+    engagement: Engagement, load: float | LoadRange, shape: Shape = "linear", metric: Metric = "peak_to_peak", *,
+    cache: SolutionCache | None = None,
+) -> TipReliefPair:  # fmt: skip
     """Find the straight or parabolic tip reliefs that leave the least error at the design load, or over a range.
 
     Parameters
@@ -200,6 +209,8 @@ def grindable(
         Design load [N], or the loads of a range.
     shape : {"linear", "parabolic"}
     metric : {"peak_to_peak", "effective_error"}
+    cache : SolutionCache, optional
+        Where searches are recalled from and kept.
     """
     over = load if isinstance(load, LoadRange) else LoadRange((load,))
-    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights)
+    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights, cache=cache)

@@ -245,7 +245,9 @@ class _Led:
         return self if self.joins is None else self.joins.end
 
 
-def refine(trials: Trials, starts: Floats, limits: Limits, aim: Aim | None = None) -> tuple[Floats, Floats, Mask, int]:
+def refine(
+    trials: Trials, starts: Floats, limits: Limits, aim: Aim | None = None, rounds: int = _ROUNDS
+) -> tuple[Floats, Floats, Mask, int]:
     """Lead reliefs to the minima nearby, to all digits that matter.
 
     All go on together, for trying many costs little more than trying one; of two that meet the lower goes on.
@@ -257,6 +259,8 @@ def refine(trials: Trials, starts: Floats, limits: Limits, aim: Aim | None = Non
     limits : Limits
     aim : Aim, optional
         What is left by default.
+    rounds : int
+        At most.
 
     Returns
     -------
@@ -282,7 +286,7 @@ def refine(trials: Trials, starts: Floats, limits: Limits, aim: Aim | None = Non
     starts = np.clip(starts, limits.low, limits.high)
     every = tried_at([(p, aim.of(np.array([i]))) for i, p in enumerate(starts)])
     active = [one for one in every if one.left > 0.0]
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         evaluations += 9 * len(active)
         new = [_next(trials, one, limits) for one in active]
         to = [(p, one.aim) for one, p in zip(active, new, strict=True) if p is not None]

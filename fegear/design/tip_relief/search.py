@@ -17,11 +17,14 @@ two like gears either may have either relief: the driver takes the deeper one, a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import time
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
 from fegear.base.arrays import Floats, Index, Mask
+from fegear.base.plain import pack, unpack
+from fegear.base.solution_cache import Codec
 from fegear.contact.fourier import Panels
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
@@ -54,6 +57,10 @@ _STAGES = {
 _GROUNDS, _CHOSEN = 3, 3
 #: Valleys from which the least removal is looked for besides.
 _VALLEYS = 6
+#: Under several loads the ends of the band are led outward by descents, of first regions of trust and rounds, and to
+#: their last digits no more than so many rounds: each would cost nine times as much, and the ends hang on each other's
+#: loads so that it comes to none.
+_OUTWARD, _LAST = (0.2, 15), 4
 #: Ends that leave so many times the least are not led on; a penalty below this is none, and
 #: ends of a band are known to this, in their units.
 _HOPELESS, _WITHIN = 1.03, 1e-3
@@ -156,6 +163,8 @@ class Found:
         Load sharings over a base pitch solved exactly.
     starts : int
         Places of the scan that lie apart from which both went out.
+    seconds : float
+        CPU time of the search.
     """
 
     best: Floats
@@ -167,6 +176,18 @@ class Found:
     candidates: int
     evaluations: int
     starts: int
+    seconds: float = field(compare=False)
+
+
+def _read(data: bytes | memoryview) -> Found | None:
+    try:
+        return Found(**unpack(data))  # type: ignore[arg-type]  # what is wrong shows itself
+    except (ValueError, KeyError, TypeError):
+        return None
+
+
+#: How a search is kept.
+FOUND: Codec[Found] = Codec(lambda found: pack(asdict(found)), _read)
 
 
 def search(
@@ -187,7 +208,7 @@ def search(
     weights : ndarray, shape (L,), optional
         What each load counts, positive; all the same by default.
     """
-    pair = engagement.pair
+    begun, pair = time.process_time(), engagement.pair
     coarse = Trials(bench(engagement, 5, 6), loads, power, metric, weights)
     # Several loads and many sets of pairs cost as much as many candidates: fewer of these keep the time.
     work = sum(s.base.size for s in coarse.quick.sets) / coarse.bench.points.x.size
@@ -223,7 +244,8 @@ def search(
     p, values = np.concatenate([grounds, p]), np.append(lefts, values)
     best, count = _among_equals(trials, p[values <= allowed], valleys, allowed, limits, like)
     return Found(
-        best.chosen, best.left, least, spread, best.band, best.band_error, candidates, solved + count, starts
+        best.chosen, best.left, least, spread, best.band, best.band_error, candidates, solved + count, starts,
+        time.process_time() - begun,
     )  # fmt: skip
 
 
@@ -329,12 +351,8 @@ def _among_equals(
     for some in (one if one.size else known for one in each):
         both = np.concatenate([some, _mirrored(some)]) if like else some
         begun.append(both[(both / unit @ outward.T).argmax(axis=0)])
-    starts = np.concatenate([fewest, *begun])
-    along = np.concatenate([np.tile(_RULE, (fewest.shape[0], 1)), -outward, -outward])
-    p, left, ended, count = refine(trials, starts, limits, Aim(along, allowed))
+    p, left, ends, ended, count = _ends_of(trials, fewest, begun, outward, allowed, limits)
     solved += count
-    p, ends = p[: fewest.shape[0]], p[fewest.shape[0] :].reshape(2, 8, 4)
-    left, ended = left[: fewest.shape[0]], ended[fewest.shape[0] :].reshape(2, 8)
     # An end that was still on its way may go on by twice as far again.
     own = np.arange(8), np.tile(np.arange(4), 2)
     moved = np.array([2.0 * np.abs(one - first)[own] for one, first in zip(ends, begun, strict=True)])
@@ -353,6 +371,33 @@ def _among_equals(
     apart = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
     error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, apart)
     return _Choice(p[best], float(left[best]), np.array([low.min(axis=0), high.max(axis=0)]), error), solved
+
+
+def _ends_of(
+    trials: Trials, fewest: Floats, begun: list[Floats], outward: Floats, allowed: float, limits: Limits
+) -> tuple[Floats, Floats, Floats, Mask, int]:
+    """Lead reliefs to the least removal, and others outward.
+
+    Returns
+    -------
+    p, left : ndarray, shapes (B, 4), (B,)
+        Of those with the least removal, and what they leave [m].
+    ends, ended : ndarray, shapes (2, 8, 4), (2, 8)
+        Of both halves of the others, and whether they came to an end.
+    evaluations : int
+    """
+    several, solved, many = trials.loads.size > 1, 0, fewest.shape[0]
+    inward, away = np.tile(_RULE, (many, 1)), np.concatenate([-outward, -outward])
+    ends = np.concatenate(begun)
+    if not several:
+        p, left, ended, solved = refine(
+            trials, np.concatenate([fewest, ends]), limits, Aim(np.concatenate([inward, away]), allowed)
+        )
+        return p[:many], left[:many], p[many:].reshape(2, 8, 4), ended[many:].reshape(2, 8), solved
+    p, left, _, solved = refine(trials, fewest, limits, Aim(inward, allowed))
+    ends, _, count = descend(trials.exact, trials, ends, limits, *_OUTWARD, Aim(away, allowed))
+    ends, _, ended, last = refine(trials, ends, limits, Aim(away, allowed), _LAST)
+    return p, left, ends.reshape(2, 8, 4), ended.reshape(2, 8), solved + count + last
 
 
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:

@@ -110,11 +110,11 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
         inputs.over, inputs.tolerances,
     )  # fmt: skip
-    design = design_relief(pair.engagement, pair.shifted, task, work.progress)
+    design = design_relief(pair.engagement, pair.shifted, task, work.progress, work.cache)
     best = design.best_ground if design.ground else None
     neglected: dict[str, tuple[str, ...]] = {}
     if inputs.neglected:
-        neglected = neglected_in_design(inputs.asked, design.designed, best, task, inputs.tolerance)
+        neglected = neglected_in_design(inputs.asked, design.designed, best, task, inputs.tolerance, work.cache)
     wanted = part.roll_angles or ()
     points = {member: relief_at(design.designed, member, wanted) for member in MEMBERS if wanted}
     return ReliefData(pair, design, neglected, points)

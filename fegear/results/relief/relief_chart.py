@@ -241,7 +241,8 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     work.progress(0.3)
     finer = relief_chart(e, *chart.finer(), loads, asked.shape, over.weights)
     work.progress(0.5)
-    return ReliefChartData(pair, chart, grindable(e, over, asked.shape, inputs.metric), finer, delta)
+    best = grindable(e, over, asked.shape, inputs.metric, cache=work.cache)
+    return ReliefChartData(pair, chart, best, finer, delta)
 
 
 def unit_in_words(seen: Seen) -> str:
