@@ -141,15 +141,6 @@ def content_key(*parts: object) -> str:
     return _Content(set()).digest(parts)
 
 
-def has_content(*parts: object) -> bool:
-    """Whether a key can be made of data: of functions that somebody hands over none can."""
-    try:
-        content_key(*parts)
-    except TypeError:
-        return False
-    return True
-
-
 #: What calls have made, by the object's identity, as long as it lives.
 _MADE: dict[int, tuple[weakref.ref[Any], Key]] = {}
 

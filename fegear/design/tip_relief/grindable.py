@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Mask
 from fegear.base.errors import InputError
-from fegear.base.keys import has_content
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import effective_error
 from fegear.contact.plane.engagement import Engagement
@@ -142,8 +141,7 @@ def optimise_tip_relief(
         driver_spacing=np.empty(0), driven_spacing=np.empty(0),
     )  # fmt: skip
     asked = plain, w[counts], power, metric, weight
-    kept = cache is not None and has_content(plain)  # compliances may be functions, of which no key is made
-    found = cache.call_kept(FOUND, search, *asked).value if cache is not None and kept else search(*asked)
+    found = (cache or SolutionCache()).call_kept_if_known(FOUND, search, *asked)  # compliances may be functions
     pair = engagement.pair
     gears = pair.driver, pair.driven
     tips, *ends = (

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -176,7 +176,7 @@ class Found:
     candidates: int
     evaluations: int
     starts: int
-    seconds: float = field(compare=False)
+    seconds: float
 
 
 def _read(data: bytes | memoryview) -> Found | None:

@@ -35,7 +35,7 @@ ODD = "odd-gear-solution"
 #: That of the same gears on the flanks with which they drive, where they are driven by the others.
 OTHER = "odd-gear-other-flank"
 #: Seconds of a ring with one odd sector with the default settings, and of each further odd tooth.
-_RING, _CRACK = 1.0, 0.3
+_RING, _CRACK = 0.12, 0.08
 #: Places over the flank at which a crack is looked at; beyond which share of them it counts as closed.
 _PLACES, _MOSTLY = 11, 0.5
 #: What results on cracks rest on.

@@ -57,7 +57,7 @@ INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_
 #: Changes of deflections so small beside the transmission error are none.
 _EXACT = 1e-6
 #: Seconds of a base pitch.
-_PITCH = 0.4
+_PITCH = 0.04
 
 
 @dataclass(frozen=True)

@@ -127,5 +127,5 @@ RACK_STIFFNESS = Stage(
     compute=_compute,
     present=_SHEET.present,
     cites=citing(*RING, PATCH),
-    forecast=lambda _scene, _name: forecasts.constant(0.5),
+    forecast=lambda _scene, _name: forecasts.constant(0.1),
 )

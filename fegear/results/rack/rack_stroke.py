@@ -249,7 +249,7 @@ def _check(scene: Scene, name: str) -> None:
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     part = scene.case.rack[name]
-    return forecasts.constant(0.5 + 0.004 * min(part.teeth, 35) * part.positions)
+    return forecasts.constant(0.1 + 0.001 * min(part.teeth, 35) * part.positions)
 
 
 RACK_TRANSMISSION_ERROR = Stage(

@@ -27,7 +27,7 @@ SOLUTION = "rack-solution"
 #: Neighbours on either side that a loaded tooth of a rack is coupled to.
 REACH = 2
 #: Seconds of one sector and its row, besides that of the pinion.
-_SECONDS = 2.0
+_SECONDS = 0.15
 
 
 @dataclass(frozen=True)

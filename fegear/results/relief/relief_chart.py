@@ -344,7 +344,7 @@ def _chart_forecast(scene: Scene, name: str) -> Forecast:
     amounts = len((chart and (chart.amounts or chart.amounts_over_delta)) or ()) or 16
     lengths = len((chart and chart.lengths) or ()) or 26
     loads = len((chart and chart.loads) or ()) or forecasts.loads(scene, name)
-    corners = 3.0 if scene.case.effects.corner_contact else 1.0
+    corners = 2.0 if scene.case.effects.corner_contact else 1.0
     return Forecast(
         {"candidates": amounts * lengths, "loads": loads}, corners * (1.2 + 4e-4 * amounts * lengths * loads)
     )
