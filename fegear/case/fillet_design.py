@@ -14,6 +14,11 @@ class FilletDesignPart(Part):
 
     pair: str | None = Field(default=None, description="Pair. Default: the only plane (2D) pair.")
     gear: str | None = Field(default=None, description="Gear of the pair. Default: its driver.")
+    other_pair: str | None = Field(
+        default=None,
+        description="Pair that loads the other flanks of the gear, as of a planet between sun and ring gear. Default: "
+        "they are loaded as in `pair` (with the objective `alternating`).",
+    )
     objective: Literal["tension", "alternating"] = Field(
         default="tension",
         description="Stress to be minimised: `tension`, maximum root stress over the mesh; `alternating`, half its "

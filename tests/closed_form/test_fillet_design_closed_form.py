@@ -9,7 +9,7 @@ import pytest
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.maker import load_plane
 from fegear.design.fillet.fillet_bench import FilletBench, search_settings
-from fegear.design.fillet.fillet_design import SEARCHES, _start, design_fillet, full_rounded, moved
+from fegear.design.fillet.fillet_design import SEARCHES, LoadedSolved, _start, design_fillet, full_rounded, moved
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import search
 from fegear.design.fillet.moved_ellipses import MovedEllipses
@@ -105,7 +105,7 @@ def test_the_mesh_of_a_search_follows_fillets():
 def test_three_searches_agree_and_finer_solutions_confirm_the_gain(objective):
     solved = solve_to_tolerance(GEAR, 1e-2, reach=2)
     loaded = load_plane(SPEC, (solved, solved))
-    design = design_fillet(loaded, SPEC, (solved, solved), "driver", Limits(), objective)
+    design = design_fillet(LoadedSolved(loaded, SPEC, (solved, solved), "driver"), Limits(), objective)
     assert design.spread < 2e-3
     assert len(design.found) == 3
     gain, error = design.gain(design.present)

@@ -14,7 +14,7 @@ from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.design.fillet import fillet_design
 from fegear.design.fillet.fillet_bench import SHARES, FilletBench, Judged
-from fegear.design.fillet.fillet_design import FilletDesign, Stressed, design_fillet
+from fegear.design.fillet.fillet_design import FilletDesign, LoadedSolved, Stressed, design_fillet
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.design.fillet.fillet_search import KEPT, Found, search
 from fegear.design.fillet.moved_ellipses import MovedEllipses
@@ -180,7 +180,7 @@ def test_a_design_is_searched_thrice_from_what_can_be_and_loaded_with_three_teet
 
     class Final:
         def __init__(self, *given):
-            assert given == (pair, SPEC, (solved, solved), "driver", "tension", 0.5, True)
+            assert given == (asked, None, "tension", 0.5)
 
         def stressed(self, name, tooth):
             said.append((name, tooth))
@@ -189,9 +189,8 @@ def test_a_design_is_searched_thrice_from_what_can_be_and_loaded_with_three_teet
     monkeypatch.setattr(fillet_design, "search", searching)
     monkeypatch.setattr(fillet_design, "_Final", Final)
     monkeypatch.setattr(FilletBench, "largest", lambda bench, tooth: 77.0)
-    progress = []
-    design = design_fillet(pair, SPEC, (solved, solved), "driver", Limits(0.02, 0.2), tolerance=0.5,
-                           progress=progress.append, alike=True)  # fmt: skip
+    progress, asked = [], LoadedSolved(pair, SPEC, (solved, solved), "driver", alike=True)
+    design = design_fillet(asked, Limits(0.02, 0.2), tolerance=0.5, progress=progress.append)
     assert searched == [("waves", 7, [0.0, 0.0], 0.0), ("waves", 7, [0.4, 0.02], 0.0), ("bumps", 6, [0.3, 0.0], 0.0)]
     assert progress == [0.25, 0.5, 0.75, 1.0]
     assert [name for name, _ in said] == ["present", "optimum", "full fillet of a rack"]
@@ -200,12 +199,11 @@ def test_a_design_is_searched_thrice_from_what_can_be_and_loaded_with_three_teet
     assert design.first == "bumps"
     assert design.best.name == "optimum"
     assert design.off == (0.0, 0.0)
-    assert len(design_fillet(pair, SPEC, (solved, solved), "driver", Limits(0.02, 0.2), tolerance=0.5, searches=1,
-                             waves=1, alike=True).found) == 1  # fmt: skip
+    assert len(design_fillet(asked, Limits(0.02, 0.2), tolerance=0.5, searches=1, waves=1).found) == 1
     assert searched[-1][:2] == ("waves", 1)
     monkeypatch.setattr(Final, "stressed", lambda final, name, tooth: None)
     with pytest.raises(ConvergenceError):
-        design_fillet(pair, SPEC, (solved, solved), "driver", Limits(0.02, 0.2), tolerance=0.5, searches=1, alike=True)
+        design_fillet(asked, Limits(0.02, 0.2), tolerance=0.5, searches=1)
 
 
 def test_starts_are_tried_in_turn_until_one_can_be():

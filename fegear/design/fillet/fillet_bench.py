@@ -81,6 +81,9 @@ class FilletBench:
     limits : Limits
     objective : {"tension", "alternating"}
     settings : MeshSettings
+    other : FilletBench, optional
+        Of the same gear in the pair that loads its other flanks, as of a planet between sun and ring; by default that
+        is loaded as this one.
     """
 
     engagement: Engagement
@@ -89,6 +92,7 @@ class FilletBench:
     limits: Limits = field(default_factory=Limits)
     objective: Objective = "tension"
     settings: MeshSettings = field(default_factory=search_settings)
+    other: FilletBench | None = None
     tried: int = 0
 
     def __post_init__(self) -> None:
@@ -106,7 +110,13 @@ class FilletBench:
 
     @property
     def active_roll(self) -> float:
-        """Roll angle at which the mating tip touches the flank [rad]: there it must have begun."""
+        """Roll angle at which a mating tip touches the flank [rad]: there it must have begun."""
+        if self.other is not None:
+            return min(self._active_roll, self.other.active_roll, key=abs)
+        return self._active_roll
+
+    @property
+    def _active_roll(self) -> float:
         pair = self.engagement.pair
         other: Member = "driven" if self.member == "driver" else "driver"
         x = pair.x_of_radius(pair.gear(other).involute_tip_radius, other)
@@ -134,16 +144,30 @@ class FilletBench:
     def along(self, tooth: InvoluteTooth) -> Array:
         """Stress by the objective along the fillet, the largest over the mesh under the present loads, (S,) [Pa]."""
         self.tried += 1
-        gear, source = replace(self.gear, tooth=tooth), self.engagement.compliance.source(self.member)
-        solved = solve_gear(gear, self.settings, reach=max(source.reach, 1), estimate_error=False)
+        gear = replace(self.gear, tooth=tooth)
+        solved = solve_gear(gear, self.settings, reach=self.reach, estimate_error=False)
         return self.stress(finite_element_compliance(solved))
 
+    @property
+    def reach(self) -> int:
+        """Neighbours that a tooth is coupled to."""
+        own = max(self.engagement.compliance.source(self.member).reach, 1)
+        return own if self.other is None else max(own, self.other.reach)
+
     def stress(self, known: FiniteElementCompliance) -> Array:
-        """The same of a tooth that was solved."""
+        """The same of a tooth that was solved.
+
+        A fillet is pulled by loads on its flank and pressed by those on the other one: with another pair the larger of
+        both fillets counts.
+        """
+        other = self.other
         tension = self._extreme(known, "tension").max(axis=0)
+        pulled = tension if other is None else other._extreme(known, "tension").max(axis=0)  # noqa: SLF001  (one class)
         if self.objective == "tension":
-            return tension
-        return np.asarray(0.5 * (tension - self._extreme(known, "compression").min(axis=0)))
+            return np.maximum(tension, pulled)
+        pressed = self._extreme(known, "compression").min(axis=0)
+        beside = pressed if other is None else other._extreme(known, "compression").min(axis=0)  # noqa: SLF001
+        return np.asarray(0.5 * np.maximum(tension - beside, pulled - pressed))
 
     def _extreme(self, source: FiniteElementCompliance, side: Side) -> Array:
         """Stress at all positions of a tooth in the mesh, shape (positions, S) [Pa]."""
@@ -168,31 +192,53 @@ class FilletBench:
         x, y = fillet.points(u)
         radius, polar = np.hypot(x, y), np.arctan2(x, y)
         share = (radius[-1] - radius) / (radius[-1] - radius[0])
-        gap = (np.interp(radius, *self.corner, left=polar[0] + 1.0) - polar) * radius - self.limits.clearance * share
+        corners = [self.corner] if self.other is None else [self.corner, self.other.corner]
+        paths = [np.interp(tooth.side * radius, *corner, left=polar[0] + 1.0) for corner in corners]
+        gap = (np.minimum.reduce(paths) - polar) * radius - self.limits.clearance * share
         sharp = 1.0 - self.limits.smallest_radius * np.abs(fillet.curvatures(u))
         made = [conjugate_rack(tooth).room(self.limits.smallest_tool_radius)] if self.limits.generated else []
         return np.concatenate([np.minimum(gap[:-1], 1.0), sharp, *made])
 
 
 def mating_corner(e: Engagement, member: Member) -> tuple[Array, Array]:
-    """Nearest path of the mating tip's corner: ascending radii [modules], angles from the tooth's centre line [rad].
+    """Nearest path of the mating tip's corner: heights, ascending, and angles from the centre line of the tooth.
 
-    The tooth's right flank is the one in contact; external gears.
+    The tooth's right flank is the one in contact.
+
+    Returns
+    -------
+    heights : ndarray
+        Radii, of an internal gear times -1 [modules].
+    angles : ndarray
+        [rad].
+
+    Notes
+    -----
+    With e from a gear's centre to where the line of action touches its base circle and n out of its flank, the contact
+    lies at r_b (e + t n), t its roll angle, and a flank's point of roll angle t' where it has turned on by t - t':
+
+        r_b (e' + t' n'),   e' = e cos(t - t') + n sin(t - t'),   n' = n cos(t - t') - e sin(t - t').
+
+    The mate's frame has -n for n, and for e the opposite direction, or the same one where a gear is internal.
     """
     pair = e.pair
     mate, own = pair.gear("driven" if member == "driver" else "driver"), pair.gear(member)
-    a, base, tip = pair.centre_distance, mate.base_radius, mate.involute_tip_radius
-    roll = math.sqrt((tip - base) * (tip + base)) / base
-    working = pair.working_pressure_angle
-    inv = math.tan(working) - working
-    theta = np.linspace(-1.2, 1.2, _CORNERS) * 2.0 * math.pi / mate.teeth
-    angle = (roll - math.atan(roll)) - inv - theta
-    px, py = tip * np.sin(angle), a - tip * np.cos(angle)
-    turn = theta * mate.teeth / own.teeth + own.symmetric_tooth.base_half_angle - inv
-    c, s = np.cos(turn), np.sin(turn)
-    x, y = c * px + s * py, c * py - s * px
-    radius, polar = np.hypot(x, y) / own.module, np.arctan2(x, y)
-    low = int(np.argmin(radius))
-    grid = np.linspace(radius[low], min(radius[0], radius[-1]), _CORNERS)
-    one = np.interp(grid, radius[low::-1], polar[low::-1])
-    return grid, np.minimum(one, np.interp(grid, radius[low:], polar[low:]))
+    side, inner = own.symmetric_tooth.side, -1.0 if own.symmetric_tooth.side * mate.symmetric_tooth.side < 0 else 1.0
+    along = inner * pair.centre_distance * math.sin(pair.working_pressure_angle)
+    tip = mate.symmetric_tooth.side * math.sqrt(
+        (mate.involute_tip_radius - mate.base_radius) * (mate.involute_tip_radius + mate.base_radius)
+    ) / mate.base_radius  # fmt: skip
+    middle = float(pair.roll_angle(0.0, member))
+    t = middle + np.linspace(-1.2, 1.2, _CORNERS) * 2.0 * math.pi / own.teeth
+    turn = (along - own.base_radius * t) / mate.base_radius - tip
+    # In the frame of e and n of the gear: the mate's centre, and its corner.
+    mate_e, mate_n = -inner, -1.0
+    at_e = own.base_radius - mate_e * mate.base_radius + mate.base_radius * mate_e * (np.cos(turn) - tip * np.sin(turn))
+    at_n = along + mate.base_radius * mate_n * (np.sin(turn) + tip * np.cos(turn))
+    phi = own.symmetric_tooth.base_half_angle - t
+    x, y = at_e * np.sin(phi) + at_n * np.cos(phi), at_e * np.cos(phi) - at_n * np.sin(phi)
+    height, polar = side * np.hypot(x, y) / own.module, np.arctan2(x, y)
+    low = int(np.argmin(height))
+    grid = np.linspace(height[low], min(height[0], height[-1]), _CORNERS)
+    one = np.interp(grid, height[low::-1], polar[low::-1])
+    return grid, np.minimum(one, np.interp(grid, height[low:], polar[low:]))

@@ -14,6 +14,7 @@ from fegear.base.errors import ConvergenceError, GeometryError
 from fegear.contact.loaded_teeth import silent
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.base_pitch import roll_positions
+from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.loaded_pair import LoadedPair
 from fegear.contact.plane.maker import load_plane
@@ -27,6 +28,7 @@ from fegear.fem.plane.solution import solve_to_tolerance
 from fegear.geometry.conjugate_rack import ConjugateRack, conjugate_rack
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import PointsFillet
+from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.rack import BasicRack
@@ -107,9 +109,9 @@ class FilletDesign:
         return self.found[self.first].kept
 
     @property
-    def tool(self) -> ConjugateRack:
-        """Tip of the rack that generates it, if there is one."""
-        return conjugate_rack(self.best.tooth)
+    def tool(self) -> ConjugateRack | None:
+        """Tip of the rack that generates it, if there is one: none of internal gears."""
+        return None if self.best.tooth.internal else conjugate_rack(self.best.tooth)
 
     @property
     def off_by(self) -> float:
@@ -133,35 +135,67 @@ class FilletDesign:
         return 1.0 - ratio, ratio * (self.best.error / self.best.stress + over.error / over.stress)
 
 
+@dataclass(frozen=True)
+class LoadedSolved:
+    """A pair under its load, what it was made of, and which of its gears gets a fillet.
+
+    Parameters
+    ----------
+    loaded : LoadedPair
+    spec : PairSpec
+    solved : (GearInfluence, GearInfluence)
+        Driver and driven gear.
+    member : {"driver", "driven"}
+    alike : bool
+        Whether the gear meshes with its like, which has the same fillet in the final numbers.
+    """
+
+    loaded: LoadedPair
+    spec: PairSpec
+    solved: tuple[GearInfluence, GearInfluence]
+    member: Member
+    alike: bool = False
+
+    def bench(self, limits: Limits, objective: Objective, other: FilletBench | None = None) -> FilletBench:
+        """What fillets are judged by in it."""
+        return FilletBench(self.loaded.engagement, self.loaded.nominal, self.member, limits, objective, other=other)
+
+    @property
+    def reach(self) -> int:
+        """Neighbours that a tooth of the gear is coupled to."""
+        return self.solved[MEMBERS.index(self.member)].reach
+
+    def with_gear(self, gear: Gear, known: GearInfluence) -> Engagement:
+        """The pair with another gear in the place of the one that gets a fillet."""
+        gears, solved = [self.loaded.pair.driver, self.loaded.pair.driven], list(self.solved)
+        for g, member in enumerate(MEMBERS):
+            if member == self.member or self.alike:
+                gears[g], solved[g] = gear, known
+        pair = GearPair(gears[0], gears[1], self.loaded.pair.centre_distance, self.loaded.pair.axial_offset)
+        return load_plane(replace(self.spec, pair=pair), solved, estimates=False).engagement
+
+
 def _first(found: dict[str, Found]) -> str:
     """The least stressed fillet of those that keep their limits; of all where none does."""
     return min(found, key=lambda name: (not found[name].kept, found[name].stress))
 
 
 def design_fillet(
-    loaded: LoadedPair,
-    spec: PairSpec,
-    solved: tuple[GearInfluence, GearInfluence],
-    member: Member,
+    pair: LoadedSolved,
     limits: Limits,
     objective: Objective = "tension",
     tolerance: float = 1e-2,
     progress: Callable[[float], None] = silent,
     searches: int = len(SEARCHES),
     waves: int = WAVES,
-    alike: bool = False,
+    other: LoadedSolved | None = None,
 ) -> FilletDesign:
-    """Find the fillet of one gear of a pair of external plane gears with the least root stress.
+    """Find the fillet of one gear of a pair of plane gears with the least root stress.
 
     Parameters
     ----------
-    loaded : LoadedPair
-        The present pair.
-    spec : PairSpec
-        Of it.
-    solved : (GearInfluence, GearInfluence)
-        Driver and driven gear.
-    member : {"driver", "driven"}
+    pair : LoadedSolved
+        The present pair, and which of its gears gets the fillet.
     limits : Limits
         What the fillet must keep.
     objective : {"tension", "alternating"}
@@ -172,15 +206,17 @@ def design_fillet(
         How many of `SEARCHES`: one is quick and proves nothing.
     waves : int
         Of the first family; the bumps of the other are one less.
-    alike : bool
-        Whether the gear meshes with its like, which has the same fillet in the final numbers.
+    other : LoadedSolved, optional
+        The pair that loads the other flanks of the same gear, as of a planet between sun and ring. By default those
+        are loaded as in `pair`.
 
     Raises
     ------
     GeometryError
         If no ellipse across the tooth space touches root circle and flank, from which the search could begin.
     """
-    bench = FilletBench(loaded.engagement, loaded.nominal, member, limits, objective)
+    bench = pair.bench(limits, objective, None if other is None else other.bench(limits, objective))
+    member = pair.member
     tooth = bench.gear.symmetric_tooth
     present = bench.largest(tooth)
     flank = bench.flank(tooth.root_radius)
@@ -197,7 +233,7 @@ def design_fillet(
             "reduce smallest_radius or clearance, or choose another root circle",
         )  # fmt: skip
     best = found[_first(found)]
-    finally_ = _Final(loaded, spec, solved, member, objective, tolerance, alike)
+    finally_ = _Final(pair, other, objective, tolerance)
     full = full_rounded(tooth)
     rows = [
         None if one is None else finally_.stressed(name, one)
@@ -271,32 +307,28 @@ def _off(bench: FilletBench, shape: PointsFillet, side: int) -> tuple[float, flo
 class _Final:
     """Largest stress with a fillet in the pair that is loaded with it."""
 
-    loaded: LoadedPair
-    spec: PairSpec
-    solved: tuple[GearInfluence, GearInfluence]
-    member: Member
+    pair: LoadedSolved
+    other: LoadedSolved | None
     objective: Objective
     tolerance: float
-    alike: bool
 
     def stressed(self, name: str, tooth: InvoluteTooth) -> Stressed:
         """Of a tooth, with its estimated error."""
-        changed = [g for g, member in enumerate(MEMBERS) if member == self.member or self.alike]
-        gears = [self.loaded.pair.driver, self.loaded.pair.driven]
-        solved = list(self.solved)
-        i = MEMBERS.index(self.member)
-        new = replace(gears[i], tooth=tooth)
-        of_new = solve_to_tolerance(new, self.tolerance, reach=self.solved[i].reach)
-        for g in changed:
-            gears[g], solved[g] = new, of_new
-        pair = GearPair(gears[0], gears[1], self.loaded.pair.centre_distance, self.loaded.pair.axial_offset)
-        e = load_plane(replace(self.spec, pair=pair), solved, estimates=False).engagement
-        states = loaded_states(e, (), (self.loaded.nominal,), roll_positions(e, _POSITIONS))
-        known = finite_element_compliance(of_new)
-        found = tooth_stress(e, states, self.member, known)
-        bench = FilletBench(e, self.loaded.nominal, self.member, objective=self.objective, settings=of_new.settings)
+        both = [one for one in (self.other, self.pair) if one is not None]
+        new = replace(self.pair.loaded.pair.gear(self.pair.member), tooth=tooth)
+        of_new = solve_to_tolerance(new, self.tolerance, reach=max(one.reach for one in both))
+        known, bench, found = finite_element_compliance(of_new), None, []
+        for one in both:  # that of the pair itself last, with the other one in it
+            e = one.with_gear(new, of_new)
+            states = loaded_states(e, (), (one.loaded.nominal,), roll_positions(e, _POSITIONS))
+            found.append(tooth_stress(e, states, one.member, known))
+            bench = FilletBench(
+                e, one.loaded.nominal, one.member, objective=self.objective, settings=of_new.settings, other=bench
+            )
+        assert bench is not None  # noqa: S101  (for mypy: there is a pair)
         along = bench.stress(known)
-        most, error = float(found.largest_tension[0]), found.error(0) or 0.0
-        if self.objective == "tension" or found.largest_compression is None:
-            return Stressed(name, tooth, most, error, along)
-        return Stressed(name, tooth, float(along.max()), 0.5 * (error + (found.compression_off(0) or 0.0)), along)
+        pulled = max(one.error(0) or 0.0 for one in found)
+        if self.objective == "tension" or found[-1].largest_compression is None:
+            return Stressed(name, tooth, max(float(one.largest_tension[0]) for one in found), pulled, along)
+        pressed = max(one.compression_off(0) or 0.0 for one in found)
+        return Stressed(name, tooth, float(along.max()), 0.5 * (pulled + pressed), along)

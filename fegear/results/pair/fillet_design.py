@@ -18,6 +18,8 @@ from fegear.results.pair.fillet_design_sheet import FILLET_DESIGN_SHEET
 from fegear.results.pair.loaded_teeth import PLANE, check_teeth, gears_of, loaded_pair, needs_teeth
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.reading import Scene
     from fegear.geometry.pair import Member
 
@@ -53,7 +55,54 @@ def fillet_member(scene: Scene, name: str) -> Member:
     )  # fmt: skip
 
 
+def other_pair(scene: Scene, name: str) -> str | None:
+    """The pair that loads the other flanks of the gear that gets a fillet; None where there is no other.
+
+    Raises
+    ------
+    InputError
+        If it is not another pair of the same gear.
+    """
+    other = fillet_part(scene).other_pair
+    if other is None:
+        return None
+    gear = gears_of(scene, name)[fillet_member(scene, name)]
+    key = "fillet_design.other_pair"
+    known = [one for one in scene.pairs if one != name and gear in gears_of(scene, one).values()]
+    if other not in scene.pairs:
+        raise InputError(key, shown(other), "is not a pair of this case", nearest(other, known))
+    if other not in known:
+        remedy = f"choose from {', '.join(known)}" if known else "remove it, or set fillet_design.gear"
+        raise InputError(key, shown(other), f"must be another pair of gear {gear}", remedy)
+    return other
+
+
+def _other_member(scene: Scene, name: str) -> Member | None:
+    other = other_pair(scene, name)
+    if other is None:
+        return None
+    gear = gears_of(scene, name)[fillet_member(scene, name)]
+    return next(member for member in MEMBERS if gears_of(scene, other)[member] == gear)
+
+
 def _check(scene: Scene, name: str) -> None:
+    for one in (name, other_pair(scene, name)):
+        if one is not None:
+            _check_pair(scene, one)
+    gear = gears_of(scene, name)[fillet_member(scene, name)]
+    if (mesh := scene.case.gear[gear].tooth_mesh) is not None:
+        raise InputError(
+            f"gear.{gear}.tooth_mesh", shown(str(mesh)), "contradicts fillet design, which meshes every fillet anew",
+            "remove tooth_mesh",
+        )  # fmt: skip
+    if scene.gears[gear].tooth.internal and fillet_part(scene).generated:
+        raise InputError(
+            "fillet_design.generated", "true", f"requires a gear cut by a rack, and gear {gear} is internal",
+            "set generated = false",
+        )  # fmt: skip
+
+
+def _check_pair(scene: Scene, name: str) -> None:
     if name not in scene.plane_pairs:
         raise InputError(
             f"pair.{name}.width", f'"{scene.width_of(name)}"', "is not available for fillet design (plane teeth)",
@@ -66,18 +115,12 @@ def _check(scene: Scene, name: str) -> None:
             f"pair.{name}.compliance.source", f'"{source}"', "has no root stress; fillet design requires FE",
             f'set pair.{name}.compliance.source = "fe"',
         )  # fmt: skip
-    member = fillet_member(scene, name)
-    gear = gears_of(scene, name)[member]
-    if (mesh := scene.case.gear[gear].tooth_mesh) is not None:
-        raise InputError(
-            f"gear.{gear}.tooth_mesh", shown(str(mesh)), "contradicts fillet design, which meshes every fillet anew",
-            "remove tooth_mesh",
-        )  # fmt: skip
 
 
 def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
     gears, member = gears_of(scene, name), fillet_member(scene, name)
     part, module, usual = fillet_part(scene), scene.pairs[name].driver.module, Limits()
+    other = other_pair(scene, name)
     limits = Limits(
         usual.clearance if part.clearance is None else part.clearance / module,
         usual.smallest_radius if part.minimum_radius is None else part.minimum_radius / module,
@@ -86,25 +129,35 @@ def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
     )
     return FilletDesignInputs(
         part.objective, limits, part.waves, part.searches, member, gears["driver"] == gears["driven"],
-        scene.case.accuracy.tolerance, name, gears,
+        scene.case.accuracy.tolerance, _other_member(scene, name), name, gears, other or "",
+        gears_of(scene, other) if other else {},
     )  # fmt: skip
 
 
 def _compute(asked: FilletDesignInputs, upstream: Upstream, work: Work) -> FilletDesignData:
-    from fegear.design.fillet.fillet_design import design_fillet
+    from fegear.design.fillet.fillet_design import LoadedSolved, design_fillet
 
-    loaded = loaded_pair(upstream, asked.name)
-    solved = (solution_of(upstream, asked.gears["driver"]), solution_of(upstream, asked.gears["driven"]))
+    def of(name: str, gears: Mapping[Member, str], member: Member, *, alike: bool) -> LoadedSolved:
+        loaded = loaded_pair(upstream, name)
+        solved = solution_of(upstream, gears["driver"]), solution_of(upstream, gears["driven"])
+        return LoadedSolved(loaded, loaded.spec, solved, member, alike)
+
+    pair, other = of(asked.name, asked.gears, asked.member, alike=asked.alike), None
+    if asked.other_member is not None:
+        other = of(asked.other, asked.other_gears, asked.other_member, alike=False)
     design = design_fillet(
-        loaded, loaded.spec, solved, asked.member, asked.limits, asked.objective, asked.tolerance, work.progress,
-        asked.searches, asked.waves, alike=asked.alike,
-    )  # fmt: skip
-    return FilletDesignData(loaded.pair, loaded.nominal, design)
+        pair, asked.limits, asked.objective, asked.tolerance, work.progress, asked.searches, asked.waves, other
+    )
+    return FilletDesignData(pair.loaded.pair, pair.loaded.nominal, design)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    gears = gears_of(scene, name)
-    return (*needs_teeth(scene, name), *needs_solution(gears["driver"], gears["driven"]))
+    found: list[Task] = []
+    for one in (name, other_pair(scene, name)):
+        if one is not None:
+            gears = gears_of(scene, one)
+            found += [*needs_teeth(scene, one), *needs_solution(gears["driver"], gears["driven"])]
+    return tuple(dict.fromkeys(found))
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:

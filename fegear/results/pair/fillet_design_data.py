@@ -46,10 +46,16 @@ class FilletDesignInputs:
         Whether a gear meshes with its like.
     tolerance : float
         Of the final solutions.
+    other_member : str
+        Which gear of the pair it is that loads its other flanks; empty without.
     name : str
         Of the pair.
     gears : mapping of str to str
         Names of driver and driven.
+    other : str
+        Name of the pair that loads the other flanks of the gear; empty without.
+    other_gears : mapping of str to str
+        Names of its driver and driven.
     """
 
     objective: Objective
@@ -59,8 +65,11 @@ class FilletDesignInputs:
     member: Member
     alike: bool
     tolerance: float
+    other_member: Member | None
     name: str = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
+    other: str = field(default="", compare=False)
+    other_gears: Mapping[Member, str] = field(default_factory=dict, compare=False)
 
     @property
     def gear(self) -> str:
@@ -176,7 +185,7 @@ class FilletShown:
     @cached_property
     def tools(self) -> list[ToolTip]:
         """Tips of the racks that generate these fillets, of those that one generates."""
-        found = [(one, conjugate_rack(one.tooth)) for one in self._rows]
+        found = [(one, conjugate_rack(one.tooth)) for one in self._rows if not one.tooth.internal]
         return [
             ToolTip(_ROLES[one.name], tip.half_width * self.module, tip.height * self.module)
             for one, tip in found
@@ -186,7 +195,8 @@ class FilletShown:
     @property
     def tool(self) -> ToolTip | None:
         """Of the designed fillet; None where no rack generates it."""
-        return self.tools[-1] if self.design.tool.exists else None
+        made = self.design.tool
+        return self.tools[-1] if made is not None and made.exists else None
 
     @property
     def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -207,7 +217,8 @@ class FilletShown:
         places = SHARES * arc[-1]
         diameter = 2.0 * np.interp(places, arc, np.hypot(x, y))
         half = tooth_outline(tooth, _CHORD) * m
-        half = half[:, (half[0] >= 0.0) & (half[1] <= 0.5 * diameter[-1] + _ABOVE * m)][:, ::-1]
+        up = tooth.side * (half[1] - 0.5 * diameter[-1])
+        half = half[:, (half[0] >= 0.0) & (up <= _ABOVE * m)][:, ::-1]
         return StressedFillet(
             f"{one.name}: {one.stress * 1e-6:.4g} MPa", _ROLES[one.name], _WORDS[one.name], one.error, half[0], half[1],
             one.stress, one.name, land + places, diameter, one.along,
@@ -266,7 +277,7 @@ class FilletShown:
     def minimum_tool_radius(self) -> float | None:
         """None where no rack generates it."""
         tool = self.design.tool
-        return self.module * tool.smallest_radius if tool.exists else None
+        return self.module * tool.smallest_radius if tool is not None and tool.exists else None
 
     @property
     @shows("mm", "root form diameter, where the designed fillet ends")

@@ -34,7 +34,8 @@ def _in_percent(share: float, error: float | None = None) -> str:
 
 
 def _kind(seen: Seen) -> str:
-    return "alternating root stress" if seen.asked.objective == "alternating" else "root stress"
+    kind = "alternating root stress" if seen.asked.objective == "alternating" else "root stress"
+    return f"{kind} with pair {seen.asked.other}" if seen.asked.other else kind
 
 
 def _answer(seen: Seen) -> Iterator[str]:
@@ -105,12 +106,17 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
             f"{subject}: the searches differ by {percent(shown.spread_of_searches)}, so that the minimum is not "
             "verified; increase fillet_design.waves."
         )
-    if shown.tool is None:
+    if design.best.tooth.internal:
+        yield (
+            f"{subject}: a pinion-type cutter for the designed fillet is not searched; it is for powder metal, moulded, "
+            "broached and wire-cut gears."
+        )
+    elif shown.tool is None:
         yield (
             f"{subject}: no rack generates the designed fillet exactly (its tip would turn back near the flank); set "
             "fillet_design.generated = true for the best fillet of a hob."
         )
-    if design.full is None:
+    if design.full is None and not design.best.tooth.internal:
         yield f"{subject}: comparison with a rack of full tip radius omitted (no such rack for this gear)."
     yield (
         f"{subject}: to compute with the designed fillet, run fegear apply RESULTS --fillet --case CASE, or set "
