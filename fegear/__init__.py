@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from fegear.base.errors import FegearError, InputError
+    from fegear.workbench.fillet import fillet_design
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import (
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
 __version__ = "0.2.0"
 
 __all__ = [
-    "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "load_sharing",
-    "mesh_stiffness_revolution", "rating", "relief",
+    "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "fillet_design",
+    "load_sharing", "mesh_stiffness_revolution", "rating", "relief",
     "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
@@ -46,6 +47,7 @@ _HOMES = {
     "Rack": "workbench.rack",
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
+    "fillet_design": "workbench.fillet",
     "load_sharing": "workbench.questions",
     "mesh_stiffness_revolution": "workbench.questions",
     "rating": "workbench.rating",

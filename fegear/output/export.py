@@ -128,11 +128,11 @@ def export_gears(
                 say(f"Gear {gear}, {name.upper()}: about {predicted:.0f} s of CPU time for {teeth} teeth.")
             write(name, (gear,), cache)
         remarks += _left_out(scene, gear, wanted, fitting)
+    holding = [name for name, row in wanted.items() if row.racks]
     for rack in racks:
-        fitting = [name for name, row in wanted.items() if row.racks]
-        for name in fitting:
+        for name in holding:
             write(name, (rack,), SolutionCache(), rack=True)
-        others = sorted(name for name in of_gears if name not in fitting)
+        others = sorted(name for name in of_gears if name not in holding)
         remarks += [f"Rack {rack}: no {', '.join(others)} is written for racks."] if others else []
     for name in _of(wanted, "case") if chosen else ():
         write(name, chosen, SolutionCache())

@@ -29,6 +29,7 @@ _TITLES = {
     "root-stress-history": "Root stress over the mesh cycle",
     "transmission-error": "Transmission error",
     "relief": "Relief",
+    "fillet-design": "Fillet",
     "dynamic-factor": "Dynamic factor",
     "rating": "Rating",
 }

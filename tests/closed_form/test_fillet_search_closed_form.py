@@ -125,7 +125,7 @@ def test_final_numbers_are_those_of_the_pair_with_that_tooth(loaded, alike):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fillet_design, "solve_to_tolerance", solve)
         objective = "alternating" if alike else "tension"
-        final = fillet_design._Final(pair, SPEC, (solved, solved), "driven", objective, 0.02, alike)
+        final = fillet_design._Final(LoadedSolved(pair, SPEC, (solved, solved), "driven", alike), None, objective, 0.02)
         found = final.stressed("new", tooth)
     assert calls == [(tooth, 0.02, 1)]
     (new,) = made

@@ -121,7 +121,8 @@ def _flanks(scene: Scene, name: str, pair: RackAndPinion) -> RackFlanks:
         If one does not fit its teeth, or is given by what only a pair of gears has.
     """
     part, pinion = scene.case.rack[name], rack_pinion(scene, name)
-    given, relief = gear_flanks(scene, pinion), UNMODIFIED
+    given = gear_flanks(scene, pinion)
+    relief: Relief = UNMODIFIED
     if given.relief is not None:
         try:
             relief = _pinion_relief(given.relief, pair)

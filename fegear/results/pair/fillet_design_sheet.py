@@ -108,8 +108,8 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
         )
     if design.best.tooth.internal:
         yield (
-            f"{subject}: a pinion-type cutter for the designed fillet is not searched; it is for powder metal, moulded, "
-            "broached and wire-cut gears."
+            f"{subject}: the designed fillet is for powder metal, moulded, broached and wire-cut gears; a pinion-type "
+            "cutter for it is not searched."
         )
     elif shown.tool is None:
         yield (
