@@ -22,9 +22,8 @@ from fegear.geometry.pair import GearPair
 M = 4e-3
 SUN = Gear(Tooth(24), M, 22e-3, 40e-3)
 PLANET = Gear(Tooth(17, profile_shift=0.3), M, 15e-3, 40e-3)
-RING = Gear(
-    InternalTooth(60, PinionCutter(25, profile_shift=0.1, addendum=1.25, tip_radius=0.2), profile_shift=-0.3, tip_radius=29.5), M, 145e-3, 40e-3
-)  # fmt: skip
+CUTTER = PinionCutter(25, profile_shift=0.1, addendum=1.25, tip_radius=0.2)
+RING = Gear(InternalTooth(60, CUTTER, profile_shift=-0.3, tip_radius=29.5), M, 145e-3, 40e-3)
 OUTER, INNER = GearPair(SUN, PLANET), GearPair(PLANET, RING)
 
 
