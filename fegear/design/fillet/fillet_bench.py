@@ -166,7 +166,7 @@ class FilletBench:
         if self.objective == "tension":
             return np.maximum(tension, pulled)
         pressed = self._extreme(known, "compression").min(axis=0)
-        beside = pressed if other is None else other._extreme(known, "compression").min(axis=0)  # noqa: SLF001
+        beside = pressed if other is None else other._extreme(known, "compression").min(axis=0)  # noqa: SLF001  (one class)
         return np.asarray(0.5 * np.maximum(tension - beside, pulled - pressed))
 
     def _extreme(self, source: FiniteElementCompliance, side: Side) -> Array:
