@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.formulas.root_stress_formulas import root_stress_table
+from fegear.formulas.sources import SOURCES
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack

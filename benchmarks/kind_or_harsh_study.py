@@ -28,7 +28,7 @@ from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Zone
 from fegear.engine.figure.panel import Panel
 from fegear.fem.plane.settings import MeshSettings
-from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack

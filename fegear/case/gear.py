@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from pydantic import model_validator
 
@@ -15,13 +15,14 @@ from fegear.case.gear_checks import check_asymmetric, check_helical, check_inter
 from fegear.case.gear_keys import GearKeys
 from fegear.case.part import at, refuse
 from fegear.case.relief import ReliefPart
-from fegear.geometry.asymmetric_tooth import AsymmetricSide, AsymmetricTooth
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
-from fegear.geometry.over_balls import over_balls
+
+if TYPE_CHECKING:
+    from fegear.geometry.asymmetric_tooth import AsymmetricSide
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {
@@ -109,6 +110,8 @@ class GearPart(GearKeys):
             support = None if self.rim_support is None else self.rim_support.build(width)
             gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur", body, support)
             if self.ball_diameter is not None:
+                from fegear.geometry.over_balls import over_balls
+
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
             if self.span_teeth is not None:
                 self._refuse_span(gear)
@@ -145,6 +148,8 @@ class GearPart(GearKeys):
                 lambda z0: InternalTooth(self.teeth, cutter.build(module, z0), self.pressure_angle, *shape),
             )
         if self.asymmetric:
+            from fegear.geometry.asymmetric_tooth import AsymmetricTooth
+
             coast = self.pressure_angle if self.coast_pressure_angle is None else self.coast_pressure_angle
             rack = self.rack.build_asymmetric(self.pressure_angle, coast, module)
             return AsymmetricTooth(self.teeth, rack, *shape).drive

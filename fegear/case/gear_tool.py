@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 
 from fegear.case.derived import keys_of
 from fegear.case.part import Number, Part, PositiveLength, refuse, spelt_also
-from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
 from fegear.geometry.internal_tooth import PinionCutter
 from fegear.geometry.named_racks import named_rack
 from fegear.geometry.rack import BasicRack
@@ -27,6 +26,7 @@ class _ProfilePart(Part):
 
 
 if TYPE_CHECKING:
+    from fegear.geometry.asymmetric_rack import AsymmetricRack
 
     class _RackKeys(_ProfilePart):
         addendum: float | None = None
@@ -85,6 +85,8 @@ class RackPart(_RackKeys):
 
     def build_asymmetric(self, drive: float, coast: float, module: float = math.nan) -> AsymmetricRack:
         """Make the rack of two pressure angles [rad]; what is not given comes from the named profile, as in `build`."""
+        from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
+
         base = self._named(min(drive, coast), module)
         addendum = base.addendum if self.addendum is None else self.addendum
         dedendum = base.dedendum if self.dedendum is None else self.dedendum

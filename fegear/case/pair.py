@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.base.errors import InputError
-from fegear.case.double_helical import DoubleHelicalPart
 from fegear.case.evenly_spaced import EvenlySpaced
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
 from fegear.case.loading import LineErrorPart
 from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.part import (
+    Later,
     Length,
     LengthOrZero,
     Number,
@@ -32,8 +32,11 @@ from fegear.case.surface import LubricantPart, PairFrictionPart
 from fegear.geometry.pair import GearPair
 
 if TYPE_CHECKING:
+    from fegear.case.double_helical import DoubleHelicalPart
     from fegear.contact.unloaded.pair import HelicalPair
     from fegear.geometry.gear import Gear
+else:  # few pairs have one
+    DoubleHelicalPart = Later("fegear.case.double_helical", "DoubleHelicalPart")
 
 
 def _several(value: Any) -> Any:

@@ -7,11 +7,13 @@ from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
 from types import MappingProxyType
-from typing import NamedTuple, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 from fegear.base.errors import InputError
-from fegear.base.extensions import Group, added
 from fegear.engine.stage import Need, Stage
+
+if TYPE_CHECKING:
+    from fegear.base.extensions import Group
 
 
 class Entry(NamedTuple):
@@ -105,6 +107,7 @@ class Catalogue(Sequence[Stage]):
         """The same with the stages that other distributions add, the results of each called as its entry point."""
         if self._group is None:
             return self
+        from fegear.base.extensions import added
         from fegear.engine.added_stage import guarded
 
         others = added(self._group, Stage, {**self._by_name, **self.by_result(), **self.former()})

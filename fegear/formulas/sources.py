@@ -1,18 +1,13 @@
-"""The closed-form compliance sources by the names that case files use.
-
-Two closed-form teeth in contact: what one tooth pair gives way, and how stiff it is.
+"""The closed-form compliance sources by the names that case files use, and what one tooth pair gives way by them.
 
 The pair's deflection along the line of action is the sum of both teeth, both foundations and both contact approaches,
 the contact's half-width being Hertz's. One tooth pair on its own: no neighbours, no load sharing.
-
-The root-stress formulas by name, and their table over load positions.
 """
 
 from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,11 +15,8 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError, RangeError
 from fegear.formulas import cornell as cornell_compliance
-from fegear.formulas import cornell_heywood, dolan_broghamer, hertz, heywood, potential_energy, weber_banaschek
-from fegear.formulas.agma import agma908
-from fegear.formulas.iso6336 import part3_root_stress
-from fegear.formulas.outcome import ComplianceSource, Outcome, RootStress, RootStressSource, attempt
-from fegear.geometry.external_tooth import Tooth
+from fegear.formulas import hertz, potential_energy, weber_banaschek
+from fegear.formulas.outcome import ComplianceSource
 from fegear.geometry.pair import GearPair
 
 SOURCES: dict[str, ComplianceSource] = {
@@ -104,25 +96,3 @@ def pair_compliance(
     contact = (source.contact(a, radii[0], w, half_width) + source.contact(b, radii[1], w, half_width)) / w
     driver, driven = (np.array(source.tooth(g, r).total) for g, r in zip((a, b), radii, strict=True))
     return PairFormulaCompliance(position.copy(), w.copy(), driver, driven, contact, half_width)
-
-
-ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {
-    s.name: s
-    for s in (
-        cornell_heywood.SOURCE,
-        cornell_heywood.TROCHOID_SOURCE,
-        heywood.SOURCE,
-        part3_root_stress.SOURCE,
-        agma908.SOURCE,
-        dolan_broghamer.SOURCE,
-    )
-}
-
-
-def root_stress_table(tooth: Tooth, radii: ArrayLike) -> dict[str, tuple[Outcome[RootStress], ...]]:
-    """Every root-stress formula at every load radius [modules]; a point out of range carries its reason in words."""
-    points = [float(r) for r in np.atleast_1d(np.asarray(radii, dtype=float))]
-    return {
-        name: tuple(attempt(partial(source.formula, tooth, r)) for r in points)
-        for name, source in ROOT_STRESS_SOURCES.items()
-    }

@@ -8,9 +8,10 @@ parameter to arrays of shape (2, N) and runs from the tooth space toward the too
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,6 +49,14 @@ class Curve(Drawn, Protocol):
 
     def __hash__(self) -> int:
         """Curves of the same data are one."""
+
+
+_P = TypeVar("_P", bound=Drawn)
+
+
+def smooth_pieces(pieces: Iterable[_P]) -> list[_P]:
+    """The same pieces, with those parted whose curvature jumps, at their `smooth_parts`."""
+    return [part for piece in pieces for part in getattr(piece, "smooth_parts", (piece,))]
 
 
 @dataclass(frozen=True, slots=True)

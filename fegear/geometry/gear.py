@@ -17,7 +17,6 @@ from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.mass import MassProperties, mass_properties
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 from fegear.geometry.rim_support import RimSupport
-from fegear.geometry.shaped_tooth import ShapedTooth
 
 Plane = Literal["strain", "stress"]
 Hand = Literal["left", "right", "spur"]
@@ -202,7 +201,7 @@ class Gear:
     @property
     def shaped(self) -> bool:
         """Whether its fillets are other than its tool makes them."""
-        return isinstance(self.tooth, ShapedTooth)
+        return self.tooth.shaped
 
     @property
     def asymmetric(self) -> bool:

@@ -19,9 +19,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
-from fegear.geometry.curves import Curve
-from fegear.geometry.fillet import ProtuberanceFillet
-from fegear.geometry.fillet_curves import ArcsFillet
+from fegear.geometry.curves import Curve, smooth_pieces
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_side import InvoluteSide
 
@@ -103,9 +101,7 @@ def _enclosed(pieces: list[Curve], panels: int) -> Array:
 def section_moments(tooth: InvoluteSide) -> SectionMoments:
     """Area and polar moment of area that the outline of all teeth encloses [modules]."""
     halves = [tooth] if tooth.back is tooth else [tooth, tooth.back]
-    pieces: list[Curve] = []
-    for piece in (piece for half in halves for piece in half.outline.values()):
-        pieces += piece.smooth_parts if isinstance(piece, (ProtuberanceFillet, ArcsFillet)) else [piece]
+    pieces = smooth_pieces(piece for half in halves for piece in half.outline.values())
     panels, found = 1, _enclosed(pieces, 1)
     while True:
         panels *= 2

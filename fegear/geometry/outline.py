@@ -13,22 +13,24 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.geometry.asymmetric_rack import RackHalf
-from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.geometry.curves import Arc, Drawn, Involute, Line
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import InvoluteSide
-from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import Relief
-from fegear.geometry.shaped_tooth import ShapedTooth
+
+if TYPE_CHECKING:
+    from fegear.geometry.asymmetric_rack import RackHalf
+    from fegear.geometry.asymmetric_tooth import AsymmetricSide
+    from fegear.geometry.rack import BasicRack
 
 _LARGEST_COUNT = 1 << 14
 
@@ -142,6 +144,9 @@ def _cutter_in_gear(tooth: InternalTooth, rolled: float) -> Array:
 
 def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
     """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
+    from fegear.geometry.asymmetric_tooth import AsymmetricSide
+    from fegear.geometry.shaped_tooth import ShapedTooth
+
     if isinstance(tooth, InternalTooth):
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, (Tooth, AsymmetricSide)):

@@ -13,7 +13,6 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.given import given
-from fegear.geometry.flank_modification import Bias
 from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.plausible_flanks import refuse_deep_relief, refuse_relief_elsewhere
 from fegear.geometry.relief import (
@@ -33,6 +32,7 @@ from fegear.geometry.relief import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fegear.geometry.flank_modification import Bias
     from fegear.geometry.gear import Gear
 
 
@@ -123,6 +123,8 @@ class BiasSpec:
         InputError
             If its ends do not ascend.
         """
+        from fegear.geometry.flank_modification import Bias
+
         gear = pair.gear(member)
         ends = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
         for i, radius in enumerate((self.start_radius, self.end_radius)):

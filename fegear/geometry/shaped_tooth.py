@@ -49,6 +49,8 @@ class ShapedTooth(InvoluteTooth):
         If the fillet does not join root circle and flank, or leaves no tooth.
     """
 
+    shaped: ClassVar[bool] = True
+
     generated: Tooth | InternalTooth
     shape: FilletShape
     teeth: int = field(init=False, repr=False)

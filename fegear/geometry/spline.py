@@ -9,8 +9,6 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.geometry.curves import Drawn
-from fegear.geometry.fillet import ProtuberanceFillet
-from fegear.geometry.fillet_curves import ArcsFillet
 
 DEGREE = 5
 _FEWEST, _MOST = 9, 4096
@@ -50,14 +48,6 @@ def fitted(points: Callable[[Array], Array], start: float, end: float, tolerance
 def spline_of(curve: Drawn, tolerance: float) -> Spline:
     """The spline through a piece of an outline, within `tolerance` [modules] of it."""
     return fitted(curve.points, curve.start, curve.end, tolerance)
-
-
-def smooth_pieces(pieces: Iterable[Drawn]) -> list[Drawn]:
-    """The same pieces, with those parted whose curvature jumps: one spline would round the jump off."""
-    found: list[Drawn] = []
-    for piece in pieces:
-        found += piece.smooth_parts if isinstance(piece, (ProtuberanceFillet, ArcsFillet)) else [piece]
-    return found
 
 
 def enclosed_area(splines: Iterable[Spline]) -> float:

@@ -12,11 +12,11 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.case.built.flank_modifications import described_relief
-from fegear.geometry.curves import Arc, Drawn, Line
+from fegear.geometry.curves import Arc, Drawn, Line, smooth_pieces
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import gear_outline, relieved_outline, tooth_outline, turned
 from fegear.geometry.relief import Relief
-from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
+from fegear.geometry.spline import DEGREE, Spline, spline_of
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:

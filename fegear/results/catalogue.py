@@ -93,7 +93,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Root stress over the mesh cycle", ("root-stress-history",),
               "root stress history of both gears during one engagement", effects=_STRESS,
               quantities=("root-stress",), internal=True, asymmetric=True),
-        Entry("odd-pair", "pair.loaded_pair.ODD_PAIR", "Compliances of a loaded pair with odd teeth",
+        Entry("odd-pair", "pair.odd_pair.ODD_PAIR", "Compliances of a loaded pair with odd teeth",
               effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True),
         Entry("mesh-stiffness-revolution", "pair.mesh_stiffness_revolution.MESH_STIFFNESS_REVOLUTION",
               "Mesh stiffness over a revolution", ("mesh-stiffness-revolution",),

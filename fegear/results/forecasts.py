@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.case.reading import Scene
 from fegear.engine.citation import Citation

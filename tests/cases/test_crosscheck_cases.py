@@ -24,7 +24,8 @@ from fegear.engine.run import run_plan
 from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
-from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
+from fegear.formulas.sources import SOURCES
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair

@@ -15,7 +15,8 @@ from fegear.fem.plane.table import stiffness_table
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas import hertz
 from fegear.formulas.root_section import load_line
-from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.formulas.root_stress_formulas import root_stress_table
+from fegear.formulas.sources import SOURCES
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.rack import BasicRack

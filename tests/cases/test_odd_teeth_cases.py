@@ -17,7 +17,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.output.fmu import mesh_models
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.loaded_pair import ODD_PAIR, _odd_remarks
+from fegear.results.pair.odd_pair import ODD_PAIR, _remarks
 
 CASE = Path(__file__).parents[2] / "cases" / "cracked_tooth.toml"
 COARSE = ("accuracy.tolerance=2e-2", "neglected=false")
@@ -287,7 +287,7 @@ def test_profiles_of_a_case(tmp_path):
 def odd_remarks(scene):
     """What the pair with odd teeth says of its inputs."""
     seen = SimpleNamespace(asked=ODD_PAIR.inputs(scene, "I"))
-    return [str(sentence) for sentence in _odd_remarks(seen)]
+    return [str(sentence) for sentence in _remarks(seen)]
 
 
 @pytest.mark.dear

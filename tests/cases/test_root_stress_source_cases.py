@@ -16,7 +16,7 @@ from fegear.case.reading import read_scene
 from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.results.catalogue import STAGES

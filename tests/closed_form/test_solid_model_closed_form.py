@@ -13,13 +13,14 @@ from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene
 from fegear.fem.plane.tooth_meshing import gmsh_session
 from fegear.fem.solid.step_model import write_step
+from fegear.geometry.curves import smooth_pieces
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.geometry.outline import relieved_outline
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
-from fegear.geometry.spline import enclosed_area, smooth_pieces, spline_of
+from fegear.geometry.spline import enclosed_area, spline_of
 from fegear.output.export import export_gears
 
 DEG = math.pi / 180.0

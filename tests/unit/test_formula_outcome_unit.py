@@ -7,7 +7,7 @@ import pytest
 
 from fegear.base.errors import InputError, RangeError
 from fegear.formulas.outcome import Outcome, attempt
-from fegear.formulas.sources import ROOT_STRESS_SOURCES, root_stress_table
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES, root_stress_table
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 

@@ -14,7 +14,7 @@ from fegear.contact.unloaded.tooth_contact import tooth_contact
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness, theoretical_stiffness
 from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
-from fegear.formulas.sources import root_stress_table
+from fegear.formulas.root_stress_formulas import root_stress_table
 from fegear.geometry.pair import GearPair
 
 DEG = math.pi / 180.0

@@ -10,7 +10,8 @@ from fegear.formulas import cornell as cornell_compliance
 from fegear.formulas import potential_energy, weber_banaschek
 from fegear.formulas.beam import NODES
 from fegear.formulas.outcome import attempt
-from fegear.formulas.sources import SOURCES, pair_compliance, root_stress_table
+from fegear.formulas.root_stress_formulas import root_stress_table
+from fegear.formulas.sources import SOURCES, pair_compliance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair

@@ -9,7 +9,6 @@ import numpy as np
 
 from fegear.base.effects import RELIEF, SPACING_ERRORS
 from fegear.base.errors import InputError
-from fegear.case.csv_file import one_column, read_columns
 from fegear.case.part import Part, at
 from fegear.contact.odd_flank import ToothProfile
 from fegear.contact.pair_spec import FlankSpec
@@ -115,6 +114,8 @@ def _spec(kind: type[_S], part: Part) -> _S:
 
 def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> TabulatedRelief:
     if part.file is not None:
+        from fegear.case.csv_file import one_column, read_columns
+
         columns = read_columns(
             scene.file(part.file, f"{key}.file"), f"{key}.file",
             {"roll_angle": "angle", "radius": "length", "relief": "length"},
@@ -146,6 +147,8 @@ def _spacing_errors(scene: Scene, gear: str) -> Array:
     if part.values is not None:
         errors = np.array(part.values)
     else:
+        from fegear.case.csv_file import read_columns
+
         columns = read_columns(scene.file(part.file or "", f"{key}.file"), f"{key}.file", {"spacing_error": "length"})
         if "spacing_error" not in columns:
             raise InputError(f"{key}.file", f'"{part.file}"', f"has no column spacing_error; it has {columns.has}")

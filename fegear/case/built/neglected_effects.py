@@ -12,13 +12,13 @@ from fegear.base.notes import neglecting
 from fegear.base.printed import figures, percent
 from fegear.base.tally import note
 from fegear.case.effects import EffectsPart
-from fegear.contact.loaded_teeth import Answer, Change, Neglected
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from fegear.base.solution_cache import SolutionCache
+    from fegear.contact.loaded_teeth import Answer, Change, Neglected
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.engagement import Engagement
     from fegear.design.relief_design import DesignTask

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.case.built.gear_flanks import tooth_profile
+from fegear.case.built.odd_gears import odd_gears_of, on_other_flank
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
 from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
@@ -93,46 +93,10 @@ class OddTeeth:
         )
 
 
-def odd_gears(scene: Scene) -> tuple[str, ...]:
-    """Gears with odd teeth that count."""
-    if not scene.case.effects.is_on(ODD_TEETH.name):
-        return ()
-    return tuple(name for name in scene.spur_gears if scene.case.gear[name].odd_tooth)
-
-
-def reshaped_gears(scene: Scene) -> tuple[str, ...]:
-    """Those of which bodies of teeth differ, not only flanks."""
-    return tuple(name for name in odd_gears(scene) if any(one.reshaped for one in scene.case.gear[name].odd_tooth))
-
-
-def cracked_gears(scene: Scene) -> tuple[str, ...]:
-    """Those with a cracked tooth."""
-    return tuple(name for name in odd_gears(scene) if any(one.crack for one in scene.case.gear[name].odd_tooth))
-
-
-def odd_gears_of(scene: Scene, pair: str) -> tuple[str, ...]:
-    """Those of a pair."""
-    part, odd = scene.case.pair[pair], odd_gears(scene)
-    return tuple(name for name in dict.fromkeys((part.driver, part.driven)) if name in odd)
-
-
-def on_other_flank(scene: Scene, pair: str, gear: str) -> bool:
-    """Whether a pair loads the flank of a gear that is not the one by which it is driven: planets drive with it."""
-    driven = any(part.driven == gear for name, part in scene.case.pair.items() if name in scene.plane_pairs)
-    return scene.case.pair[pair].driver == gear and driven
-
-
 def odd_teeth_in(scene: Scene, pair: str, gear: str) -> OddTeeth:
     """The odd teeth of a gear as a pair loads them."""
     found = odd_teeth_of(scene, gear)
     return found.on_other_flank() if on_other_flank(scene, pair, gear) else found
-
-
-def loaded_on_both_flanks(scene: Scene) -> tuple[str, ...]:
-    """Gears with odd teeth of which bodies differ and that drive one pair and are driven in another."""
-    return tuple(
-        gear for gear in reshaped_gears(scene) if any(on_other_flank(scene, pair, gear) for pair in scene.plane_pairs)
-    )
 
 
 def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:

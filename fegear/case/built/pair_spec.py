@@ -10,7 +10,6 @@ from fegear.base.effects import EFFECTS, PAIR_EFFECTS, ROOT_EFFECTS
 from fegear.base.errors import InputError
 from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.members import gear_name
-from fegear.case.csv_file import one_column, read_columns
 from fegear.case.part import at
 from fegear.contact.pair_spec import ComplianceTable, PairSpec
 from fegear.geometry.pair import MEMBERS
@@ -74,6 +73,7 @@ def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
     InputError
         If it has not the columns, both kinds of positions or of compliances, or is none of this pair's teeth.
     """
+    from fegear.case.csv_file import one_column, read_columns
     from fegear.contact.plane.table_compliance import refuse_table
 
     part, pair = scene.case.pair[name].compliance, scene.pairs[name]

@@ -113,7 +113,7 @@ def _formula(source: str, pair: GearPair, member: Member, tips: bool, *points: i
 
 def _does_not_hold(found: FormulaRootStress, source: str, name: str, gear: str) -> RangeError:
     """What a formula lacks, as a refusal of its key."""
-    from fegear.formulas.sources import ROOT_STRESS_SOURCES
+    from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 
     others = ", ".join(f'"{other}"' for other in ROOT_STRESS_SOURCES if other != source)
     rule = f"is not valid on the flank: {found.missing[0]} (gear {gear})"

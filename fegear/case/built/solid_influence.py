@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
 from fegear.base.printed import percent
-from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.tooth_influence import given_settings, planets_taken_alone, teeth_on_pins_differ
 from fegear.case.part import at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from fegear.base.solution_cache import SolutionCache
     from fegear.case.accuracy import AccuracyPart
     from fegear.case.gear_body import GearBodyPart
     from fegear.case.reading import Scene
@@ -261,6 +261,7 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     RangeError
         If it cannot be meshed, under the key of the case.
     """
+    from fegear.base.solution_cache import SolutionCache
     from fegear.fem.solid.influence import solid_influence
 
     gear, cache = asked.gear, cache or SolutionCache()

@@ -10,24 +10,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from fegear.base.errors import RangeError
 from fegear.base.notes import exceeding, neglecting
 from fegear.base.printed import percent
-from fegear.base.solution_cache import SolutionCache
 from fegear.case.accuracy import AccuracyPart
 from fegear.case.built.atlas_teeth import why_solved
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
 from fegear.geometry.gear import Gear
-from fegear.geometry.shaped_tooth import ShapedTooth
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
+    from fegear.base.solution_cache import SolutionCache
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.geometry.shaped_tooth import ShapedTooth
 
 
 def needed_reach(scene: Scene, name: str) -> int:
@@ -189,8 +189,10 @@ def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> t
 
 def fillet_remarks(name: str, gear: Gear) -> tuple[str, ...]:
     """That points of a fillet scatter, where its curvature swings."""
-    tooth = gear.tooth
-    if not isinstance(tooth, ShapedTooth) or tooth.swings <= _SWINGS:
+    if not gear.shaped:
+        return ()
+    tooth = cast("ShapedTooth", gear.tooth)
+    if tooth.swings <= _SWINGS:
         return ()
     said = (
         f"Gear {name}: curvature of the specified fillet has {tooth.swings} maxima between root circle and flank. "

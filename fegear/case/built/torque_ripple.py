@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.csv_file import read_columns
 from fegear.dynamics.train.torque_ripple import TorqueRipple, ripple_of_curve
 
 if TYPE_CHECKING:
@@ -76,6 +75,8 @@ def _of_harmonic(name: str, part: TorqueRipplePart, train: Train, ratio: Fractio
 
 
 def _of_file(scene: Scene, name: str, part: TorqueRipplePart, file: str, ratio: Fraction) -> tuple[TorqueRipple, float]:
+    from fegear.case.csv_file import read_columns
+
     key = f"train.torque_ripple.{name}.file"
     columns = read_columns(scene.file(file, key), key, {"angle": "angle", "time": "time", "torque": "torque"})
     places = [column for column in ("angle", "time") if column in columns]

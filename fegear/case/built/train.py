@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.torque_ripple import torque_ripples
 from fegear.case.halves import double_gears
 from fegear.dynamics.motion.motion_spec import MotionSpec

@@ -20,7 +20,8 @@ from fegear.fem.plane.gear import GearInfluence
 from fegear.formulas import hertz
 from fegear.formulas.outcome import ComplianceSource, attempt
 from fegear.formulas.root_section import load_line
-from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES, pair_compliance
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
+from fegear.formulas.sources import SOURCES, pair_compliance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member

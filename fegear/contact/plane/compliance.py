@@ -13,14 +13,16 @@ numbers only, and everything that is made of answers is kept once.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 from fegear.fem.teeth import AlikeTeeth, Teeth
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.root_stress import CutFillet, FilletCurve
 
 Side = Literal["tension", "compression"]
 

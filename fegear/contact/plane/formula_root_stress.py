@@ -18,7 +18,7 @@ from fegear.contact.plane.spline import Spline, spline
 from fegear.fem.plane.root_stress import FilletCurve
 from fegear.fem.teeth import AlikeTeeth
 from fegear.formulas.outcome import Outcome, RootStress, RootStressSource, attempt
-from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 from fegear.geometry.gear import Gear
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def formula_root_stress(
     gear : Gear
         Its generated tooth; the fillet is the rack's, whatever mesh its finite elements may have.
     name : str
-        A key of `fegear.formulas.sources.ROOT_STRESS_SOURCES`.
+        A key of `fegear.formulas.root_stress_formulas.ROOT_STRESS_SOURCES`.
     lowest, highest : float
         Radii between which loads act [m].
     points : int

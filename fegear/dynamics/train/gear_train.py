@@ -6,16 +6,19 @@ A gear pair at work in a train: which body drives, its teeth as springs, what th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train
 from fegear.geometry.pair import GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.dynamics.train.excitation import MeshExcitation
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.gear_train import GearTrain, TrainMesh, a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.torque_ripple import TorqueRipple
@@ -27,6 +27,9 @@ from fegear.dynamics.train.train import (
     shaft_damping,
 )
 from fegear.geometry.pair import GearPair
+
+if TYPE_CHECKING:
+    from fegear.dynamics.train.excitation import MeshExcitation
 
 #: Mean mesh stiffness of trains of which only the ratios and the static forces matter [N/m].
 _ANY_STIFFNESS = 1e8

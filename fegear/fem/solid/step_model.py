@@ -21,9 +21,9 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
 from fegear.fem.plane.tooth_meshing import gmsh_session
-from fegear.geometry.curves import Drawn
+from fegear.geometry.curves import Drawn, smooth_pieces
 from fegear.geometry.gear import Gear
-from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, smooth_pieces, spline_of
+from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, spline_of
 
 #: How far the surfaces may lie off the exact ones [modules]: some ten nanometres.
 TOLERANCE = 1e-5

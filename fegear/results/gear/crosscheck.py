@@ -350,7 +350,8 @@ class Everything:
     @property
     def sources(self) -> tuple[FormulaSource, ...]:
         """Where each closed form comes from."""
-        from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+        from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
+        from fegear.formulas.sources import SOURCES
 
         stress = (FormulaSource(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values())
         return (*stress, *(FormulaSource(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()))

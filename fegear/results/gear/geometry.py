@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
 
 from fegear.base.notes import assuming, failing
 from fegear.base.printed import figures
@@ -26,11 +27,13 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
 from fegear.geometry.mass import MassProperties
 from fegear.geometry.pair import MEMBERS, GearPair
-from fegear.geometry.shaped_tooth import ShapedTooth
 from fegear.geometry.tip_interference import interference
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.body_section import body_figures
 from fegear.results.gear.drawing import Drawing, pair_figure
+
+if TYPE_CHECKING:
+    from fegear.geometry.shaped_tooth import ShapedTooth
 
 
 def _everything(scene: Scene) -> tuple[str, ...]:
@@ -335,7 +338,8 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
 def _fillets(seen: Seen) -> Iterator[str]:
     """Numbers of fillets that no tool generates, beside those of the tool."""
     for name, gear in seen.data.gears.items():
-        if isinstance(tooth := gear.tooth, ShapedTooth):
+        if gear.shaped:
+            tooth = cast("ShapedTooth", gear.tooth)
             m, made = 1e3 * gear.module, tooth.generated
             corner = ", the involute starts in a corner" if tooth.undercut else ""
             yield (

@@ -8,14 +8,8 @@ import numpy as np
 
 from fegear.base.notes import exceeding
 from fegear.base.printed import percent, percents
-from fegear.case.built.odd_teeth import (
-    OddTeeth,
-    check_odd_gear,
-    loaded_on_both_flanks,
-    odd_teeth_of,
-    on_other_flank,
-    reshaped_gears,
-)
+from fegear.case.built.odd_gears import loaded_on_both_flanks, on_other_flank, reshaped_gears
+from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work

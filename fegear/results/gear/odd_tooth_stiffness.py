@@ -11,7 +11,8 @@ import numpy as np
 from fegear.base.arrays import Array, Index
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.case.built.odd_teeth import OddTeeth, cracked_gears, odd_teeth_of
+from fegear.case.built.odd_gears import cracked_gears
+from fegear.case.built.odd_teeth import OddTeeth, odd_teeth_of
 from fegear.engine.citation import citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import DeferredFigure, Figure

@@ -240,7 +240,7 @@ class ShownStudy:
 
 
 def _shown(found: tuple[VariantStress, ...], asked: StudyInputs) -> ShownStudy:
-    from fegear.formulas.sources import ROOT_STRESS_SOURCES
+    from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 
     names, of_drawn = tuple(ROOT_STRESS_SOURCES), asked.study.samples is not None
     rows = _rows(found, names, asked.base.module, of_drawn=of_drawn)
@@ -322,7 +322,7 @@ def _closest(seen: Seen) -> Iterator[str]:
 
 
 def _remarks(seen: Seen) -> tuple[str, ...]:
-    from fegear.formulas.sources import ROOT_STRESS_SOURCES
+    from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 
     base = seen.asked.base
     about = (

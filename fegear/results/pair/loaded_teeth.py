@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 from fegear.base.effects import PLANE_EFFECTS, ROOT_EFFECTS, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_remarks
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.error_over_pitch import ErrorOverPitch

@@ -17,7 +17,8 @@ from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
 from fegear.base.notes import neglecting
 from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
-from fegear.case.built.odd_teeth import odd_gears_of, odd_teeth_in
+from fegear.case.built.odd_gears import odd_gears_of
+from fegear.case.built.odd_teeth import odd_teeth_in
 from fegear.case.built.pair_checks import check_odd_teeth
 from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
 from fegear.contact.plane.odd_compliance import OddCompliance

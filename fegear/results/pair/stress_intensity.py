@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 from fegear.base.arrays import Array
 from fegear.base.notes import neglecting
 from fegear.base.shown import shown
-from fegear.case.built.odd_teeth import cracked_gears, odd_gears_of
+from fegear.case.built.odd_gears import cracked_gears, odd_gears_of
 from fegear.contact.plane.crack_in_mesh import CrackInMesh, crack_in_mesh
 from fegear.contact.plane.over_revolution import over_revolution
 from fegear.engine.citation import citing

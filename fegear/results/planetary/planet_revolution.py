@@ -14,7 +14,7 @@ from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.base.notes import assuming
 from fegear.base.shown import declared, shown, shown_as
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import set_pair
 from fegear.dynamics.planetary.phases import whole_delays

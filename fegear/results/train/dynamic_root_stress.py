@@ -12,7 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
 from fegear.case.built.members import gear_name
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.root_stress_sources import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.case.built.train import train_part
 from fegear.case.reading import Scene

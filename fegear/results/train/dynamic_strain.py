@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark

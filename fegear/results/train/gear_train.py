@@ -15,7 +15,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import assuming, neglecting
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
-from fegear.case.built.odd_teeth import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.pair_checks import check_odd_teeth, check_relief
 from fegear.case.built.train import MeshTeeth, TrainInputs, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import GearTrain, a_drives

@@ -28,7 +28,7 @@ from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 from fegear.formulas.outcome import attempt
-from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.train.gear_train import compute_train

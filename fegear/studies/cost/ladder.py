@@ -16,7 +16,8 @@ from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.case.built.tooth_influence import settings_for
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings, solid_settings
-from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
+from fegear.formulas.sources import SOURCES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -1,0 +1,94 @@
+"""Stage ``odd-pair``: a loaded pair with the odd teeth of its gears."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from fegear.base.notes import neglecting
+from fegear.case.built.odd_gears import odd_gears_of, reshaped_gears
+from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_teeth_in
+from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
+from fegear.case.built.pair_spec import pair_spec
+from fegear.contact.odd_flank import OddFlank
+from fegear.engine.sheet.sheet import Sheet
+from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.results.gear.odd_gear import needs_odd_solution_in
+from fegear.results.gear.solved_gear import needs_solution
+from fegear.results.pair.loaded_pair import cites, forecast, settings
+from fegear.results.pair.loaded_teeth import AskedOfTeeth, plane_pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.case.reading import Scene
+    from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.engine.sheet.seen import Seen
+    from fegear.geometry.pair import Member
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    return tuple(name for name in plane_pairs(scene) if odd_gears_of(scene, name))
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    part, reshaped = scene.case.pair[name], reshaped_gears(scene)
+    odd = tuple(gear for gear in odd_gears_of(scene, name) if gear in reshaped)
+    return (
+        *needs_odd_solution_in(scene, name, *odd),
+        *needs_solution(*(gear for gear in (part.driver, part.driven) if gear not in odd)),
+    )
+
+
+def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
+    spec, odd = pair_spec(scene, name), odd_gears_of(scene, name)
+    known = {gear: odd_teeth_in(scene, name, gear) for gear in odd}
+    driver, driven = (
+        replace(flank, odd=known[flank.gear].flanks, profiles=known[flank.gear].profiles)
+        if flank.gear in odd
+        else flank
+        for flank in spec.both
+    )
+    return replace(AskedOfTeeth.of(scene, replace(spec, driver=driver, driven=driven), ()), neglected=False)
+
+
+def _compute(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedPair:
+    from fegear.contact.plane.maker import load_plane
+
+    solved = {task.subject: gear for task, gear in upstream.items()}
+    gears = tuple(solved[gear] for gear in asked.spec.gears)
+    return load_plane(asked.spec, gears, cache=work.cache, estimates=asked.estimates)
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_odd_teeth(scene, name)
+    check_plane_pair(scene, name)
+    for gear in odd_gears_of(scene, name):
+        check_odd_gear(scene, gear)
+    check_left_contact(scene, name)
+    if scene.case.effects.relief:
+        for gear in odd_gears_of(scene, name):
+            member: Member = "driver" if gear == scene.case.pair[name].driver else "driven"
+            for _, profile in odd_teeth_in(scene, name, gear).profiles:
+                profile.built_on(OddFlank(), scene.pairs[name], member, 0.0)  # Welbourn's Delta is not known yet
+
+
+def _remarks(seen: Seen) -> Iterator[str]:
+    """Profiles of single teeth that do not count."""
+    spec = seen.asked.spec
+    for flank in spec.both if not spec.relief else ():
+        if flank.profiles:
+            yield neglecting(f"Gear {flank.gear}: profiles of single teeth ignored because effects.relief is off.")
+
+
+#: A pair of which a gear has odd teeth: results over a revolution read it, all others the ordinary one.
+ODD_PAIR = Stage(
+    subjects=_pairs,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=Sheet(remarks=(_remarks,), settings=settings).present,
+    check=_check,
+    cites=cites,
+    forecast=forecast,
+)
