@@ -22,11 +22,11 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.asymmetric_rack import AsymmetricRack, RackHalf
-from fegear.geometry.curves import Involute, Trochoid
+from fegear.geometry.curves import Trochoid
 from fegear.geometry.external_tooth import THINNEST_NECK
 from fegear.geometry.fillet import RackFlankLine, check_trochoid, meeting
 from fegear.geometry.involute import inv
-from fegear.geometry.involute_side import FLANKS, Flank, InvoluteSide, check_given
+from fegear.geometry.involute_side import FLANKS, Flank, SideOfTooth, check_given
 from fegear.geometry.rack import transverse_angle
 
 
@@ -201,14 +201,8 @@ class AsymmetricTooth:
             )
 
 
-#: What both sides of a tooth have in common.
-_COMMON = (
-    "teeth", "profile_shift", "thickness_allowance", "tip_radius", "tip_rounding", "tip_chamfer", "helix_angle",
-)  # fmt: skip
-
-
 @dataclass(frozen=True)
-class AsymmetricSide(InvoluteSide):
+class AsymmetricSide(SideOfTooth):
     """An asymmetric tooth seen from one of its flanks.
 
     Parameters
@@ -219,18 +213,10 @@ class AsymmetricSide(InvoluteSide):
 
     tooth: AsymmetricTooth
     flank: Flank
-    teeth: int = field(init=False, repr=False)
-    profile_shift: float = field(init=False, repr=False)
-    thickness_allowance: float = field(init=False, repr=False)
-    tip_radius: float = field(init=False, repr=False)
-    tip_rounding: float = field(init=False, repr=False)
-    tip_chamfer: float = field(init=False, repr=False)
-    helix_angle: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Take over what both sides have in common."""
-        for name in _COMMON:
-            object.__setattr__(self, name, getattr(self.tooth, name))
+        self.take_over(self.tooth)
 
     @property
     def back(self) -> AsymmetricSide:
@@ -329,22 +315,16 @@ class AsymmetricSide(InvoluteSide):
         end, roll = meeting(whole, self._flank_line, self._flank_line.tangent_roll(self.rack))
         return replace(whole, end=end), roll
 
-    @cached_property
-    def form_radius(self) -> float:
-        """r_Ff, where the involute starts on the generated flank [modules]."""
-        return float(self.radius_of_roll(self._root[1]))
+    @property
+    def form_roll(self) -> float:
+        """Roll angle of the involute where the fillet ends [rad]."""
+        return self._root[1]
 
     # ---- curves ----------------------------------------------------------------------------------------------------
     @property
     def fillet(self) -> Trochoid:
         """The fillet below this flank, from the root circle to the involute."""
         return self._root[0]
-
-    @cached_property
-    def involute(self) -> Involute:
-        """The usable flank, from form circle to tip (or its rounding, chamfer)."""
-        end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, self._root[1], end)
 
     def outline_angle(self, radius: np.ndarray) -> np.ndarray:
         """Angle from the centre line [rad] of fillet or involute at radii from root to tip [modules]."""

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fegear.base.errors import GeometryError
-from fegear.geometry.curves import Involute, Trochoid
+from fegear.geometry.curves import Trochoid
 from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, check_trochoid, meeting, protuberance_fillet
 from fegear.geometry.involute import roll_of_polar_angle
 from fegear.geometry.involute_side import check_given
@@ -187,18 +187,12 @@ class Tooth(InvoluteTooth):
         end, roll = meeting(whole, self._flank_line, self._flank_line.tangent_roll(self.rack))
         return replace(whole, end=end), roll
 
-    @cached_property
-    def form_radius(self) -> float:
-        """r_Ff, where the involute starts on the generated flank [modules]."""
-        return float(self.radius_of_roll(self._root[1]))
+    @property
+    def form_roll(self) -> float:
+        """Roll angle of the involute where the fillet ends [rad]."""
+        return self._root[1]
 
     # ---- curves ----------------------------------------------------------------------------------------------------
-    @cached_property
-    def involute(self) -> Involute:
-        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
-        end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, self._root[1], end)
-
     @property
     def fillet(self) -> Trochoid | ProtuberanceFillet:
         """The right fillet, from the root circle to the involute."""

@@ -304,9 +304,10 @@ class InternalTooth(InvoluteTooth):
         return self.fillet.start * self.cutter.teeth / self.teeth
 
     @cached_property
-    def form_radius(self) -> float:
-        """r_Ff, where the involute starts on the generated flank, near the root circle [modules]."""
-        return float(self.radius_of_roll(self.involute.start))
+    def form_roll(self) -> float:
+        """Roll angle of the involute where it starts near the root circle [rad]."""
+        length = self.generating_distance * math.sin(self.generating_angle) + self._rounding(self.cutter.tip_radius)[0]
+        return -length / self.base_radius
 
     @property
     def undercut(self) -> bool:
@@ -330,13 +331,6 @@ class InternalTooth(InvoluteTooth):
             start=max(centre, 0.0),
             end=0.5 * math.pi + normal,
         )
-
-    @cached_property
-    def involute(self) -> Involute:
-        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
-        length = self.generating_distance * math.sin(self.generating_angle) + self._rounding(self.cutter.tip_radius)[0]
-        end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, -length / self.base_radius, end)
 
 
 def leaving_margin(pinion: tuple[int, float, float], ring: tuple[int, float, float], distance: float) -> float:

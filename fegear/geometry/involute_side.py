@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import ClassVar, Literal, Protocol
 
@@ -135,8 +136,8 @@ class InvoluteSide(ABC):
 
     @property
     @abstractmethod
-    def form_radius(self) -> float:
-        """r_Ff, where the involute starts on the generated flank [modules]."""
+    def form_roll(self) -> float:
+        """Roll angle of the involute where it starts on the flank [rad]."""
 
     @property
     @abstractmethod
@@ -152,11 +153,6 @@ class InvoluteSide(ABC):
     @abstractmethod
     def fillet(self) -> Curve:
         """The right fillet, from the root circle to the involute."""
-
-    @property
-    @abstractmethod
-    def involute(self) -> Involute:
-        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
 
     @property
     def working_flank(self) -> Flank | None:
@@ -213,6 +209,18 @@ class InvoluteSide(ABC):
     def thickness_angle(self, radius: ArrayLike) -> Array:
         """The tooth's angle [rad] between its two involutes at `radius` [modules], outside both base circles."""
         return np.asarray(self.flank_angle(radius) + self.back.flank_angle(radius))
+
+    # ---- the usable flank ------------------------------------------------------------------------------------------
+    @cached_property
+    def form_radius(self) -> float:
+        """r_Ff, where the involute starts on the flank [modules]."""
+        return float(self.radius_of_roll(self.form_roll))
+
+    @cached_property
+    def involute(self) -> Involute:
+        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
+        end = float(self.roll(self.involute_tip_radius))
+        return Involute(self.base_radius, self.base_half_angle, self.form_roll, end)
 
     # ---- the tip ---------------------------------------------------------------------------------------------------
     @property
@@ -302,3 +310,21 @@ class InvoluteSide(ABC):
     def outline(self) -> dict[str, Curve]:
         """Half of the outline from the middle of the tooth space to the middle of the tip land, by name."""
         return outline_of(self)
+
+
+@dataclass(frozen=True)
+class SideOfTooth(InvoluteSide):
+    """A side of which another tooth has the given numbers: the whole tooth, or the tooth as its tool makes it."""
+
+    teeth: int = field(init=False, repr=False)
+    profile_shift: float = field(init=False, repr=False)
+    thickness_allowance: float = field(init=False, repr=False)
+    tip_radius: float = field(init=False, repr=False)
+    tip_rounding: float = field(init=False, repr=False)
+    tip_chamfer: float = field(init=False, repr=False)
+    helix_angle: float = field(init=False, repr=False)
+
+    def take_over(self, tooth: GivenNumbers) -> None:
+        """Have the given numbers of a tooth; while this side is made."""
+        for given in fields(SideOfTooth):
+            object.__setattr__(self, given.name, getattr(tooth, given.name))

@@ -8,17 +8,18 @@ sides are alike, but neither a `Tooth` nor an `InternalTooth`: what needs a tool
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from fegear.base.errors import GeometryError
-from fegear.geometry.curves import Curve, Involute
+from fegear.geometry.curves import Curve
 from fegear.geometry.external_tooth import THINNEST_NECK, Tooth
 from fegear.geometry.fillet_shapes import FilletShape, FlankAbove, Foot
 from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.involute_side import SideOfTooth
 from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Points of a fillet that are looked at.
@@ -27,13 +28,10 @@ _LOOKED_AT = 513
 SHARPEST_FILLET = 5e-3
 #: How much a fillet may come back toward the root circle [modules].
 _COMES_BACK = 1e-6
-_COMMON = (
-    "teeth", "profile_shift", "thickness_allowance", "tip_radius", "tip_rounding", "tip_chamfer", "helix_angle",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
-class ShapedTooth(InvoluteTooth):
+class ShapedTooth(SideOfTooth, InvoluteTooth):
     """An external tooth with fillets of its own.
 
     Parameters
@@ -53,18 +51,10 @@ class ShapedTooth(InvoluteTooth):
 
     generated: Tooth | InternalTooth
     shape: FilletShape
-    teeth: int = field(init=False, repr=False)
-    profile_shift: float = field(init=False, repr=False)
-    thickness_allowance: float = field(init=False, repr=False)
-    tip_radius: float = field(init=False, repr=False)
-    tip_rounding: float = field(init=False, repr=False)
-    tip_chamfer: float = field(init=False, repr=False)
-    helix_angle: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Take over what the tool decides, and refuse fillets of no tooth."""
-        for name in _COMMON:
-            object.__setattr__(self, name, getattr(self.generated, name))
+        self.take_over(self.generated)
         self._check_form()
         self._check_fillet()
 
@@ -147,10 +137,10 @@ class ShapedTooth(InvoluteTooth):
         """Half the angle of the root land between the two fillets of one tooth space [rad]."""
         return self._foot.root_land_half_angle
 
-    @cached_property
-    def form_radius(self) -> float:
-        """r_Ff, where the fillet ends on the involute [modules]."""
-        return float(self.radius_of_roll(self._foot.roll))
+    @property
+    def form_roll(self) -> float:
+        """Roll angle of the involute where the fillet ends [rad]."""
+        return self._foot.roll
 
     @property
     def undercut(self) -> bool:
@@ -161,12 +151,6 @@ class ShapedTooth(InvoluteTooth):
     def fillet(self) -> Curve:
         """The right fillet, from the root circle to the involute."""
         return self._foot.fillet
-
-    @cached_property
-    def involute(self) -> Involute:
-        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
-        end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, self._foot.roll, end)
 
     @property
     def smallest_radius(self) -> float:
