@@ -106,13 +106,18 @@ def shares_at(engagements: ManyEngagements, load: ArrayLike, at: ArrayLike) -> M
     MissingLibraryError
         If numba is not installed.
     """
-    n = engagements.numbers
-    each = np.ascontiguousarray(np.broadcast_to(np.asarray(load, dtype=float), n.shape[:1]))
-    x = n[:, kernel.START, None] + n[:, kernel.PITCH, None] * np.asarray(at, dtype=float)
+    n, (each, x) = engagements.numbers, placed(engagements, load, at)
     error, shares = np.empty(x.shape), np.zeros((*x.shape, kernel.MOST))
     first = np.zeros(n.shape[0], dtype=np.int64)
     compiled()["shared_at"](n, *tables_of(engagements), engagements.corner_contact, each, x, error, shares, first)
     return ManyShares(error, shares, first)
+
+
+def placed(engagements: ManyEngagements, load: ArrayLike, at: ArrayLike) -> tuple[Array, Array]:
+    """Load of each pair [N], shape (N,), and its roll positions [m], (N, P), of places in its base pitch (P,)."""
+    n = engagements.numbers
+    each = np.ascontiguousarray(np.broadcast_to(np.asarray(load, dtype=float), n.shape[:1]))
+    return each, n[:, kernel.START, None] + n[:, kernel.PITCH, None] * np.asarray(at, dtype=float)
 
 
 def tables_of(engagements: ManyEngagements) -> tuple[Array, Array, Array, Array]:

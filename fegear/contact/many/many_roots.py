@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.many import kernel
-from fegear.contact.many.many_loaded import compiled, tables_of
+from fegear.contact.many.many_loaded import compiled, placed, tables_of
 from fegear.fem.plane.root_stress import smooth_curve
 
 if TYPE_CHECKING:
@@ -127,9 +127,7 @@ def root_stress_at(
     MissingLibraryError
         If numba is not installed.
     """
-    n = engagements.numbers
-    each = np.ascontiguousarray(np.broadcast_to(np.asarray(load, dtype=float), n.shape[:1]))
-    x = n[:, kernel.START, None] + n[:, kernel.PITCH, None] * np.asarray(at, dtype=float)
+    n, (each, x) = engagements.numbers, placed(engagements, load, at)
     out, first = np.empty((n.shape[0], 2, 2, kernel.MOST + 2, x.shape[1])), np.zeros(n.shape[0], dtype=np.int64)
     compiled()["root_stress_at"](
         n, *tables_of(engagements), engagements.corner_contact, each, x, *_along(fillets), out, first

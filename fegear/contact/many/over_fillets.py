@@ -25,13 +25,12 @@ from fegear.contact.many.kernel import (
     LOW2,
     MODULE,
     MOST,
-    NUMBERS,
     PITCH,
     RB1,
     RB2,
     START,
 )
-from fegear.contact.many.over_mesh import begun, changes, inserted, limited, pair_numbers, solved, tabulated
+from fegear.contact.many.over_mesh import begun, limited, pair_numbers, pieces, room_for, solved, tabulated
 
 #: As of `fem.plane.root_stress` and `contact_width` [modules].
 _CLEARANCE, _HALF_WIDTH, _POINT = 0.05, 0.02, 1e-4
@@ -40,7 +39,7 @@ _FITTED = 10
 #: A stress below this part of the largest is not looked at closer, nor one that is above the least by this part.
 _COUNTS, _ABOVE = 0.6, 0.05
 #: Pieces and positions of a base pitch at most; how far beside their ends both sides are looked at, in base pitches.
-_PIECES, _POSITIONS, _SIDE, _APART = 40, 1000, 1e-9, 1e-12
+_PIECES, _POSITIONS, _SIDE = 40, 1000, 1e-9
 #: Steps towards a peak between positions.
 _REFINED = 3
 TENSION, COMPRESSION = 0, 1
@@ -280,9 +279,7 @@ def root_stresses(  # noqa: C901  (one loop over positions)
         By gear [Pa]; NaN where load sharing does not settle.
     """
     size = own1.shape[1]
-    x, y_slopes, thomas = np.empty((2, size)), np.empty((2, size)), np.empty((2, size))
-    state, c, v = np.zeros((MOST, NUMBERS)), np.zeros((MOST, MOST)), np.zeros(MOST)
-    work, ways = np.zeros((MOST, MOST + 2)), np.zeros((2, 4))
+    x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     edges, found, every = np.empty(_PIECES), np.empty(_PIECES), np.empty(2 * _PIECES)
     rise1, rise2 = np.empty(stress1.shape[1:]), np.empty(stress1.shape[1:])
     at, weights = np.zeros((MOST, 1), dtype=np.int64), np.zeros((MOST, 4))
@@ -309,19 +306,10 @@ def root_stresses(  # noqa: C901  (one loop over positions)
         for load_number in range(loads.shape[1]):
             load = loads[p, load_number]
             limited(n, own, load, ways)
-            changed = changes(
+            count = pieces(
                 n, own, ways, beside1[p], beside2[p], corners, load, numbers, first, samples, edges, begins, state, c,
-                v, work, found,
+                v, work, found, every,
             )  # fmt: skip
-            count = 0
-            for i in range(begins):
-                count = inserted(every, count, edges[i])
-            for i in range(changed):
-                near = False
-                for j in range(count):
-                    near = near or abs(every[j] - found[i]) <= _APART * n[PITCH]
-                if not near:
-                    count = inserted(every, count, found[i])
             top[:], least[:], good, positions = -math.inf, math.inf, True, 0
             for i in range(count):
                 a, b = every[i], every[i + 1] if i + 1 < count else n[START] + n[PITCH]
@@ -399,9 +387,7 @@ def root_stress_at(
         Number of the first pair.
     """
     size = own1.shape[1]
-    x, y_slopes, thomas = np.empty((2, size)), np.empty((2, size)), np.empty((2, size))
-    state, c, v = np.zeros((MOST, NUMBERS)), np.zeros((MOST, MOST)), np.zeros(MOST)
-    work, ways = np.zeros((MOST, MOST + 2)), np.zeros((2, 4))
+    x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     rise1, rise2 = np.empty(stress1.shape[1:]), np.empty(stress1.shape[1:])
     at, weights = np.zeros((MOST, 1), dtype=np.int64), np.zeros((MOST, 4))
     values, height, rise = np.empty(arc.size), np.empty(arc.size), np.empty(arc.size)

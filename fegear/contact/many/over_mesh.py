@@ -173,6 +173,14 @@ def highest(x, f, piece, count, sign):
     return top + slope * slope / (4.0 * bend)
 
 
+def room_for(size):
+    """Arrays to work in, for compliances at so many places: one set serves all pairs, one after the other."""
+    return (
+        np.empty((2, size)), np.empty((2, size)), np.empty((2, size)), np.zeros((MOST, NUMBERS)),
+        np.zeros((MOST, MOST)), np.zeros(MOST), np.zeros((MOST, MOST + 2)), np.zeros((2, 4)),
+    )  # fmt: skip
+
+
 def tabulated(n, own1, own2, x, y_slopes, ways, work):
     """Roll lengths and slopes of both gears' c_0, and the ways of both corners, in place."""
     ways[:] = 0.0
@@ -249,7 +257,27 @@ def changes(  # noqa: C901  (one search: what it shares is its local variables)
     return known
 
 
-def transmission_errors(  # noqa: C901  (one loop over points)
+def pieces(
+    n, own, ways, beside1, beside2, corners, load, numbers, first, samples, edges, begins, state, c, v, work, found,
+    every,
+):  # fmt: skip
+    """Where pieces begin between which no pair comes or goes and no relief begins, in place, in order; how many [m]."""
+    changed = changes(
+        n, own, ways, beside1, beside2, corners, load, numbers, first, samples, edges, begins, state, c, v, work, found
+    )
+    count = 0
+    for i in range(begins):
+        count = inserted(every, count, edges[i])
+    for i in range(changed):
+        near = False
+        for j in range(count):
+            near = near or abs(every[j] - found[i]) <= _APART * n[PITCH]
+        if not near:
+            count = inserted(every, count, found[i])
+    return count
+
+
+def transmission_errors(
     numbers_of, own1, own2, beside1, beside2, corners, loads, waves, samples, gauss, gauss_weights, out
 ):
     """Mean, peak-to-peak value and largest share of the load of each pair under each of its loads.
@@ -270,9 +298,7 @@ def transmission_errors(  # noqa: C901  (one loop over points)
         NaN where load sharing does not settle, or no teeth touch at some position.
     """
     size = own1.shape[1]
-    x, y_slopes, thomas = np.empty((2, size)), np.empty((2, size)), np.empty((2, size))
-    state, c, v = np.zeros((MOST, NUMBERS)), np.zeros((MOST, MOST)), np.zeros(MOST)
-    work, ways = np.zeros((MOST, MOST + 2)), np.zeros((2, 4))
+    x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     edges, found, every = np.empty(_PIECES), np.empty(_PIECES), np.empty(2 * _PIECES)
     place, value, piece = np.empty(_POINTS), np.empty(_POINTS), np.empty(_POINTS, dtype=np.int64)
     order = gauss.size
@@ -288,19 +314,10 @@ def transmission_errors(  # noqa: C901  (one loop over points)
         for load_number in range(loads.shape[1]):
             load = loads[p, load_number]
             limited(n, own, load, ways)
-            changed = changes(
+            count = pieces(
                 n, own, ways, beside1[p], beside2[p], corners, load, numbers, first, samples, edges, begins, state, c,
-                v, work, found,
+                v, work, found, every,
             )  # fmt: skip
-            count = 0
-            for i in range(begins):
-                count = inserted(every, count, edges[i])
-            for i in range(changed):
-                near = False
-                for j in range(count):
-                    near = near or abs(every[j] - found[i]) <= _APART * n[PITCH]
-                if not near:
-                    count = inserted(every, count, found[i])
             points, mean, most, good = 0, 0.0, 0.0, True
             for i in range(count):
                 a, b = every[i], every[i + 1] if i + 1 < count else n[START] + n[PITCH]
@@ -349,9 +366,7 @@ def shared_at(numbers_of, own1, own2, beside1, beside2, corners, load, at, error
         Number of the first pair; shares are zero beyond the last.
     """
     size = own1.shape[1]
-    x, y_slopes, thomas = np.empty((2, size)), np.empty((2, size)), np.empty((2, size))
-    state, c, v = np.zeros((MOST, NUMBERS)), np.zeros((MOST, MOST)), np.zeros(MOST)
-    work, ways = np.zeros((MOST, MOST + 2)), np.zeros((2, 4))
+    x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     for p in range(numbers_of.shape[0]):
         n = numbers_of[p]
         if not (n[END] > n[START] and np.isfinite(n).all() and np.isfinite(own1[p, 0] + own2[p, 0])):
