@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 import os
 import tempfile
 import time
@@ -24,6 +25,8 @@ _BLOCK = 4096
 #: Temporary files older than this were left behind by a killed process [s].
 _ABANDONED = 3600.0
 _GIB = 1 << 30
+#: Folder of points, their share of the limit, and by how much clocks of machine and disk may differ [s].
+_POINTS, _POINTS_SHARE, _CLOCKS = "points", 0.25, 60.0
 
 
 def cache_folder() -> Path:
@@ -62,10 +65,20 @@ class Store:
     limit : int
         Bytes that all entries together may take, and now and then some hundredths more; the ones unused for longest go
         first.
+    since : float
+        What was used after it stays, whatever the limit [s since 1970].
     """
 
     folder: Path
     limit: int = _GIB
+    since: float = math.inf
+
+    def of_points(self) -> Store:
+        """A store of its own within the folder, of what one stretch of work finds point by point.
+
+        Nothing that this stretch keeps or takes from it is dropped; large entries beside it drop none.
+        """
+        return Store(self.folder / _POINTS, int(_POINTS_SHARE * self.limit), time.time() - _CLOCKS)
 
     def _place(self, key: str) -> Path:
         return self.folder / key[:2] / f"{key}{_SUFFIX}"
@@ -119,15 +132,17 @@ class Store:
         return drawn < max(size, _BLOCK) / (_BETWEEN_LOOKS * self.limit)
 
     def _prune(self) -> None:
-        now, entries = time.time(), []
+        now, entries, total = time.time(), [], 0
         for found in _within(self.folder):
             with contextlib.suppress(OSError):  # another process may prune as well
                 stat = found.stat()
                 if found.name.endswith(_SUFFIX):
+                    total += stat.st_size
+                    if stat.st_mtime >= self.since:
+                        continue
                     entries.append((stat.st_mtime, stat.st_size, found.path))
                 elif found.name.startswith(".") and now - stat.st_mtime > _ABANDONED:
                     Path(found.path).unlink()
-        total = sum(size for _, size, _ in entries)
         if total <= self.limit:
             return
         for _, size, path in sorted(entries):

@@ -92,6 +92,7 @@ def _run_case(
     from fegear.case.reading import read_scene
     from fegear.engine.executor import Executor
     from fegear.engine.extras import missing
+    from fegear.engine.own_speed import remember
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing
@@ -126,6 +127,7 @@ def _run_case(
             )  # fmt: skip
             files: list[FieldFile] | None = [] if with_fields else None
             remarks = write_results(results, scratch, watching, plots=plots, begun=drawing, fields=files)
+            remember(results)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for table in results.tables:
@@ -147,6 +149,7 @@ def _run_case(
 def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_json: AsJson = False) -> None:
     """Show what a case would compute and why, with which settings, in about how long, and what it would not."""
     from fegear.case.reading import read_scene
+    from fegear.engine.own_speed import own_speed
     from fegear.engine.plan import make_plan
     from fegear.engine.plan_in_words import plan_content, plan_lines
     from fegear.results.catalogue import STAGES
@@ -154,6 +157,7 @@ def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_
     voice = Voice(as_json=as_json)
     scene = read_scene(case, changes(overrides, wanted))
     planned = make_plan(scene, STAGES)
-    for line in plan_lines(scene, planned):
+    speed = own_speed()
+    for line in plan_lines(scene, planned, speed):
         voice.say(line)
-    voice.tell(plan_content(scene, planned))
+    voice.tell(plan_content(scene, planned, speed))

@@ -96,7 +96,7 @@ def map_points(
         If something is missing that every point needs.
     """
     executor, cache = executor or Executor(), SolutionCache() if cache is None else cache
-    name, store = function_name(function), cache.disk
+    name, store = function_name(function), cache.disk and cache.disk.of_points()
     keys = _keys(name, points, key, store)
     payloads: dict[str, bytes] = {}
     for one in set(keys) if store else ():
@@ -125,7 +125,7 @@ def count_kept(
     key: Callable[[Any], object] | None = None,
 ) -> int:
     """How many of the points `map_points` would find on the cache's disk."""
-    store = cache.disk
+    store = cache.disk and cache.disk.of_points()
     return sum(one in store for one in _keys(function_name(function), points, key, store)) if store else 0
 
 

@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Sequence
 
 from fegear.case.reading import Scene
+from fegear.engine.own_speed import OwnSpeed
 from fegear.engine.plan import Plan
 
 
@@ -21,9 +22,10 @@ def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
     return found
 
 
-def plan_lines(scene: Scene, plan: Plan) -> list[str]:
-    """Lines for the terminal."""
-    lines, seconds = ["Computed:"], forecast_seconds(scene, plan)
+def plan_lines(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> list[str]:
+    """Lines for the terminal; seconds of a machine whose speed is known, else of a reference machine."""
+    speed = speed or OwnSpeed()
+    lines, seconds = ["Computed:"], speed.scaled(plan, forecast_seconds(scene, plan))
     for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
         effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
         lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
@@ -37,9 +39,9 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
     unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
     without = f", excluding {', '.join(unknown)} (CPU time unknown)" if unknown else ""
     total = sum(predicted or 0.0 for predicted in seconds)
+    by = f"by {speed.count} tasks of earlier runs on this machine" if speed.count else "on a reference machine"
     lines.append(
-        f"Estimated CPU time: about {total:.2g} s on a reference machine{without}, plus some seconds for tables, "
-        "figures and report."
+        f"Estimated CPU time: about {total:.2g} s {by}{without}, plus some seconds for tables, figures and report."
     )
     return lines + [f"Note: {remark}" for remark in plan.remarks]
 
@@ -61,8 +63,9 @@ def _folded(skipped: Sequence[tuple[str, str]]) -> list[str]:
     return found
 
 
-def plan_content(scene: Scene, plan: Plan) -> dict[str, object]:
+def plan_content(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> dict[str, object]:
     """The same as plain mappings and lists, for programs; ``seconds`` is None where the run time is unknown."""
+    seconds = (speed or OwnSpeed()).scaled(plan, forecast_seconds(scene, plan))
     return {
         "case": scene.name,
         "steps": [
@@ -73,7 +76,7 @@ def plan_content(scene: Scene, plan: Plan) -> dict[str, object]:
                 "settings": dict(step.stage.forecast(scene, step.task.subject).settings),
                 "seconds": predicted,
             }
-            for step, predicted in zip(plan.steps, forecast_seconds(scene, plan), strict=True)
+            for step, predicted in zip(plan.steps, seconds, strict=True)
         ],
         "skipped": [{"stage": name, "reason": reason} for name, reason in plan.skipped],
         "remarks": list(plan.remarks),

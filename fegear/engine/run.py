@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -75,6 +76,8 @@ class Timing(NamedTuple):
         Those of them that an earlier run had kept on disk.
     spared : float
         Seconds that the shapes recalled took when they were solved.
+    processor : float
+        CPU seconds of this process and of those that it started and waited for.
     """
 
     seconds: float
@@ -83,6 +86,7 @@ class Timing(NamedTuple):
     shapes: int = 0
     from_disk: int = 0
     spared: float = 0.0
+    processor: float = 0.0
 
     @property
     def origin(self) -> str:
@@ -271,8 +275,14 @@ def key_without_needs(scene: Scene, step: Step) -> Key:
     return Key.of(step.stage.name, step.inputs(scene), [])
 
 
+def _processor() -> float:
+    """CPU seconds of this process, and of those that it waited for."""
+    children = os.times()
+    return time.process_time() + children.children_user + children.children_system
+
+
 def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:
-    started = time.perf_counter()
+    started, before = time.perf_counter(), _processor()
     work.cache.begin()
     shapes = work.cache.shapes.state
     stage, subject = step.stage, step.task.subject
@@ -286,5 +296,5 @@ def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work
     recalled = solution.source != "computed"
     used = work.cache.shapes.since(shapes)
     when = solution.seconds if recalled else seconds
-    timing = Timing(seconds, recalled, when, used.recalled, used.from_disk, used.spared)
+    timing = Timing(seconds, recalled, when, used.recalled, used.from_disk, used.spared, _processor() - before)
     return _Finished(solution.value, outcome, key, timing)

@@ -194,6 +194,7 @@ class Worker:
     # ---- jobs ----------------------------------------------------------------------------------------------------
 
     def _results(self, asked: Asked, *, told: bool = False) -> Results:
+        from fegear.engine.own_speed import own_speed
         from fegear.engine.plan_in_words import forecast_seconds
         from fegear.engine.run import run_plan
 
@@ -228,7 +229,7 @@ class Worker:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
             self._draft(asked, scene, plan, planned)
-        self._left = TimeLeft(forecast_seconds(scene, plan) if self._reports else ())
+        self._left = TimeLeft(own_speed().scaled(plan, forecast_seconds(scene, plan)) if self._reports else ())
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,

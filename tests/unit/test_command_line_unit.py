@@ -71,7 +71,7 @@ def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
         re.MULTILINE,
     )
     assert "friction" in done.stdout.splitlines()[-1]
-    assert "Estimated CPU time: about 0.01 s" in done.stdout
+    assert re.search(r"^Estimated CPU time: about [\d.e-]+ s ", done.stdout, re.MULTILINE)
     done = fegear("plan", case, "--set", 'results=["stiffness"]', "--set", "accuracy.tolerance=1e-2", cwd=tmp_path)
     lines = done.stdout.splitlines()
     assert any("root_edge_length = " in line and "patch_half_width = 0.36" in line for line in lines)

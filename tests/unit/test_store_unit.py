@@ -152,6 +152,26 @@ def test_the_store_drops_what_was_unused_for_longest(tmp_path):
     assert keys[1] not in store
 
 
+def test_points_of_the_sweep_that_runs_are_never_dropped(tmp_path):
+    """Nor by shapes, which are larger; points of earlier sweeps go first."""
+    whole = Store(tmp_path, limit=40_000)
+    old, new = ([content_key(kind, i) for i in range(20)] for kind in ("old", "new"))
+    for key in old:
+        whole.of_points().write(key, bytes(500))
+        (place,) = tmp_path.rglob(f"{key}.entry")
+        os.utime(place, (1e9, 1e9))
+    points = whole.of_points()
+    assert points.read(old[7]) is not None  # recalled by the sweep that runs: one of its points
+    for i, key in enumerate(new):
+        points.write(key, bytes(1000))
+        whole.write(content_key("shape", i), bytes(9000))
+    points.write(content_key("last"), bytes(1000))
+    points._prune()
+    assert all(key in points for key in new)  # twice the limit of points
+    assert [i for i, key in enumerate(old) if key in points] == [7]
+    assert sum(path.stat().st_size for path in tmp_path.glob("??/*.entry")) <= 40_000
+
+
 def test_a_write_looks_at_the_other_entries_now_and_then_only(tmp_path, monkeypatch):
     looks, within = [], store_module._within
     monkeypatch.setattr(store_module, "_within", lambda folder: (looks.append(folder), within(folder))[1])
