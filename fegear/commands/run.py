@@ -94,6 +94,7 @@ def _run_case(
     from fegear.engine.extras import missing
     from fegear.engine.own_speed import remember
     from fegear.engine.plan import make_plan
+    from fegear.engine.plan_in_words import forecast_seconds
     from fegear.engine.run import run_plan
     from fegear.output.figures import Drawing
     from fegear.output.folder import default_folder, whole_or_nothing
@@ -127,7 +128,7 @@ def _run_case(
             )  # fmt: skip
             files: list[FieldFile] | None = [] if with_fields else None
             remarks = write_results(results, scratch, watching, plots=plots, begun=drawing, fields=files)
-            remember(results)
+            remember(results, forecast_seconds(scene, planned))
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for table in results.tables:

@@ -85,13 +85,18 @@ def own_speed(folder: Path | None = None) -> OwnSpeed:
     return OwnSpeed(found) if right else OwnSpeed()
 
 
-def remember(results: Results, folder: Path | None = None) -> None:
-    """Add what the tasks of a run took that were not recalled; a folder that cannot be written stops nothing."""
-    from fegear.engine.plan_in_words import forecast_seconds
+def remember(results: Results, predicted: Sequence[float | None], folder: Path | None = None) -> None:
+    """Add what the tasks of a run took that were not recalled; a folder that cannot be written stops nothing.
 
-    place = folder or cache_folder()
-    predicted = forecast_seconds(results.scene, results.plan)
-    tasks = []
+    Parameters
+    ----------
+    results : Results
+    predicted : sequence of float
+        Seconds of its steps on the reference machine [s].
+    folder : Path, optional
+        See `own_speed`.
+    """
+    place, tasks = folder or cache_folder(), []
     for step, seconds in zip(results.plan.steps, predicted, strict=True):
         timing = results.timings[step.task]
         if seconds and timing.processor > 0.0 and not (timing.recalled or timing.from_disk):

@@ -36,8 +36,9 @@ def test_a_run_is_remembered_and_a_plan_scaled(tmp_path):
     scene = read_scene(CASE, ASKED)
     plan = make_plan(scene, STAGES)
     results = run_plan(scene, plan)
-    remember(results, tmp_path / "new")
-    speed, predicted = own_speed(tmp_path / "new"), forecast_seconds(scene, plan)
+    predicted = forecast_seconds(scene, plan)
+    remember(results, predicted, tmp_path / "new")
+    speed = own_speed(tmp_path / "new")
     assert speed.count == len(plan.steps)
     for step, before, after in zip(plan.steps, predicted, speed.scaled(plan, predicted), strict=True):
         taken = results.timings[step.task].processor
@@ -65,7 +66,8 @@ def test_a_file_of_another_version_or_a_broken_one_is_none(tmp_path, kept):
 def test_where_nothing_can_be_written_a_run_goes_on(tmp_path):
     (tmp_path / "file").write_text("")
     scene = read_scene(CASE, ASKED)
-    remember(run_plan(scene, make_plan(scene, STAGES)), tmp_path / "file")
+    plan = make_plan(scene, STAGES)
+    remember(run_plan(scene, plan), forecast_seconds(scene, plan), tmp_path / "file")
     assert own_speed(tmp_path / "file") == OwnSpeed()
 
 
