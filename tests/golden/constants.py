@@ -1,12 +1,13 @@
-"""Numbers that the code states, kept in ``constants.json``: constants and tables, defaults, flags and bounds of fields.
+"""Numbers that the code has from print or promises: constants and tables, defaults, flags and bounds of fields.
 
     python tests/golden/constants.py [--accept]
 
-Where a curve is searched in 60 steps instead of 66, a marker is 7 points wide or two inputs differ for no key, most
-results stay as they are, so that nothing else would notice a slip in such a number. Of each module it is kept: what its
+Tables of standards and of makers were compared with their print when they were typed in; what a key or an argument is
+where it is not given is a promise. Of the rooms that hold such numbers (`ROOMS`) ``constants.json`` keeps what their
 names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
-count in comparisons, and bounds. Long tables are kept as a sum in which every number has a weight of its own. Only what
-is kept and still there is compared; after a change that is meant, ``--accept`` keeps what is found.
+count in comparisons, and bounds. How finely something is searched or drawn is free to change, and not kept. Long tables
+are kept as a sum in which every number has a weight of its own. Only what is kept and still there is compared; after a
+change that is meant, ``--accept`` keeps what is found.
 """
 
 import argparse
@@ -22,8 +23,8 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
-#: What ends the program as soon as it is imported.
-PROGRAM = "fegear.__main__"
+#: Units and materials, keys, standards and closed forms, teeth by their standards, bearings and shafts, Python.
+ROOMS = ("base", "case", "formulas", "geometry", "shafts", "workbench")
 #: So many numbers are kept as they are.
 FEW = 12
 _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
@@ -32,11 +33,9 @@ DEEP = 8
 
 
 def modules():
-    """Names of all modules, with what is written in them."""
-    for path in sorted((ROOT / "fegear").rglob("*.py")):
-        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-        if name != PROGRAM:
-            yield name, path
+    """Names of the modules of these rooms, with what is written in them."""
+    for path in sorted(path for room in ROOMS for path in (ROOT / "fegear" / room).rglob("*.py")):
+        yield ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"), path
 
 
 def assigned(path):
