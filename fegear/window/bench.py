@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import itertools
-import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,12 +14,12 @@ from fegear.case.changed_text import literal, with_value, with_values
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
 from fegear.window.beginnings import gallery
-from fegear.window.computing import whole, with_gears
 from fegear.window.document import Desk
 from fegear.window.drag_handles import drawn_at_once, moved_relief, own_name, without_relief
 from fegear.window.glance import keep_view, read_view
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said, Stop
-from fegear.window.on_gears import UNASKED
+from fegear.window.judging import Judging
+from fegear.window.told import Content, Told
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,8 +39,6 @@ _HELD = 2.0
 _AGAIN = 3.0
 #: Between two changes that are shown are so many times the time that one takes, and at most so much [s].
 _TIMES, _PAUSE = 2.0, 0.5
-#: Figures and values of so many tasks are kept for pages that open later.
-_Content = dict[str, Any]
 
 
 class Bench:
@@ -78,7 +74,7 @@ class Bench:
         self.pinned: Asked | None = None
         self.view = read_view(case)
         self._settled: Asked | None = None
-        self._listeners: list[Callable[[str, _Content], None]] = []
+        self._listeners: list[Callable[[str, Content], None]] = []
         self._numbers = itertools.count(1)
         self._computing = computing
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -86,16 +82,13 @@ class Bench:
         self._keeping: asyncio.TimerHandle | None = None
         self._settling: asyncio.TimerHandle | None = None
         self._more: bool | None = None  # what has changed since: whether all of it moves
-        self._to_judge: tuple[Desk, str, Callable[[], Verdict]] | None = None
-        self._is_judging = False
+        self._judging = Judging(self._take_verdict)
         self._number = self._first = self._laid = self._comparing = self._stopped = 0
         self._busy = False
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
-        self._meshed: dict[tuple[str, str], _Content] = {}
         self._asides: set[int] = set()
-        self._found: dict[str, _Content] = {}
-        self._last: dict[str, _Content] = {}
+        self._told = Told()
 
     def begin(self) -> None:
         """Listen to what is computed, and ask for the case; called within the loop that the pages run in."""
@@ -115,11 +108,11 @@ class Bench:
     def _draw(self) -> None:
         """Keep the gears as they are drawn, so that a page has them while the process that computes still loads."""
         if self.desk is not None and not self.desk.heavy:
-            self._last |= drawn_at_once(self.desk)
+            self._told.last |= drawn_at_once(self.desk)
 
     # ---- pages ---------------------------------------------------------------------------------------------------
 
-    def listen(self, listener: Callable[[str, _Content], None]) -> Callable[[], None]:
+    def listen(self, listener: Callable[[str, Content], None]) -> Callable[[], None]:
         """Have a page hear of everything from now on; returns what ends that."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener) if listener in self._listeners else None
@@ -142,27 +135,14 @@ class Bench:
         if (before.pictures, before.measure == "none") != (self.view.pictures, self.view.measure == "none"):
             self.compute()
 
-    def tell(self, what: str, content: _Content | None = None) -> None:
+    def tell(self, what: str, content: Content | None = None) -> None:
         """Tell every page."""
         for listener in list(self._listeners):
             listener(what, content or {})
 
-    def shown_now(self) -> list[tuple[str, _Content]]:
+    def shown_now(self) -> list[tuple[str, Content]]:
         """What a page that opens now has to be told."""
-        told: list[tuple[str, _Content]] = [
-            (what, self._last[what])
-            for what in ("plan", "hands", "assemblies", "harris", "pinned")
-            if what in self._last
-        ]
-        for content in self._found.values():
-            told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
-            told += [("picture", picture) for picture in content.get("pictures", {}).values()]
-        told += [
-            ("meshed", content) for key, content in self._meshed.items() if key[1] in UNASKED or key in self._shows
-        ]
-        told += [
-            (what, self._last[what]) for what in ("done", "designed", "compared", "outdated") if what in self._last
-        ]
+        told = self._told.in_order(self._shows)
         return [*told, ("asked", {"number": self._number, "moving": False})] if self._busy else told
 
     # ---- the case ------------------------------------------------------------------------------------------------
@@ -172,10 +152,8 @@ class Bench:
         if self.desk is not None:
             self.desk.leave()
         self.desk, self.pinned, self._laid, self._sight = desk, None, self._laid + 1, ()
-        self._found.clear()
-        self._last.clear()
+        self._told = Told()
         self._shows = ()
-        self._meshed.clear()
         self._settled, self._busy = None, False
         if desk is not None:
             self.view = read_view(desk.path)
@@ -262,24 +240,11 @@ class Bench:
             self.tell("kept")
 
     def _judge_aside(self) -> None:
-        """Have a long text judged in a thread of its own, one after the other."""
-        desk = self.desk
-        if desk is not None and desk.heavy and self._loop is not None:
-            self._to_judge = (desk, desk.text, desk.hand_out())
-        if self._to_judge is None or self._is_judging or self._loop is None:
-            return
-        (of, text, judge), loop = self._to_judge, self._loop
-        self._to_judge, self._is_judging = None, True
-
-        def run() -> None:
-            verdict = judge()
-            with contextlib.suppress(RuntimeError):  # the window is closed
-                loop.call_soon_threadsafe(self._take_verdict, of, text, verdict)
-
-        threading.Thread(target=run, daemon=True).start()  # the end does not wait for it
+        """Have a long text judged beside, where its answer can be taken."""
+        if self._loop is not None:
+            self._judging.begin(self.desk, self._loop)
 
     def _take_verdict(self, desk: Desk, text: str, verdict: Verdict) -> None:
-        self._is_judging = False
         if desk.take_verdict(text, verdict) and desk is self.desk:
             self.changed()
         self._judge_aside()
@@ -301,7 +266,7 @@ class Bench:
             self._outdate(stopped=False)
             return
         self._number, self._busy = next(self._numbers), True
-        self._last.pop("outdated", None)
+        self._told.last.pop("outdated", None)
         self.tell("asked", {"number": self._number, "moving": moving})
         asked = self.asked()._replace(
             moving=moving, sight=self._sight, shows=self._shows, laid=self._laid,
@@ -311,8 +276,8 @@ class Bench:
 
     def _outdate(self, *, stopped: bool) -> None:
         """Say that what pages show is not of the case as it is."""
-        self._last["outdated"] = {"stopped": stopped}
-        self.tell("outdated", self._last["outdated"])
+        self._told.last["outdated"] = {"stopped": stopped}
+        self.tell("outdated", self._told.last["outdated"])
 
     def stop(self) -> None:
         """Give up what is being computed, written or designed; the next change computes again."""
@@ -352,21 +317,16 @@ class Bench:
     def pin(self) -> None:
         """Keep the present state as variant A."""
         self.pinned, self._comparing = self.asked(), 0
-        self._last.pop("pinned", None)
+        self._told.last.pop("pinned", None)
         if self._settled == self.pinned:
-            self._keep_pinned()
-        self.tell("pinned", self._last.get("pinned"))
-
-    def _keep_pinned(self) -> None:
-        """Keep what was found of A, which pages show beside what is found later."""
-        found = [{key: value for key, value in one.items() if key != "pictures"} for one in self._found.values()]
-        self._last["pinned"] = {"found": found}
+            self._told.keep_pinned()
+        self.tell("pinned", self._told.last.get("pinned"))
 
     def unpin(self) -> None:
         """Compare no more."""
         self.pinned, self._comparing = None, 0
-        self._last.pop("compared", None)
-        self._last.pop("pinned", None)
+        self._told.last.pop("compared", None)
+        self._told.last.pop("pinned", None)
         self.tell("unpinned")
 
     def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool, index: int = 0) -> None:
@@ -437,14 +397,15 @@ class Bench:
             return
         if what == "done":
             content["level"] = "" if self.level == "normal" else f" ({self.level}, differs from the case)"
-        self._keep(what, content)
+        self._busy &= what not in ("refused", "done")
+        self._told.keep(what, content)
         self.tell(what, content)
         if what == "done":
             self._done(moving=content["moving"])
-            if "outdated" in self._last:  # refused meanwhile: these are of the case before
-                self.tell("outdated", self._last["outdated"])
+            if "outdated" in self._told.last:  # refused meanwhile: these are of the case before
+                self.tell("outdated", self._told.last["outdated"])
 
-    def _heard_beside(self, what: str, content: _Content, number: int) -> bool:
+    def _heard_beside(self, what: str, content: Content, number: int) -> bool:
         """Take what is said of a job beside the case; False if it is about the case itself."""
         if number in self._asides and what in ("refused", "designed", "exported", "compared"):
             self._asides.discard(number)
@@ -455,12 +416,12 @@ class Bench:
                 return True
         if what == "designed":
             if number > self._stopped:
-                self._last["designed"] = content
+                self._told.last["designed"] = content
                 self.tell(what, content)
                 self._take_reliefs(content["reliefs"])
         elif what == "compared":
             if number == self._comparing:  # else with an A that is pinned no longer, or of an earlier B
-                self._last[what] = content
+                self._told.last[what] = content
                 self.tell(what, content)
         elif what == "exported":
             self.tell(what, content)
@@ -473,28 +434,9 @@ class Bench:
         self._settled = None if moving else self.asked()
         if moving or self.pinned is None:
             return
-        if self.pinned == self._settled and "pinned" not in self._last:
-            self._keep_pinned()
-            self.tell("pinned", self._last["pinned"])
+        if self.pinned == self._settled and "pinned" not in self._told.last:
+            self._told.keep_pinned()
+            self.tell("pinned", self._told.last["pinned"])
         if self._computing is not None:
             self._comparing = self._aside()
             self._computing.ask(Compare(self._comparing, self.pinned, self.asked()))
-
-    def _keep(self, what: str, content: _Content) -> None:
-        """Remember what a page that opens later has to be told."""
-        self._busy &= what not in ("refused", "done")
-        if what == "plan":
-            self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
-            gone = [
-                key for key, one in self._meshed.items() if key[1] in UNASKED and one["task"] not in content["tasks"]
-            ]
-            for key in gone:
-                del self._meshed[key]
-        elif what == "found":
-            self._found[content["task"]] = {**whole(content, self._found.get(content["task"])), "pictures": {}}
-        elif what == "meshed":
-            self._meshed[content["pair"], content["kind"]] = content
-        elif what == "picture":
-            self._found[content["task"]]["pictures"][content["key"]] = content
-        if what in ("plan", "hands", "assemblies", "harris", "done"):
-            self._last[what] = with_gears(content, self._last.get(what)) if what == "hands" else content
