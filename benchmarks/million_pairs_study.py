@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.atlas.many import known_pairs, spur_pairs
+from fegear.atlas.many_pairs import known_pairs, spur_pairs
 from fegear.atlas.shipped import RACKS, shipped_atlas
 from fegear.base.errors import FegearError
 from fegear.contact.many.arrays import ManyEngagements

@@ -1,4 +1,4 @@
-"""Sizing: the funnel against plain loops over single pairs, killed at random, on any number of workers, the atlas."""
+"""Sizing: feasible variants against plain loops over single pairs, killed at random, any number of workers, the atlas."""
 
 from __future__ import annotations
 
@@ -365,7 +365,7 @@ def test_estimates_and_verified_numbers_are_those_of_the_variants_own_cases(tmp_
 
 @pytest.mark.dear
 def test_the_best_relief_is_that_of_a_plain_scan_of_amounts():
-    from fegear.atlas.many import known_pairs, spur_pairs
+    from fegear.atlas.many_pairs import known_pairs, spur_pairs
     from fegear.atlas.shipped import shipped_atlas
     from fegear.contact.many.arrays import ManyReliefs
     from fegear.contact.many.many_loaded import transmission_errors

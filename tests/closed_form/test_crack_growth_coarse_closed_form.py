@@ -8,10 +8,10 @@ import pytest
 
 from fegear.contact.plane.growing_crack import GrowingCrack, growing_crack
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
+from fegear.fem.plane.odd.crack_over_sectors import patch_boundary, rest_of_ring, sectors_beside
 from fegear.fem.plane.odd.growth import equivalent, grow, turning
 from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.other_sector import empty_sector
-from fegear.fem.plane.odd.patch import patch_boundary, rest_of_ring, sectors_beside
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.paris import ParisLaw, cycles_to, length_at

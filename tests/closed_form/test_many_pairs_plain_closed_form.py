@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.atlas import many as atlas_many
-from fegear.atlas.many import ManySpurPairs, known_pairs
+from fegear.atlas import many_pairs as atlas_many
+from fegear.atlas.many_pairs import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import shipped_atlas
 from fegear.contact.many import kernel, many_loaded, many_roots, over_fillets, over_mesh
 from fegear.contact.many.arrays import ManyReliefs

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.atlas.many import ManySpurPairs, known_pairs, loaded_pairs
+from fegear.atlas.many_pairs import ManySpurPairs, known_pairs, loaded_pairs
 from fegear.atlas.shipped import shipped_atlas
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.many.many_loaded import transmission_errors

@@ -10,7 +10,7 @@ import pytest
 
 from fegear.atlas.__main__ import main
 from fegear.atlas.family import Place
-from fegear.atlas.many import ManySpurPairs, known_pairs
+from fegear.atlas.many_pairs import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, nearest_atlas, shipped_atlas
 from fegear.base.errors import InputError, RangeError
 from fegear.contact.many.many_loaded import transmission_errors

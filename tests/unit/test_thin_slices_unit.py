@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.atlas.many import known_pairs, spur_pairs
+from fegear.atlas.many_pairs import known_pairs, spur_pairs
 from fegear.atlas.shipped import shipped_atlas
 from fegear.atlas.thin_slices import sliced_errors
 from fegear.base.solution_cache import SolutionCache
@@ -16,7 +16,7 @@ from fegear.case.reading import build_scene
 from fegear.case.sizing import TolerancesPart
 from fegear.contact.many.many_loaded import transmission_errors
 from fegear.design.sizing.by_atlas import AtlasDuty, Bare, sliced_errors_of
-from fegear.design.sizing.funnel import Lives
+from fegear.design.sizing.feasible import Lives
 from fegear.design.sizing.space import variant_of
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Work

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.atlas.many import known_pairs, spur_pairs
+from fegear.atlas.many_pairs import known_pairs, spur_pairs
 from fegear.atlas.shipped import SHIPPED, family_of, shipped_atlas
 from fegear.atlas.thin_slices import sliced_errors
 from fegear.contact.many import kernel

@@ -1,4 +1,4 @@
-"""From ``[sizing]`` to the funnel: what may vary, limits, and what every variant is rated for.
+"""From ``[sizing]`` to its variants: what may vary, limits, and what every variant is rated for.
 
 What a pair is rated for is read as that of any case, from a pair that stands for all variants: their ratings are those
 of their own cases.

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.design.sizing.by_atlas import LENGTHS, AtlasDuty, Bare, Relieved, bare_errors, relieved_errors
+from fegear.design.sizing.feasible import BARE, RELIEVED, ROOT
 from fegear.design.sizing.front import best_by_fronts, best_by_ranks, pareto_front, rounded_costs
-from fegear.design.sizing.funnel import BARE, RELIEVED, ROOT
 from fegear.results.sizing.by_atlas import bare_of, relieved_of, sliced_of
 from fegear.results.sizing.by_fe import FromFE
 from fegear.results.sizing.sizing_data import BestRelief
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
-    from fegear.design.sizing.funnel import Lives
+    from fegear.design.sizing.feasible import Lives
     from fegear.design.sizing.space import SizingSpace
     from fegear.engine.progress import Progress
     from fegear.engine.stage import Work

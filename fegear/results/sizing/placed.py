@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.design.sizing.feasible import BARE, LARGER_IS_BETTER, RELIEVED, ROOT, costs_of, reasons_of_rating
 from fegear.design.sizing.front import pareto_front, rounded_costs
-from fegear.design.sizing.funnel import BARE, LARGER_IS_BETTER, RELIEVED, ROOT, costs_of, reasons_of_rating
 from fegear.design.sizing.limits import broken
 from fegear.results.sizing.basis import present_pair
 from fegear.results.sizing.sizing_data import Placed, PresentPlaced, SizedVariant
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.design.sizing.funnel import Lives
+    from fegear.design.sizing.feasible import Lives
     from fegear.design.sizing.limits import SizingLimits
     from fegear.results.sizing.sizing_inputs import SizingInputs
 

@@ -1,6 +1,6 @@
 """Stage ``sizing``: from a requirement to a design.
 
-A funnel: all variants by formulas (limits, ISO 6336), the transmission error of all that live by an atlas of solved
+In steps: all variants by formulas (limits, ISO 6336), the transmission error of all feasible ones by an atlas of solved
 gears, or of some by coarse finite elements (helical ones in the order of thin slices), the Pareto front, the best
 verified by finite elements.
 """
@@ -20,8 +20,8 @@ from fegear.base.errors import InputError
 from fegear.base.extras import absent
 from fegear.base.notes import neglecting
 from fegear.design.sizing.by_atlas import AtlasDuty, may_hold
+from fegear.design.sizing.feasible import BARE, BY_FE, RELIEVED, ROOT, costs_of, sieve
 from fegear.design.sizing.front import pareto_front
-from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT, costs_of, sieve
 from fegear.design.sizing.limits import masses
 from fegear.design.sizing.rated import safeties
 from fegear.design.sizing.space import variant_of
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.case.sizing import SizingPart
-    from fegear.design.sizing.funnel import Lives
+    from fegear.design.sizing.feasible import Lives
     from fegear.design.sizing.rated import SizingDuty
     from fegear.design.sizing.space import SizingSpace, Variant
     from fegear.engine.progress import Progress

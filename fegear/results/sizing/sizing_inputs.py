@@ -8,7 +8,7 @@ from typing import Any
 
 from fegear.case.sizing import SizingPart
 from fegear.design.sizing.by_atlas import AtlasDuty
-from fegear.design.sizing.funnel import BARE, BY_FE, RELIEVED, ROOT
+from fegear.design.sizing.feasible import BARE, BY_FE, RELIEVED, ROOT
 from fegear.design.sizing.limits import SizingLimits
 from fegear.design.sizing.rated import SizingDuty
 from fegear.design.sizing.space import SizingSpace

@@ -19,7 +19,7 @@ from fegear.base.errors import FegearError, InputError
 from fegear.base.one_thread import one_thread
 from fegear.fem.plane.odd.crack import fillet_length
 from fegear.fem.plane.odd.crack_faces import opening_rows, pressed
-from fegear.fem.plane.odd.patch import Rest, cracked_patch, rest_of_ring
+from fegear.fem.plane.odd.crack_over_sectors import Rest, cracked_patch, rest_of_ring
 from fegear.fem.plane.odd.stress_intensity import RINGS, by_faces, interaction
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import between_sides, condensed_sector, ports_of

@@ -1,4 +1,4 @@
-"""The funnel by formulas: every variant is enumerated, what it breaks is counted, those that live are rated.
+"""Feasible variants: all are enumerated, the limits that they break counted, and those that keep all rated by formulas.
 
 What is left are numbers of variants and their criteria; memory does not grow with what was excluded.
 """
