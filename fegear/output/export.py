@@ -132,8 +132,8 @@ def export_gears(
     for rack in racks:
         for name in holding:
             write(name, (rack,), SolutionCache(), rack=True)
-        others = sorted(name for name in of_gears if name not in holding)
-        remarks += [f"Rack {rack}: no {', '.join(others)} is written for racks."] if others else []
+        unwritten = sorted(name for name in of_gears if name not in holding)
+        remarks += [f"Rack {rack}: no {', '.join(unwritten)} is written for racks."] if unwritten else []
     for name in _of(wanted, "case") if chosen else ():
         write(name, chosen, SolutionCache())
     if not written and "relief" not in wanted:

@@ -1,4 +1,4 @@
-"""Sizing: feasible variants against plain loops over single pairs, killed at random, any number of workers, the atlas."""
+"""Sizing: feasible variants against plain loops over pairs, killed at random, any number of workers, the atlas."""
 
 from __future__ import annotations
 
