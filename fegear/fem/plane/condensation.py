@@ -23,6 +23,8 @@ from fegear.fem.plane.scikit_fem_solver import between_kept
 _SMALLEST_PART = 160
 #: Runs of unknowns on average at least so long are added run by run.
 _SHORTEST_RUN = 24
+#: Rows that are copied from below the diagonal to beside it at once.
+_BLOCK = 256
 
 
 @dataclass(frozen=True)
@@ -239,8 +241,14 @@ def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index,
 
 
 def symmetric(lower: Array) -> Array:
-    """The whole of a matrix whose lower triangle is known."""
-    return np.asarray(np.tril(lower) + np.tril(lower, -1).T)
+    """The whole of a matrix whose lower triangle is known: the same, its upper triangle filled block by block."""
+    n = lower.shape[0]
+    for first in range(0, n, _BLOCK):
+        end = min(first + _BLOCK, n)
+        block = lower[first:end, first:end]
+        block[...] = np.tril(block) + np.tril(block, -1).T
+        lower[first:end, end:] = lower[end:, first:end].T
+    return lower
 
 
 def reduced(ids: Index, stiffness: Array, end: int, old: Index, steps: list[Eliminated] | None) -> tuple[Index, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index, Mask
 from fegear.base.errors import InputError
 from fegear.fem.plane.chain import factored
-from fegear.fem.plane.condensation import Condensed, condense
+from fegear.fem.plane.condensation import Condensed, condense, symmetric
 from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.mesh import SectorMesh
 
@@ -126,10 +126,9 @@ def between_sides(sector: Condensed, side: int, turn: Array | None) -> BetweenSi
 
     m, n = side, 2 * side
     S = sector.stiffness
-    factor = factored(S[n:, n:]) if n < S.shape[0] else S[n:, n:]
-    own = np.zeros_like(S)
-    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if n < S.shape[0] else S[n:, n:]
-    own[n:, n:] = triangle + np.tril(triangle, -1).T
+    own = np.zeros(S.shape)  # of which the rows of sides are never touched
+    if n < S.shape[0]:
+        own[n:, n:] = symmetric(cast("Array", lapack.dpotri(factored(S[n:, n:]), lower=1, overwrite_c=1)[0]))
     turned = S[:, :n] if turn is None else S[:, :n] @ turn
     follow = np.vstack([np.eye(n) if turn is None else turn, -own[n:, n:] @ turned[n:]])
     held = turned[:n] + S[:n, n:] @ follow[n:]

@@ -8,12 +8,12 @@ its elements, and the block between two functions along the face is a multiple o
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
+from fegear.fem.solid.cuts import halves
 from fegear.fem.solid.unknowns import Unknowns
 from fegear.fem.solid.whole_sector import condense_whole
 
@@ -21,11 +21,6 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
     from fegear.fem.solid.section import Section
-
-#: Unknowns of the section that a smallest part has about, those inside its elements among them.
-_SMALLEST_PART = 30
-#: Directions in which cuts are tried, the least share of the elements on one side, and how much an uneven cut counts.
-_DIRECTIONS, _LEAST_SHARE, _UNEVEN = 12, 0.3, 2.0
 
 
 def condense_solid(
@@ -56,10 +51,12 @@ def condense_solid(
         return condense_whole(section, section.whole, face, known, kept, expandable=expandable)
     dofs = section.element_dofs
     counts = (known.number >= 0).sum(axis=1)
-    weight = counts.copy()
-    weight[kept] = 0
-    depth = max(0, round(np.log2(0.5 * dofs.size / _SMALLEST_PART)))
-    leaf = narrow_halves(section.centres, dofs[:, ::3], weight.reshape(-1, 3).sum(axis=1)[dofs // 3][:, ::3], depth)
+    carried = np.zeros_like(counts)
+    carried[kept] = counts[kept]
+    leaf, depth, _ = halves(
+        section.centres, dofs[:, ::3] // 3,
+        *(one.reshape(-1, 3).sum(axis=1).astype(float) for one in (counts - carried, carried)),
+    )  # fmt: skip
     held = np.flatnonzero(counts == 0)
     order, level_start, old = numbered(dofs, leaf, depth, section.size, np.setdiff1d(kept, held), held)
     # Each unknown of the section brings its functions along the face to its place in the order of elimination.
@@ -70,14 +67,22 @@ def condense_solid(
     natural = np.empty(known.size, dtype=np.int64)
     natural[number[number >= 0]] = known.number[known.number >= 0]
     steps: list[Eliminated] | None = [] if expandable else None
-    members = [np.flatnonzero(leaf == i) for i in range(1 << depth)]
+    elements = np.argsort(leaf, kind="stable")
+    bounds = np.searchsorted(leaf[elements], np.arange((1 << depth) + 1)).tolist()
+    nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 0))
     products = section.products_along(face)
 
     def part(level: int, i: int) -> tuple[Index, Array]:
+        first, end = bounds[i << level], bounds[(i + 1) << level]
+        if first == end:
+            return nothing
         if level == 0:
-            ids, matrix = _smallest(section, products, number, members[i])
+            ids, matrix = _smallest(section, products, number, elements[first:end])
         else:
-            ids, matrix = joined(part(level - 1, 2 * i), part(level - 1, 2 * i + 1))
+            # The larger half first: what is made on its way is gone when the other's is.
+            larger = 2 * (bounds[(2 * i + 1) << (level - 1)] - first) >= end - first
+            halves_of = {one: part(level - 1, one) for one in sorted((2 * i, 2 * i + 1), reverse=not larger)}
+            ids, matrix = joined(halves_of.pop(2 * i), halves_of.pop(2 * i + 1))
         return reduced(ids, matrix, ends[level + 1], natural, steps)
 
     left, stiffness = part(depth, 0)
@@ -86,68 +91,6 @@ def condense_solid(
     place[natural[left]] = np.arange(left.size)
     at = place[wanted]
     return Condensed(wanted, symmetric(stiffness)[np.ix_(at, at)], known.size, tuple(steps or ()))
-
-
-def narrow_halves(centres: Array, nodes: Index, weight: Array, depth: int) -> Index:
-    """Smallest part of each element: halved where the cut is narrowest among many directions.
-
-    Parameters
-    ----------
-    centres : ndarray, shape (2, M)
-    nodes : ndarray of int, shape (M, n)
-    weight : ndarray, shape (M, n)
-        Unknowns that a cut through each of the elements' nodes would leave.
-    depth : int
-        How often is halved.
-
-    Returns
-    -------
-    ndarray of int, shape (M,)
-        Parts 2 i and 2 i + 1 join.
-    """
-    count = np.bincount(nodes.ravel())
-    angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    groups = [np.arange(centres.shape[1])]
-    for _ in range(depth):
-        halves = []
-        for group in groups:
-            own, inverse, times = np.unique(nodes[group], return_inverse=True, return_counts=True)
-            heavy = np.zeros(own.size)
-            heavy[inverse.ravel()] = weight[group].ravel()
-            heavy[times < count[own]] = 0.0  # belongs to a cut of before
-            ordered, at = _narrowest(directions @ centres[:, group], inverse.reshape(nodes[group].shape), heavy)
-            halves += [group[ordered[:at]], group[ordered[at:]]]
-        groups = halves
-    leaf = np.empty(centres.shape[1], dtype=np.int64)
-    for i, group in enumerate(groups):
-        leaf[group] = i
-    return leaf
-
-
-def _narrowest(along: Array, nodes: Index, heavy: Array) -> tuple[Index, int]:
-    """Order of a group's elements and how many of them lie on the near side of the best cut."""
-    n = along.shape[1]
-    low, high = max(1, math.floor(_LEAST_SHARE * n)), min(n - 1, math.ceil((1.0 - _LEAST_SHARE) * n))
-    if n < 2:
-        return np.arange(n), n
-    best, found = math.inf, (np.arange(n), n // 2)
-    for positions in along:
-        ordered = np.argsort(positions, kind="stable")
-        rank = np.empty(n, dtype=np.int64)
-        rank[ordered] = np.arange(n)
-        first, last = np.full(heavy.size, n), np.full(heavy.size, -1)
-        np.minimum.at(first, nodes.ravel(), np.repeat(rank, nodes.shape[1]))
-        np.maximum.at(last, nodes.ravel(), np.repeat(rank, nodes.shape[1]))
-        # Cutting before element i leaves the nodes of elements on both sides of it.
-        change = np.bincount(first + 1, heavy, n + 2) - np.bincount(last + 1, heavy, n + 2)
-        cut = np.cumsum(change)[low : high + 1]
-        share = np.arange(low, high + 1) / n
-        cost = cut * (1.0 + _UNEVEN * (2.0 * share - 1.0) ** 2)
-        i = int(np.argmin(cost))
-        if cost[i] < best:
-            best, found = float(cost[i]), (ordered, low + i)
-    return found
 
 
 def _smallest(
