@@ -22,6 +22,7 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
 
 if TYPE_CHECKING:
+    from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
 
 #: Names of the geometry layer that a case file calls otherwise.
@@ -135,14 +136,24 @@ class GearPart(GearKeys):
                 raise
             raise GeometryError("span_teeth", error.value, error.rule, error.remedy) from None
 
-    def _tooth(self, module: float) -> Tooth | InternalTooth | AsymmetricSide:
+    def _tooth(self, module: float) -> Tooth | InternalTooth | AsymmetricSide | AsymmetricInternalSide:
         """The tooth in modules, as the rack or the cutter makes it; an asymmetric one is seen from its drive flank."""
         tip = math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / module
         shape = (
             self.x, self.allowance / module, tip, self.tip_radius_rounding / module,
             self.tip_chamfer / module, self.helix_angle or 0.0,
         )  # fmt: skip
-        if (cutter := self.cutter) is not None:
+        coast = self.pressure_angle if self.coast_pressure_angle is None else self.coast_pressure_angle
+        if (cutter := self.cutter) is not None and self.asymmetric:
+            from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalTooth
+
+            if cutter.teeth is None:
+                raise InputError("cutter.teeth", "(not given)", "is required for asymmetric teeth",
+                                 f"set cutter.teeth = {max(2 * self.teeth // 5, 5)}")  # fmt: skip
+            beside = cutter.tip_radius if cutter.coast_tip_radius is None else cutter.coast_tip_radius
+            made = cutter.build(module, cutter.teeth)
+            return AsymmetricInternalTooth(self.teeth, made, self.pressure_angle, coast, beside, *shape).drive
+        if cutter is not None:
             return self._cut(
                 cutter.teeth,
                 lambda z0: InternalTooth(self.teeth, cutter.build(module, z0), self.pressure_angle, *shape),
@@ -150,7 +161,6 @@ class GearPart(GearKeys):
         if self.asymmetric:
             from fegear.geometry.asymmetric_tooth import AsymmetricTooth
 
-            coast = self.pressure_angle if self.coast_pressure_angle is None else self.coast_pressure_angle
             rack = self.rack.build_asymmetric(self.pressure_angle, coast, module)
             return AsymmetricTooth(self.teeth, rack, *shape).drive
         return Tooth(self.teeth, self.rack.build(self.pressure_angle, module), *shape)

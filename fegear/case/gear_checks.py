@@ -20,7 +20,6 @@ _EXTERNAL_ONLY = {
     "body": "write outer_radius or rim_thickness",
     "tooth_mesh": "remove it: its mesh is generated",
     "tooth_mesh_fillet": "remove it",
-    "coast_pressure_angle": "remove it: asymmetric internal gears are not available yet",
 }
 
 #: Keys that are for gears with equal flanks only, and what to do with them.

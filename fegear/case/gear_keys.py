@@ -167,7 +167,14 @@ class GearKeys(TeethPart):
     @property
     def asymmetric(self) -> bool:
         """Whether the two flanks of its teeth differ."""
-        angle, tip = self.coast_pressure_angle, self.rack.coast_tip_radius
+        tool = self.rack if self.cutter is None else self.cutter
+        angle, tip = self.coast_pressure_angle, tool.coast_tip_radius
         return (angle is not None and not math.isclose(angle, self.pressure_angle, rel_tol=_ONE_ANGLE)) or (
-            tip is not None and tip != self.rack.tip_radius
+            tip is not None and tip != tool.tip_radius
         )
+
+    @property
+    def describes_both_flanks(self) -> bool:
+        """Whether it gives its teeth two flanks, which may be equal."""
+        tool = self.rack if self.cutter is None else self.cutter
+        return self.coast_pressure_angle is not None or tool.coast_tip_radius is not None

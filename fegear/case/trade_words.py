@@ -66,12 +66,14 @@ _LETTERS = str.maketrans({
 _RACK = "a rack has a table of its own, with its pinion: [rack.NAME]"
 _STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
 _DOUBLE = "the gears are the half at end I, with its hand and face width"
-_BROKEN = "broken and missing teeth are not supported; cracked ones are (gear.NAME.odd_tooth)"
 _WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
 _CROSSED = "only cylindrical gears on parallel axes are supported"
-_UNEVEN = "asymmetric teeth are not supported (one pressure angle for both flanks)"
+_UNEVEN = "pressure_angle is that of the drive flank, coast_pressure_angle that of the coast flank"
 _SPACING = "specify it as gear.NAME.spacing_errors, one value for each tooth"
-_HEAT = "thermal expansion is not computed; flank-surface computes flank temperatures"
+_HEAT = (
+    "of the material, with modulus_over_temperature; thermal expansion is not computed, flank-surface computes flank "
+    "temperatures"
+)
 
 _THICKNESS = "reduction of the tooth thickness at the reference circle from (pi/2 + 2 x tan(alpha)) m"
 _BACKLASH = (
@@ -225,13 +227,14 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("stepped_planet compound_planet stufenplanet", ("compound.NAME",), _STEPPED),
     ("crack cracks tooth_crack cracked_tooth crack_length riss", ("gear.NAME.odd_tooth",),
      "[[gear.NAME.odd_tooth]], one table for each tooth"),
-    ("broken_tooth missing_tooth", (), _BROKEN),
-    ("wear wear_depth spall spalling pit pits verschleiss", (), _WORN),
+    ("broken_tooth missing_tooth", ("gear.NAME.odd_tooth.missing",), "[[gear.NAME.odd_tooth]], with missing = true"),
+    ("spall spalling pit pits gruebchen", ("gear.NAME.odd_tooth.pits",), "[[gear.NAME.odd_tooth]], with pits = [...]"),
+    ("wear wear_depth verschleiss", (), _WORN),
     (("bevel bevel_gear worm worm_gear hypoid crossed_axes shaft_angle_of_axes cone_angle kegelrad schnecke "
      "achsenwinkel"), (), _CROSSED),
-    ("coast_pressure_angle drive_pressure_angle asymmetric pressure_angle_2 asymmetrisch", (), _UNEVEN),
+    ("drive_pressure_angle asymmetric pressure_angle_2 asymmetrisch", ("gear.NAME.coast_pressure_angle",), _UNEVEN),
     ("runout run_out eccentricity rundlauf f_r exzentrizitaet wobble", (), _SPACING),
-    ("temperature thermal_expansion thermal temperatur waermeausdehnung", (), _HEAT),
+    ("temperature thermal_expansion thermal temperatur waermeausdehnung", ("gear.NAME.material.temperature",), _HEAT),
 )  # fmt: skip
 _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("mass inertia weight dimensions span tip_diameter contact_ratio backlash drawing base_tangent geometrie",

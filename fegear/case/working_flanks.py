@@ -65,8 +65,7 @@ def _check_symmetric(case: Case, name: str) -> None:
     """Refuse a working flank of a pair whose gears are not described by both flanks."""
     part = case.pair[name]
     gears = (case.gear[part.driver], case.gear[part.driven])
-    described = any(gear.coast_pressure_angle is not None or gear.rack.coast_tip_radius is not None for gear in gears)
-    if part.flank is not None and not described:
+    if part.flank is not None and not any(gear.describes_both_flanks for gear in gears):
         raise InputError(
             f"pair.{name}.flank", f'"{part.flank}"', "requires asymmetric teeth",
             "set coast_pressure_angle of both gears, or remove it",

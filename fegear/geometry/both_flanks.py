@@ -1,4 +1,4 @@
-"""The room between two external gears whose flanks differ: where both pairs of flanks touch, and the backlash.
+"""The room between two gears whose flanks differ: where both pairs of flanks touch, and the backlash.
 
 The drive flanks of both gears touch each other, or the coast flanks do. For each the mesh is that of an involute pair
 of the flank's own base circles (ISO 21771, 5.4); the two have the same pitch circles, for both divide the centre
@@ -6,6 +6,8 @@ distance by the numbers of teeth. At the working pitch circles the teeth of both
 backlash: a tooth reaches there from its centre line to psi_b - inv(alpha_w) of each flank, so that
 
     z_1 + z_2 times the backlash's angle = 2 pi - sum of z (psi_b - inv(alpha_w)) over both gears and both flanks.
+
+Of an internal pair tooth numbers, base radii and inv(alpha_w) of the ring gear count negative, as in ISO 21771.
 
 Lengths are in normal modules, in the section across the axes.
 """
@@ -25,14 +27,22 @@ def _filled(one: InvoluteSide, other: InvoluteSide) -> float:
 
 
 def _flanks(one: InvoluteSide, other: InvoluteSide) -> tuple[float, float]:
-    """Sums of the base radii of both pairs of flanks."""
-    return one.base_radius + other.base_radius, one.back.base_radius + other.back.base_radius
+    """Sums of the base radii of both pairs of flanks, of an internal pair their differences."""
+    return (
+        abs(one.side * one.base_radius + other.side * other.base_radius),
+        abs(one.side * one.back.base_radius + other.side * other.back.base_radius),
+    )
+
+
+def _teeth(one: InvoluteSide, other: InvoluteSide) -> int:
+    """Sum of the numbers of teeth, of an internal pair the external gear's less the ring gear's."""
+    return one.side * one.teeth + other.side * other.teeth
 
 
 def _free(one: InvoluteSide, other: InvoluteSide, distance: float) -> float:
-    """Angle of the pitch that is free, times z_1 + z_2 [rad]."""
+    """Angle of the pitch that is free, times the sum of the numbers of teeth [rad]."""
     angles = (math.acos(min(radii / distance, 1.0)) for radii in _flanks(one, other))
-    return 2.0 * math.pi - _filled(one, other) + (one.teeth + other.teeth) * sum(float(inv(a)) for a in angles)
+    return 2.0 * math.pi - _filled(one, other) + _teeth(one, other) * sum(float(inv(a)) for a in angles)
 
 
 def free_arc(one: InvoluteSide, other: InvoluteSide, distance: float) -> float:
@@ -41,11 +51,11 @@ def free_arc(one: InvoluteSide, other: InvoluteSide, distance: float) -> float:
     Parameters
     ----------
     one, other : InvoluteSide
-        Teeth of two external gears, seen from the flanks that touch.
+        Teeth of two gears, seen from the flanks that touch.
     distance : float
         Centre distance [modules].
     """
-    return distance / (one.teeth + other.teeth) * _free(one, other, distance)
+    return distance / abs(_teeth(one, other)) * _free(one, other, distance)
 
 
 def touching_distance(one: InvoluteSide, other: InvoluteSide, *, allowance: bool) -> float:
@@ -67,10 +77,12 @@ def touching_distance(one: InvoluteSide, other: InvoluteSide, *, allowance: bool
     # An allowance A_sn takes an arc A_sn / cos(beta) of the reference circle, z / (2 cos(beta)) in radius.
     thicker = 0.0 if allowance else 2.0 * (one.thickness_allowance + other.thickness_allowance)
     least = max(_flanks(one, other))
-    if _free(one, other, least) > thicker:
+    sign = math.copysign(1.0, _teeth(one, other))  # of an internal pair the free angle falls with the distance
+    if sign * (_free(one, other, least) - thicker) > 0.0:
         shifts = one.profile_shift + other.profile_shift
+        far, remedy = ("negative", "increase") if sign > 0.0 else ("large", "reduce")
         raise GeometryError(
-            "profile_shift", f"sum {shifts:.6g}", "is too negative: no working pressure angle", "increase one of them"
+            "profile_shift", f"sum {shifts:.6g}", f"is too {far}: no working pressure angle", f"{remedy} one of them"
         )
     return float(
         brentq(lambda distance: _free(one, other, distance) - thicker, least, 4.0 * least, xtol=1e-14, rtol=9e-16)

@@ -18,6 +18,7 @@ from fegear.geometry.curves import Arc, Curve
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, leaving_margin
 from fegear.geometry.involute import inv
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet, and of a
@@ -76,14 +77,14 @@ class TipCorner(NamedTuple):
     rounding: float
 
 
-def internal_checks(planet: InvoluteTooth, ring: InvoluteTooth, distance: float) -> tuple[InternalCheck, ...]:
+def internal_checks(planet: InvoluteSide, ring: InvoluteSide, distance: float) -> tuple[InternalCheck, ...]:
     """Every check of an external gear inside a ring gear.
 
     Parameters
     ----------
-    planet : InvoluteTooth
-        The external gear, called planet here.
-    ring : InvoluteTooth
+    planet : InvoluteSide
+        The external gear, called planet here, seen from the flank that touches.
+    ring : InvoluteSide
         Internal; the feed of its cutter is checked where it has one.
     distance : float
         Between the axes [modules].
@@ -132,11 +133,14 @@ def internal_checks(planet: InvoluteTooth, ring: InvoluteTooth, distance: float)
             "interference with the fillet", refused=True),
         InternalCheck("trochoidal tip interference", passed / ring.teeth * tip3,
                       "tips of planet and ring interfere outside the path of contact", refused=True),
-        InternalCheck("radial assembly", radial_room(_tip_corner(planet), planet.teeth, ring, distance),
-                      "radial assembly of the planet is not possible at every angle; assemble axially",
-                      refused=False),
     )  # fmt: skip
-    return (*checks, _infeed(ring)) if isinstance(ring, InternalTooth) else checks
+    if not isinstance(planet, InvoluteTooth) or not isinstance(ring, InvoluteTooth):
+        return checks  # what stands in the middle of a space does so for equal flanks only
+    radial = InternalCheck(
+        "radial assembly", radial_room(_tip_corner(planet), planet.teeth, ring, distance),
+        "radial assembly of the planet is not possible at every angle; assemble axially", refused=False,
+    )  # fmt: skip
+    return (*checks, radial, _infeed(ring)) if isinstance(ring, InternalTooth) else (*checks, radial)
 
 
 def _infeed(ring: InternalTooth) -> InternalCheck:
@@ -251,11 +255,11 @@ def _tip_corner(tooth: InvoluteTooth) -> TipCorner:
     return TipCorner(tooth.tip_radius, float(tooth.half_thickness_angle(tooth.tip_radius)), 0.0)
 
 
-def _edge(tooth: InvoluteTooth) -> tuple[Array, Array]:
+def _edge(tooth: InvoluteSide) -> tuple[Array, Array]:
     """Radii [modules] and angles from the centre line [rad] of a tip's corner, (1, 1), or along its edge, (n, 1)."""
     edge = tooth.tip_edge
     if edge is None:
-        return np.full((1, 1), tooth.tip_radius), np.full((1, 1), float(tooth.half_thickness_angle(tooth.tip_radius)))
+        return np.full((1, 1), tooth.tip_radius), np.full((1, 1), float(tooth.flank_angle(tooth.tip_radius)))
     x, y = edge.points(np.linspace(edge.start, edge.end, _EDGE)[:, None])
     return np.hypot(x, y), np.arctan2(x, y)
 
@@ -306,7 +310,7 @@ def _least(room: Callable[[Array], Array], low: float, high: float) -> float:
     return float(np.min(room(turns)))
 
 
-def _past_fillets(planet: InvoluteTooth, ring: InvoluteTooth, distance: float) -> tuple[float, float]:
+def _past_fillets(planet: InvoluteSide, ring: InvoluteSide, distance: float) -> tuple[float, float]:
     """Least room between a tip's path and the mating fillet: planet's past the ring's, ring's past the planet's.
 
     The planet's tooth stands `turn` ahead of the line between the axes, its leading flank on the ring's.

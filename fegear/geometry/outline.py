@@ -28,6 +28,7 @@ from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.relief import Relief
 
 if TYPE_CHECKING:
+    from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_rack import RackHalf
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
     from fegear.geometry.rack import BasicRack
@@ -135,19 +136,21 @@ def rack_in_gear(tooth: Tooth | AsymmetricSide, rolled: float) -> Array:
     return turned(placed, math.pi / tooth.teeth - rolled)
 
 
-def _cutter_in_gear(tooth: InternalTooth, rolled: float) -> Array:
+def _cutter_in_gear(tooth: InternalTooth | AsymmetricInternalSide, rolled: float) -> Array:
     """The pinion-type cutter's tooth in the frame of an internal gear that has turned by an angle [rad], likewise."""
-    placed = turned(tooth.cutter_tooth(), rolled * tooth.teeth / tooth.cutter.teeth)
-    placed[1] += tooth.generating_distance
+    made = tooth if isinstance(tooth, InternalTooth) else tooth.tooth
+    placed = turned(tooth.cutter_tooth(), rolled * tooth.teeth / made.cutter.teeth)
+    placed[1] += made.generating_distance
     return turned(placed, math.pi / tooth.teeth - rolled)
 
 
 def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
     """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
+    from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
     from fegear.geometry.shaped_tooth import ShapedTooth
 
-    if isinstance(tooth, InternalTooth):
+    if isinstance(tooth, (InternalTooth, AsymmetricInternalSide)):
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, (Tooth, AsymmetricSide)):
         return rack_in_gear(tooth, rolled)

@@ -139,9 +139,6 @@ class GearPair:
         """Refuse asymmetric teeth whose other flanks do not go together: they would jam, or wedge."""
         if not self.asymmetric:
             return
-        if self.internal:
-            rule = "is not possible for internal gears yet"
-            raise GeometryError("coast_pressure_angle", "(of a gear in a ring gear)", rule, "remove it")
         a, b = self.driver.from_the_back, self.driven.from_the_back
         if abs(a.base_pitch - b.base_pitch) > 1e-9 * a.base_pitch:
             angles = [f"{math.degrees(gear.normal_pressure_angle):.6g} deg" for gear in (a, b)]
@@ -225,7 +222,15 @@ class GearPair:
             return ()
         from fegear.geometry.internal_interference import internal_checks
 
-        return internal_checks(planet.symmetric_tooth, ring.symmetric_tooth, self.centre_distance / ring.module)
+        distance = self.centre_distance / ring.module
+        found = internal_checks(planet.tooth, ring.tooth, distance)
+        if not self.asymmetric:
+            return found
+        back = internal_checks(planet.tooth.back, ring.tooth.back, distance)
+        return tuple(
+            replace(one, name=f"{one.name} ({tooth.working_flank or 'other'} flanks)")
+            for tooth, checks in ((planet.tooth, found), (planet.tooth.back, back)) for one in checks
+        )  # fmt: skip
 
     @property
     def _base_radii(self) -> float:

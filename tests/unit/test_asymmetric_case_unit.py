@@ -115,7 +115,6 @@ def test_a_full_fillet_is_the_widest_of_both_angles():
         (case(coast_pressure_angle=None, rack={"tip_radius": 0.1}, coast_relief=TIP), "requires asymmetric teeth"),
         (case(odd_tooth=[{"tooth": 0, "crack": {"depth": "1 mm"}}]), "gear.p.odd_tooth"),
         (case(module=None, normal_module="3 mm", helix_angle="20 deg", hand="left"), "spur gears only"),
-        (case(internal=True, rack=None, bore_radius=None, cutter={"teeth": 12}), "asymmetric internal gears"),
         (case(pair={"width": "solid"}), 'pair.I.width = "solid"'),
         (case(pair={"compliance": {"source": "cornell"}}), "pair.I.compliance.source"),
         (case(pair={"root_stress": {"source": "iso-6336-3"}}), "pair.I.root_stress.source"),

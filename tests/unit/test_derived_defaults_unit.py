@@ -134,6 +134,8 @@ ROWS = {
     "RackPart.coast_tip_radius": (
         joined(PAIR, {"results": ["geometry"], "gear.a.rack": {"tip_radius": 0.3}}),
         "gear.a.rack.coast_tip_radius", 0.3),
+    "CutterPart.coast_tip_radius": (
+        joined(RING, {"gear.r.cutter": {"teeth": 25, "tip_radius": 0.15}}), "gear.r.cutter.coast_tip_radius", 0.15),
     "PairPart.flank": (ASYMMETRIC, "pair.I.flank", "drive"),
     "GearPart.face_width": ({"results": ["geometry"], "gear": {"a": {"teeth": 21, "module": "3 mm"}}},
                             "gear.a.face_width", "1 mm"),
