@@ -36,6 +36,8 @@ from fegear.geometry.involute_side import FLANKS, Flank, InvoluteSide, check_giv
 
 #: As of `InternalTooth`: fewest teeth more than the cutter has, and places at which a fillet is looked at.
 _FEWEST_MORE, _LOOKED_AT = 3, 129
+#: Largest distance of the axes in generation, over the smallest.
+_FARTHEST = 4.0
 
 
 @dataclass(frozen=True)
@@ -175,7 +177,12 @@ class AsymmetricInternalTooth:
                 "profile_shift", self.profile_shift, "gives no working pressure angle of gear and cutter",
                 f"choose a profile shift below {math.floor(most * 1e3) * 1e-3:.3f} or a cutter of fewer teeth",
             )  # fmt: skip
-        found = float(brentq(off, least, 4.0 * least, xtol=1e-14, rtol=9e-16))
+        if off(_FARTHEST * least) < 0.0:
+            raise GeometryError(
+                "profile_shift", self.profile_shift, "gives a working pressure angle of gear and cutter above "
+                f"{math.degrees(math.acos(1.0 / _FARTHEST)):.0f} deg", "increase it, or the shift of the cutter",
+            )  # fmt: skip
+        found = float(brentq(off, least, _FARTHEST * least, xtol=1e-14, rtol=9e-16))
         for _ in range(2):  # to the last digits: inv'(alpha) = tan^2 alpha, d alpha / d a = 1 / (a tan alpha)
             slope = sum(math.tan(math.acos(base / found)) for base in bases) / found
             found -= off(found) / slope
@@ -385,9 +392,10 @@ class AsymmetricInternalSide(InvoluteSide):
         return False
 
     @cached_property
-    def form_radius(self) -> float:
-        """r_Ff, where the involute starts, near the root circle [modules]."""
-        return float(self.radius_of_roll(self.involute.start))
+    def form_roll(self) -> float:
+        """Roll angle of the involute where it starts near the root circle [rad]."""
+        length = self.tooth.generating_distance * math.sin(self.generating_angle) + self._cutter[0]
+        return -length / self.base_radius
 
     @cached_property
     def fillet(self) -> PinionTipFillet:
@@ -405,13 +413,6 @@ class AsymmetricInternalSide(InvoluteSide):
             start=land,
             end=0.5 * math.pi + self._cutter[1],
         )
-
-    @cached_property
-    def involute(self) -> Involute:
-        """The usable flank, from form circle to tip (or its rounding, chamfer)."""
-        length = self.tooth.generating_distance * math.sin(self.generating_angle) + self._cutter[0]
-        end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, -length / self.base_radius, end)
 
     def check(self) -> None:
         """Refuse a cutter that leaves no fillet on this side."""

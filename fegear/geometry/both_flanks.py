@@ -20,6 +20,9 @@ from fegear.base.errors import GeometryError
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_side import InvoluteSide
 
+#: Largest centre distance that is looked at, over the smallest.
+_FARTHEST = 4.0
+
 
 def _filled(one: InvoluteSide, other: InvoluteSide) -> float:
     """Sum of z psi_b over both gears and both flanks [rad]."""
@@ -84,6 +87,13 @@ def touching_distance(one: InvoluteSide, other: InvoluteSide, *, allowance: bool
         raise GeometryError(
             "profile_shift", f"sum {shifts:.6g}", f"is too {far}: no working pressure angle", f"{remedy} one of them"
         )
+    if sign * (_free(one, other, _FARTHEST * least) - thicker) < 0.0:
+        far, remedy = ("large", "reduce") if sign > 0.0 else ("negative", "increase")
+        raise GeometryError(
+            "profile_shift", f"sum {one.profile_shift + other.profile_shift:.6g}",
+            f"is too {far}: working pressure angle above {math.degrees(math.acos(1.0 / _FARTHEST)):.0f} deg",
+            f"{remedy} one of them",
+        )  # fmt: skip
     return float(
-        brentq(lambda distance: _free(one, other, distance) - thicker, least, 4.0 * least, xtol=1e-14, rtol=9e-16)
+        brentq(lambda distance: _free(one, other, distance) - thicker, least, _FARTHEST * least, xtol=1e-14, rtol=9e-16)
     )

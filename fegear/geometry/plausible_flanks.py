@@ -62,7 +62,8 @@ def refuse_deep_relief(gear: Gear, relief: Relief, low: float, high: float) -> N
     """
     roll = np.union1d(np.linspace(low, high, 101), np.clip(relief.kinks, low, high))
     removal = relief.removal(roll)
-    share = np.abs(removal) / deepest_relief(gear, roll)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a pointed tooth has nothing to take
+        share = np.abs(removal) / deepest_relief(gear, roll)
     worst = int(np.nanargmax(share)) if np.isfinite(share).any() else 0
     if share[worst] > 1.0:
         radius = float(gear.tooth.radius_of_roll(roll[worst])) * gear.module

@@ -83,7 +83,10 @@ def changed_value(value, draw: random.Random):
         return not value
     if isinstance(value, (int, float)):
         factor = draw.choice([-1, 10, 0.1, 1e3, 1e-3, 1e6, 1e-6, 1e12, 1.001])
-        return int(value * factor) if isinstance(value, int) and draw.random() < 0.7 else value * factor
+        try:
+            return int(value * factor) if isinstance(value, int) and draw.random() < 0.7 else value * factor
+        except OverflowError:  # of an integer of 400 digits
+            return value
     if isinstance(value, str):
         head, _, unit = value.partition(" ")
         try:
