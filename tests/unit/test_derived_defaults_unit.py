@@ -300,7 +300,7 @@ NOT_THERE = {
     "DesignPart.film", "DoubleHelicalPart.axial_play", "DoubleHelicalPart.second_driven",
     "DoubleHelicalPart.second_driver", "DoubleHelicalPart.torque_in", "DoubleHelicalPart.torque_out",
     "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",
-    "FilletPart.scatter", "GearPart.fillet", "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh",
+    "FilletDesignPart.other_pair", "FilletPart.scatter", "GearPart.fillet", "GearPart.helix_angle", "GearPart.rim_support", "GearPart.tooth_mesh",
     "GearPart.web_thickness",
     "LoadingPart.contact_ratio", "LoadingPart.pair", "OperationPart.life", "PairPart.double_helical",
     "PairPart.loads", "PitPart.depth",
