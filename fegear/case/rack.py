@@ -91,10 +91,15 @@ class RackAndPinionPart(_RackKeys):
         default=None,
         description="Distance from the axis of the pinion to the reference line of the rack. Default: from `backlash`.",
     )
+    mounting_distance: PositiveLength | None = Field(
+        default=None,
+        description="Distance from the axis of the pinion to the back of the rack, as catalogues print it: `distance` "
+        "plus `reference_height`; alternatively `distance` or `backlash`.",
+    )
     backlash: Length | None = Field(
         default=None,
-        description="Backlash as travel of the rack, pinion fixed; alternatively `distance`. Default: 0 (for "
-        "`distance` not specified).",
+        description="Backlash as travel of the rack, pinion fixed; alternatively `distance` or `mounting_distance`. "
+        "Default: 0 (for no distance specified).",
     )
     force: PositiveForce | None = Field(
         default=None, description="Force along the rack; alternatively `torque`. Required for results under load."
@@ -108,7 +113,10 @@ class RackAndPinionPart(_RackKeys):
 
     @model_validator(mode="after")
     def _once(self) -> Self:
-        for one, other in (("distance", "backlash"), ("force", "torque")):
+        for one, other in (
+            ("distance", "backlash"), ("mounting_distance", "distance"), ("mounting_distance", "backlash"),
+            ("force", "torque"),
+        ):  # fmt: skip
             if getattr(self, one) is not None and getattr(self, other) is not None:
                 raise refuse(f"contradicts {one}", f"specify either {one} or {other}", key=other, value="(given)")
         if self.support == "back":

@@ -28,7 +28,7 @@ RACKS = [
         "material": {"young_modulus": "70 GPa", "poisson_ratio": 0.33},
     },
     {
-        "pinion": "p", "teeth": 5, "reference_height": "8 mm", "distance": "20.7 mm", "torque": "40 N*m",
+        "pinion": "p", "teeth": 5, "reference_height": "8 mm", "mounting_distance": "28.7 mm", "torque": "40 N*m",
         "tip_radius_rounding": "0.2 mm", "support": "back", "basic_rack": "ISO 53 A", "material": "42CrMo4",
         "tip_relief": {"amount": "6 um", "length": "1 mm"},
     },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -93,6 +94,7 @@ def rack_inputs(scene: Scene, name: str) -> RackInputs:
     try:
         pair = _pair(part, gear)
     except InputError as error:
+        error = _from_the_back(part, error)
         first, _, rest = error.key.partition(".")
         known = _KEYS.get(first, first)
         raise at(key, replace_key(error, f"{known}.{rest}" if rest else known)) from None
@@ -154,6 +156,20 @@ def _pinion_relief(spec: ReliefSpec, pair: RackAndPinion) -> Relief:
     return spec.over(pair.pinion, radii, (rolls[0], rolls[1]), normalised)
 
 
+def _from_the_back(part: RackAndPinionPart, error: InputError) -> InputError:
+    """A refusal of the distance to the reference line as one of the mounting distance, where that is given."""
+    if part.mounting_distance is None or error.key not in ("distance", "contact_ratio"):
+        return error
+
+    def moved(found: re.Match[str]) -> str:
+        return f"{found[1]}{float(found[2]) + part.reference_height * 1e3:.6g} mm"
+
+    remedy = re.sub(r"((?:increase|reduce|set) distance(?: to at least )?)([0-9.]+) mm", moved, error.remedy)
+    value = f"{part.mounting_distance * 1e3:.6g} mm" if error.key == "distance" else error.value
+    key = "mounting_distance" if error.key == "distance" else error.key
+    return type(error)(key, value, error.rule, remedy.replace("distance", "mounting_distance"))
+
+
 def replace_key(error: InputError, key: str) -> InputError:
     """The same refusal of another key."""
     return type(error)(key, error.value, error.rule, error.remedy)
@@ -183,6 +199,11 @@ def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
         gear.material if part.material is None else part.material.build(), gear.plane_assumption, part.pins(module),
     )  # fmt: skip
     distance = part.distance
+    if part.mounting_distance is not None:
+        distance = part.mounting_distance - part.reference_height
+        if not distance > 0.0:
+            raise InputError("mounting_distance", f"{part.mounting_distance * 1e3:.6g} mm",
+                             f"must exceed reference_height, {part.reference_height * 1e3:.6g} mm")  # fmt: skip
     if distance is None:
         backlash = part.backlash or 0.0
         if not math.isfinite(backlash) or backlash < 0.0:

@@ -41,6 +41,7 @@ class RackGeometry:
 
     contact_ratio: float = shown("", "contact ratio of rack and pinion")
     distance: float = shown("mm", "distance from the axis of the pinion to the reference line of the rack")
+    mounting_distance: float = shown("mm", "distance from the axis of the pinion to the back of the rack")
     rolling_height: float = shown("mm", "height of the rolling line above the reference line of the rack")
     backlash: float = shown("mm", "backlash as travel of the rack, pinion fixed")
     pinion_tip_clearance: float = shown("mm", "clearance between tip of the pinion and root of the rack")
@@ -59,7 +60,8 @@ class RackGeometry:
 def _geometry(asked: RackInputs) -> RackGeometry:
     pair = asked.pair
     return RackGeometry(
-        pair.contact_ratio, pair.distance, pair.rolling_height, pair.backlash, pair.pinion_tip_clearance,
+        pair.contact_ratio, pair.distance, pair.distance + pair.rack.reference_height, pair.rolling_height,
+        pair.backlash, pair.pinion_tip_clearance,
         pair.rack_tip_clearance, pair.travel_per_turn, pair.stroke, pair.rack.length, pair.rack.height,
         pair.rack.pitch, pair.x_start, pair.x_end, float(pair.radius(pair.x_start)), float(pair.height(pair.x_end)),
     )  # fmt: skip
