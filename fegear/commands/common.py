@@ -124,6 +124,11 @@ class Voice:
         if not (self.quiet or self.as_json):
             typer.echo(line)
 
+    def aside(self, line: str) -> None:
+        """Print a line beside the progress, which is no result (stderr)."""
+        if not self.quiet:
+            complain(line)
+
     def note(self, remark: str) -> None:
         """Print what the user should read."""
         if not self.as_json:

@@ -56,7 +56,7 @@ def import_(
     path = case_file(out or model.stem.replace(".", "_"), force=force)
     write_file(path, text.encode(), "--out")
     notes = sum(line.startswith("# Note: ") for line in text.splitlines())
-    voice.say(f"Wrote {path}, with {notes} notes at the end; next: fegear run {path}")
+    voice.say(f"Wrote {path}, with {notes} notes at the end; next: fegear run {path} --cache")
 
 
 def refuse_unplanned(text: str, name: str) -> None:

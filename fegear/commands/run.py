@@ -29,6 +29,8 @@ from fegear.commands.common import (
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fegear.case.reading import Scene
+    from fegear.engine.plan import Plan
     from fegear.output.fields import FieldFile
     from fegear.output.picture_process import PictureProcess
 
@@ -113,10 +115,12 @@ def _run_case(
         target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
-            watching = stack.enter_context(voice.watcher())
-            stack.enter_context(early.pop_all())  # it ends before the folder that it draws into is moved
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
+            if not voice.quiet:
+                _say_draft(scene, planned, voice, kept=cache)
+            watching = stack.enter_context(voice.watcher())
+            stack.enter_context(early.pop_all())  # it ends before the folder that it draws into is moved
             drawing = (
                 Drawing(scratch / "plots", process, scene.name, scene.gears if with_fields else None)
                 if process
@@ -145,6 +149,27 @@ def _run_case(
         voice.say(sentence)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
+
+
+def _say_draft(scene: Scene, planned: Plan, voice: Voice, *, kept: bool) -> None:
+    """Say what a long run of pairs with a width comes to by coupled slices, before its 3D gears are solved."""
+    from fegear.base.errors import FegearError
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.engine.run import run_plan
+    from fegear.studies.sliced_draft import draft_of_run
+
+    try:
+        draft = draft_of_run(scene, planned)
+        if draft is None:
+            return
+        sentences = run_plan(draft.scene, draft.plan, cache=SolutionCache()).answer.sentences
+    except FegearError:  # slices refuse what solids take: there is no draft
+        return
+    voice.aside("Draft by coupled slices, without estimated errors:")
+    for sentence in sentences:
+        voice.aside(f"  {sentence}")
+    again = "" if kept else "; --cache keeps the gears for runs with other loads, shafts or bearings"
+    voice.aside(f"The result with 3D gears follows, in about {draft.seconds:.2g} s of CPU time{again}.")
 
 
 def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_json: AsJson = False) -> None:

@@ -95,8 +95,6 @@ _FINEST, _COARSEST = 1e-3, 6e-3
 _SOLVED, _SOLID = "gear-solution", "solid-solution"
 
 
-#: Of gears with a width: coupled slices of a section this coarse, at so many roll positions, with so many panels.
-_COARSE_SLICES, _POSITIONS, _PANELS = 0.1, 8, 10
 #: A case must ask for something: what every case can have.
 _CHEAP = "geometry"
 #: What stands at one glance of them besides.
@@ -157,44 +155,27 @@ def draft_of(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[
 
 def _sliced_draft(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
     """Pairs with a width from coupled slices, which take a fraction of the time of solid gears."""
-    from fegear.case.reading import build_scene
     from fegear.engine.plan import make_plan
     from fegear.results.catalogue import STAGES
+    from fegear.studies.sliced_draft import can_be_sliced, sliced
 
     solved = [step for step in plan.steps if step.task.stage == _SOLID]
     if all(key_without_needs(scene, step) in cache for step in solved):
         return None
-    pairs = [name for name in scene.wide_pairs if _can_be_sliced(scene, name)]
+    pairs = [name for name in scene.wide_pairs if can_be_sliced(scene, name)]
     wanted = [
         step.task for step in plan.steps
         if step.task.stage in (*ANSWERS, *_OVER_FACE) and step.task.subject in (*pairs, *scene.plane_pairs)
     ]  # fmt: skip
     if not any(task.subject in pairs for task in wanted):
         return None
-    given = dict(scene.document)
-    tables: dict[str, Any] = dict(given.get("pair", {}))  # type: ignore[call-overload]  # a table of the document
-    tables |= {name: {**tables[name], "width": "slices"} for name in pairs}
-    face: dict[str, Any] = dict(given.get("load_distribution", {}))  # type: ignore[call-overload]  # a table of the document
-    few = {"positions": _POSITIONS, "panels": _PANELS}
-    face |= {key: min(most, face.get(key, most)) for key, most in few.items()}
-    document = {
-        **given, "results": [_CHEAP], "pair": tables, "accuracy": {"tolerance": _COARSE_SLICES}, "neglected": False,
-        "load_distribution": face,
-    }  # fmt: skip
     try:
-        rough = build_scene(document, scene.name, scene.folder, within=scene.within)
-        rough = replace(rough, estimates=False)
+        rough = sliced(scene, [_CHEAP])
         drafted = make_plan(rough, STAGES, wanted)
     except FegearError:  # slices refuse what solids take: there is no draft
         return None
     told = "Preview by coupled slices (no error estimate); result with 3D gears follows."
     return Draft(rough, replace(drafted, steps=tuple(one for one in drafted.steps if one.task.stage != _CHEAP)), told)
-
-
-def _can_be_sliced(scene: Scene, name: str) -> bool:
-    """Whether slices know a pair: of solid external gears."""
-    gears = scene.pairs[name].driver, scene.pairs[name].driven
-    return scene.width_of(name) == "solid" and not any(one.tooth.internal or one.body for one in gears)
 
 
 def _coarse_draft(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[Scene], Plan]) -> Draft | None:
