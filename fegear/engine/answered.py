@@ -27,6 +27,8 @@ class Answered:
         Results that it sums up: their own sentences are not needed beside it.
     background : bool
         Whether it describes what is given, not what follows: behind the others, whatever the order asked for.
+    tables : tuple of str
+        Keys of short tables that a page shows below the figure.
     """
 
     sentences: tuple[str, ...]
@@ -35,3 +37,4 @@ class Answered:
     among: str = ""
     covers: tuple[str, ...] = ()
     background: bool = False
+    tables: tuple[str, ...] = ()

@@ -30,10 +30,11 @@ _COUNTS = ("", "one", "two", "three", "four", "five", "six", "seven", "eight", "
 
 
 class RunAnswer(NamedTuple):
-    """What a run comes to: sentences in the order of the wanted results, and the figure that shows the first."""
+    """What a run comes to: sentences in the order of the wanted results, the first's figure, and short tables."""
 
     sentences: tuple[str, ...]
     figure: str
+    tables: tuple[str, ...] = ()
 
 
 def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence[str]) -> RunAnswer:
@@ -57,7 +58,8 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     room = 1 if front else MOST  # what describes the gears says no more than that beside an answer
     described = tuple(sentence for one in found if one.background for sentence in one.sentences[:room])
     return RunAnswer(
-        tuple(dict.fromkeys((*front, *described))), next((one.figure for one in found if one.figure), "")
+        tuple(dict.fromkeys((*front, *described))), next((one.figure for one in found if one.figure), ""),
+        tuple(dict.fromkeys(table for one in found for table in one.tables)),
     )  # fmt: skip
 
 
@@ -110,6 +112,7 @@ def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outco
     return Answered(
         _within([one.sentences for one in found])[:MOST], next((one.figure for one in found if one.figure), ""),
         covers=tuple(result for one in found for result in one.covers), background=all(o.background for o in found),
+        tables=tuple(table for one in found for table in one.tables),
     )  # fmt: skip
 
 
@@ -123,7 +126,10 @@ def joined(answers: Sequence[Answered]) -> Answered:
     if first.among and rows[0] and first.rank is not None:
         clause = first.among.format(count=_counted(len(answers)))
         rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
-    return Answered(_within(rows)[:MOST], first.figure, covers=first.covers, background=first.background)
+    return Answered(
+        _within(rows)[:MOST], first.figure, covers=first.covers, background=first.background,
+        tables=tuple(table for one in ordered for table in one.tables),
+    )  # fmt: skip
 
 
 def plain_sentences(values: Iterable[Value]) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
 from fegear.results.shafts.gearbox_data import CAUSE_WORDS, MeshAtGlance, Safety, _of_mesh
-from fegear.results.shafts.gearbox_scheme import scheme, unrolled
+from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
 
 CASES = Path(__file__).parents[2] / "cases"
 RATED = {"strength": {"material": "case-hardened-steel"}, "tolerance_class": 6, "roughness": {"flank_rz": "4 um",
@@ -96,6 +96,12 @@ def test_an_overload_names_what_fails_first_and_at_most_three():
     said = run.answer.results[0].sentences if hasattr(run.answer, "results") else outcome.answer.sentences
     assert any("Change 1" in one for one in said)
     bearing = next(one for one in changes if one.part.startswith("bearing"))
+    weakest = outcome.data.bearings[0]
+    assert said[0].startswith(f"Pair {outcome.data.meshes[0].pair}, the weakest of 2: S_H ")
+    assert said[1].startswith(f"Bearing {weakest.bearing} of shaft {weakest.shaft}, the weakest of ")
+    assert said[1].endswith("(required 5000 h).")
+    assert run.answer.tables == ("gearbox_meshes", "gearbox_bearings")
+    assert not any("mesh stiffness" in one for one in run.answer.sentences)
     assert "times as large" in bearing.remedy
 
 
@@ -123,6 +129,16 @@ def test_the_remedy_follows_the_cause():
     weak = _of_mesh(mesh(margin=0.64))
     assert weak.finding.startswith("S_H 0.80 of 1 (pitting), 64 %")
     assert f"S_H about {0.8 * math.sqrt(1.8 / 1.1):.2f}" in weak.remedy
+
+
+def test_names_in_the_drawing_do_not_lie_over_each_other():
+    x, y = np.array([0.0, 1.0, 2.0, 60.0, 1.0]), np.array([0.0, 0.1, 0.0, 0.0, 40.0])
+    labels = ("lager_6202_j", "stirnrad_pos_2", "lager_6202_j_33", "far", "above")
+    moved = apart(x, y, labels, 100.0)
+    assert moved[[3, 4]].tolist() == [0.0, 40.0]  # these are in nobody's way
+    assert np.abs(np.subtract.outer(moved[:3], moved[:3]))[~np.eye(3, dtype=bool)].min() > 2.7
+    assert np.abs(moved[:3]).max() < 6.0
+    assert apart(x[:1], y[:1], labels[:1], 100.0).tolist() == [0.0]
 
 
 def test_the_drawing_has_its_centre_distances_and_displacements(usual):

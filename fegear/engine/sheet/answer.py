@@ -33,7 +33,7 @@ class Answer:
         The smaller, the sooner a reader has to act, among several subjects.
     among : str
         Clause that ends the first sentence of the first of several: ``"the weakest of {count}"``.
-    covers, background
+    covers, background, tables
         As those of `Answered`.
     """
 
@@ -43,14 +43,15 @@ class Answer:
     among: str
     covers: tuple[str, ...]
     background: bool
+    tables: tuple[str, ...]
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
-        among: str = "", covers: tuple[str, ...] = (), background: bool = False,
+        among: str = "", covers: tuple[str, ...] = (), background: bool = False, tables: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
         for name, given in (
             ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
-            ("background", background),
+            ("background", background), ("tables", tables),
         ):  # fmt: skip
             object.__setattr__(self, name, given)
 
@@ -61,7 +62,7 @@ class Answer:
         rank = None if self.rank is None else seen.find(self.rank)
         return Answered(
             found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
-            self.background,
+            self.background, self.tables,
         )  # fmt: skip
 
 

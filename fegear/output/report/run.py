@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from fegear.engine.run import Results
     from fegear.engine.run_answer import RunAnswer
     from fegear.engine.stage import Task
+    from fegear.engine.table import Table
     from fegear.output.figures import Drawn
 
 
@@ -77,13 +78,17 @@ def _values(results: Results) -> tuple[Block, ...]:
     return (*switch, *open_, *folded)
 
 
-def _answer(answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str]) -> tuple[Block, ...]:
-    """The card on top: what the wanted results come to, and the figure that shows it."""
+def _answer(
+    answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str], tables: Sequence[Table]
+) -> tuple[Block, ...]:
+    """The card on top: what the wanted results come to, the figure that shows it, and short tables."""
+    short = [DataTable(table) for table in tables if table.name in answer.tables]
     figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
     blocks: tuple[Block, ...] = (Notes(answer.sentences, "answer"),) if answer.sentences else ()
     if figure is None:
-        return blocks
-    return (*blocks, *([Plot(figure.figure)] if figure.figure.drawable_in_page else map(Still, figure.pictures)))
+        return (*blocks, *short)
+    picture = [Plot(figure.figure)] if figure.figure.drawable_in_page else map(Still, figure.pictures)
+    return (*blocks, *picture, *short)
 
 
 def _drawable(one: Drawn, shown: frozenset[str]) -> bool:
@@ -190,7 +195,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
     # Pictures before what is a table only: the mesh under load before the data of its gears.
     order = sorted(_in_order(results), key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
-    stages = [_stage(results, task, pictures[task], shown | {answer.figure}) for task in order]
+    stages = [_stage(results, task, pictures[task], shown | {answer.figure, *answer.tables}) for task in order]
     warned = f" {len(notes)} note{'s' if len(notes) > 1 else ''}, below the answer." if notes else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
@@ -199,7 +204,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
-            Section("Answer", _answer(answer, drawn, shown)),
+            Section("Answer", _answer(answer, drawn, shown, results.tables)),
             Section("Notes", _notes(notes)),
             Section("Results", values),
             *stages,

@@ -366,9 +366,10 @@ def _in_mesh(seen: Seen) -> Iterator[str]:
         ratio = f"contact ratio {figures(pair.contact_ratio)}"
         if pair.driver.helix_angle != 0.0:
             ratio += f", overlap ratio {figures(pair.overlap_ratio)}"
+        backlash = pair.normal_backlash if abs(pair.normal_backlash) >= _LEAST_BACKLASH else 0.0
         yield (
             f"Pair {name}: {z}, {ratio}, centre distance {figures(pair.centre_distance * 1e3, 6)} mm, normal backlash "
-            f"{figures(pair.normal_backlash * 1e3, 2)} mm."
+            f"{figures(backlash * 1e3, 2)} mm."
         )
 
 
@@ -382,6 +383,8 @@ def _lone_gears(seen: Seen) -> Iterator[str]:
         )
 
 
+#: Backlash below this is none: profile shifts are given to some digits [m].
+_LEAST_BACKLASH = 1e-7
 _SHEET = Sheet(
     name=lambda _asked: "",
     tables=(

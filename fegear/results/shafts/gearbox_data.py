@@ -178,7 +178,8 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     wider = f"{figures(1.0 / one.margin, 2)} times the face width at equal K factors, or a larger centre distance"
     if factor > _WORTH and one.over_face:
         better = value * (factor / _CORRECTED) ** power
-        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {_CORRECTED:g} in place of {factor:.2f}"
+        rated = f"in place of {factor:.2f} of the rating"
+        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {_CORRECTED:g} {rated}"
     return Change(one.margin, f"pair {one.pair}", finding, wider)
 
 

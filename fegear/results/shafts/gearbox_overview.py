@@ -221,13 +221,11 @@ def _check(scene: Scene, _name: str) -> None:
 
 
 def _sentences(seen: Seen) -> Iterator[str]:
-    """The weakest mesh and bearing, and what to change first."""
+    """The weakest mesh, the weakest bearing, and what to change first."""
     data: GearboxData = seen.data
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
-    known = [f"misaligned by {figures(first.over_face * 1e6)} µm"]
-    if math.isfinite(first.face_load_factor):
-        known.append(f"K_Hβ {first.face_load_factor:.2f}")
+    known = []
     if math.isfinite(first.margin):
         known += [
             f"{symbol} {value:.2f}" + (f" (minimum {figures(minimum)})" if value < minimum else "")
@@ -235,17 +233,30 @@ def _sentences(seen: Seen) -> Iterator[str]:
                 ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
             )
         ]  # fmt: skip
+    if math.isfinite(first.face_load_factor):
+        known.append(f"K_Hβ {first.face_load_factor:.2f}")
+    known.append(f"misaligned by {figures(first.over_face * 1e6)} µm")
+    if math.isfinite(first.te_peak_to_peak):
+        known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
     yield f"Pair {first.pair}{many}: {', '.join(known)}."
+    yield from _weakest_bearing(data)
     for number, one in enumerate(data.changes):
         yield f"Change {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+
+
+def _weakest_bearing(data: GearboxData) -> Iterator[str]:
+    """Of those with a life: the first in order, which has the least margin or the shortest life."""
     lives = [one for one in data.bearings if math.isfinite(one.life)]
-    if lives and not any(one.part.startswith("bearing") for one in data.changes):
-        least = lives[0]
-        life = (
-            f"{figures(least.duration / 3600.0)} h" if math.isfinite(least.duration)
-            else f"{figures(least.life * 1e-6)} million revolutions"
-        )  # fmt: skip
-        yield f"Bearing {least.bearing} of shaft {least.shaft}: basic rating life {life}, the shortest."
+    if not lives:
+        return
+    first = lives[0]
+    life = (
+        f"{figures(first.duration / 3600.0)} h" if math.isfinite(first.duration)
+        else f"{figures(first.life * 1e-6)} million revolutions"
+    )  # fmt: skip
+    required = f" (required {figures(data.required_hours / 3600.0)} h)" if first.margin < 1.0 else ""
+    many = f", the weakest of {len(lives)}" if len(lives) > 1 else ""
+    yield f"Bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}."
 
 
 def _by_cause(n: int, cause: str) -> Cell:
@@ -271,7 +282,9 @@ def _with_error(key: str, error: str) -> Cell:
 
 _SHEET = Sheet(
     answer=Answer(
-        _sentences, figure="gearbox", covers=("misalignment", "shaft-deflection", "load-distribution", "rating")
+        _sentences, figure="gearbox",
+        covers=("misalignment", "shaft-deflection", "load-distribution", "rating", "transmission-error"),
+        tables=("gearbox_meshes", "gearbox_bearings"),
     ),
     name=lambda _asked: "",
     tables=(

@@ -14,6 +14,8 @@ from fegear.engine.figure.items import Curve, Points, polylines
 from fegear.engine.figure.panel import Panel
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.base.arrays import Array
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.results.shafts.drawn_gearbox import DrawnBody
@@ -22,7 +24,9 @@ if TYPE_CHECKING:
 
 #: The largest deflection is drawn as this share of the height of the drawing.
 _DRAWN = 0.05
-#: Outer radius of a bearing that is drawn as a square with a cross, over that of its shaft.
+#: Width of a letter and height of a line, over the larger side of the drawing.
+_WIDE, _TALL = 0.0145, 0.028
+#: Colour and line width of each kind of body.
 _LOOKS = {"shaft": ("ink", 1.2), "gear": ("blue", 1.6), "bearing": ("green", 1.2)}
 _LEGEND = {"shaft": "shafts", "gear": "gears", "bearing": "bearings"}
 
@@ -174,7 +178,32 @@ def _names(
             places.append((middle, height - body.outer[0] - room, body.name))
     z, y, labels = zip(*places, strict=True)
     x, y = _turned((np.array(z) * 1e3, np.array(y) * 1e3), upright=upright)
-    return Points(x, y, "", "ink", size=0.0, labels=labels)
+    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in data.drawn.bodies]) * 1e3
+    high = 1e3 * (_span(heights) + 2.0 * max(body.outer.max() for body in data.drawn.bodies))
+    return Points(x, apart(x, y, labels, max(float(np.ptp(ends)), high)), "", "ink", size=0.0, labels=labels)
+
+
+def apart(x: Array, y: Array, labels: Sequence[str], size: float) -> Array:
+    """Ordinates of labels that do not lie over each other: each as near to its place as the others before it let it be.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N,)
+        Middles of the labels.
+    labels : sequence of str, length N
+    size : float
+        The larger side of the drawing, in the unit of `x` and `y`.
+    """
+    wide, tall = _WIDE * size, _TALL * size
+    moved = np.array(y, dtype=float)
+    order = np.argsort(-moved, kind="stable")
+    for k, one in enumerate(order):
+        before = order[:k]
+        near = np.abs(x[before] - x[one]) < 0.5 * wide * np.array([len(labels[one]) + len(labels[b]) for b in before])
+        taken = moved[before][near]
+        steps = (sign * n * 0.5 * tall for n in range(2 * len(labels) + 1) for sign in (-1.0, 1.0))
+        moved[one] += next(step for step in steps if (np.abs(taken - moved[one] - step) >= 0.999 * tall).all())
+    return moved
 
 
 def _span(heights: dict[str, float]) -> float:
