@@ -69,7 +69,7 @@ def read_lines(path: Path, key: str, known: Collection[str]) -> CsvLines:
     key : str
         Where the case names the file, for messages.
     known : collection of str
-        Names of columns: the heads are in the first line that has one of them.
+        Names of columns: the heads are in the line that has most of them.
 
     Raises
     ------
@@ -108,7 +108,11 @@ def read_lines(path: Path, key: str, known: Collection[str]) -> CsvLines:
 
 
 def _heads_at(lines: Sequence[str], known: Collection[str]) -> tuple[int, str]:
-    """Which line has the heads, and what parts its entries: what parts most known names, and the line below alike."""
+    """Which line has the heads, and what parts its entries: what parts most known names, and the line below alike.
+
+    A list of channels above the heads may have one of their names: the line with most of them, the first of equals.
+    """
+    most, place, parting = 0, 0, ","
     for i, line in enumerate(lines):
         below = lines[i + 1] if i + 1 < len(lines) else ""
         found = {
@@ -116,8 +120,10 @@ def _heads_at(lines: Sequence[str], known: Collection[str]) -> tuple[int, str]:
             for sign in _PARTINGS
         }
         best = max(_PARTINGS, key=lambda sign: found[sign])  # the first of equals
-        if found[best][0]:
-            return i, best
+        if found[best][0] > most:
+            most, place, parting = found[best][0], i, best
+    if most:
+        return place, parting
     # None is known: what stands above the first numbers is what a message names.
     numbers = next((i for i, line in enumerate(lines) if _numbers(line)), 0)
     likely = max(numbers - 1, 0)

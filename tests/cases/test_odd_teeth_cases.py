@@ -65,6 +65,12 @@ def test_half_a_tooth_cracked():
     stress = column(found, "root_stress_teeth_I_pinion", "root_tension")
     assert np.argmin(stress) == 0
     assert stress[10] == pytest.approx(np.median(stress))
+    # of the wheel's 30 identical teeth those of one revolution, each on its whole way: only the crack's mates differ
+    wheel, change = (column(found, "root_stress_teeth_I_wheel", name) for name in ("tooth", "root_tension_change"))
+    assert wheel.tolist() == list(range(25))
+    assert set(np.flatnonzero(np.abs(change) > 1e-9)) <= {0, 1, 24}
+    assert np.abs(change).max() < 0.05
+    assert any("root stress of 25 of the 30 identical teeth of gear wheel" in said for said in found.remarks)
     said = " ".join(sentence for sentence in found.answer.sentences)
     assert "31 % below that of ordinary teeth" in said
     assert "K_I up to 8.0" in said

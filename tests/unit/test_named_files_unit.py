@@ -132,6 +132,9 @@ def test_what_is_no_table_is_refused_in_a_sentence(folder, content, words):
          "decimal commas, units from the line below the heads"),
         ("Prüfstand: 3, links\n3. Mai;8:15\nradius [mm];relief [µm]\n31.5;1\n0.25;-2.5\n",
          "2 lines above the heads left out"),
+        # a list of channels above the heads has one of their names
+        ("Messung;12.05.2026\nKanal;relief;1\nradius;relief\n[mm];[µm]\n31,5;1\n0,25;-2,5\n",
+         "decimal commas, units from the line below the heads, 2 lines above the heads left out"),
     ],
 )  # fmt: skip
 def test_what_measuring_programs_export_is_read_and_how_is_said(folder, text, reading, encoding):

@@ -245,11 +245,12 @@ class StressOfTeeth:
     x : ndarray, shape (P,)
         Roll positions in a base pitch [m].
     tooth : ndarray of int, shape (C, n + 2)
-        Number of the tooth, 0 to z - 1.
+        Number of the tooth, 0 to min(z, C) - 1: where fewer base pitches pass than the gear has teeth, these are all
+        alike, and tooth C finds what tooth 0 found.
     stress : ndarray, shape (C, n + 2, P)
         Largest tension, or most negative compression, of its fillet [Pa].
     teeth : int
-        z.
+        min(z, C).
     """
 
     member: Member
@@ -261,7 +262,7 @@ class StressOfTeeth:
 
     @property
     def largest(self) -> Array:
-        """Of each tooth on its way through the mesh, shape (z,) [Pa]."""
+        """Of each tooth on its way through the mesh, shape (min(z, C),) [Pa]."""
         sign = 1.0 if self.side == "tension" else -1.0
         found = np.full(self.teeth, -np.inf)
         np.maximum.at(found, self.tooth, (sign * self.stress).max(axis=2))
@@ -299,7 +300,8 @@ def stress_over_revolution(
     compliance, x = engagement.compliance, roll_positions(engagement, positions)
     known, grid = source or compliance.source(member), engagement.grid(x)
     number = grid.contacts.number
-    z, count = compliance.pair.gear(member).teeth, engagement.cycles
+    count = engagement.cycles
+    numbered = min(compliance.pair.gear(member).teeth, count)
     rows = np.arange(int(number[0]) - 1, int(number[-1]) + 2)
     reach = known.reach if compliance.coupling else 0
 
@@ -312,5 +314,5 @@ def stress_over_revolution(
     for pitches in together(teeth_and_fillets(cycle) for cycle in range(count)):
         state = engagement.solve(grid, [load], int(pitches[0]))
         stress[pitches] = root_stress_history(engagement, state, member, side, 1, known).stress[:, :, 0]
-    tooth = np.array([[compliance.tooth(member, int(row), cycle) % z for row in rows] for cycle in range(count)])
-    return StressOfTeeth(member, side, x, tooth, stress, z)
+    tooth = np.array([[compliance.tooth(member, int(row), cycle) for row in rows] for cycle in range(count)])
+    return StressOfTeeth(member, side, x, tooth % numbered, stress, numbered)

@@ -231,12 +231,24 @@ def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) ->
 
 
 def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
-    """In meshing order; of gears whose teeth are all alike the teeth of one base pitch stand for all."""
+    """In meshing order; of a gear whose teeth are all alike only those that mesh until the same teeth come again."""
     order = np.array([meshing_order(tooth, found.teeth, found.member) for tooth in range(found.teeth)])
-    seen = np.isfinite(found.largest)
-    order, largest = order[seen], found.largest[seen]
     at = np.argsort(order)
-    return StressByTooth(gear, order[at], largest[at], largest[at] / np.median(largest) - 1.0)
+    largest = found.largest[at]
+    return StressByTooth(gear, order[at], largest, largest / np.median(largest) - 1.0)
+
+
+def _not_listed(seen: Seen) -> Iterator[str]:
+    """Why a table of root stress has fewer rows than its gear has teeth."""
+    data: RevolutionData = seen.data
+    for member, one in zip(MEMBERS, data.stress, strict=False):
+        teeth = data.pair.gear(member).teeth
+        if 1 < one.tooth.size < teeth:
+            yield (
+                f"Pair {seen.name}: root stress of {one.tooth.size} of the {teeth} identical teeth of gear {one.gear}: "
+                f"those that mesh in the {data.base_pitches} base pitches after which it repeats, tooth 0 with tooth 0 "
+                "of the other gear."
+            )
 
 
 def _closing(seen: Seen) -> Iterator[str]:
@@ -342,6 +354,7 @@ _SHEET = Sheet(
             when=lambda seen: seen.data.found.solved == 1,
         ),
         _closing,
+        _not_listed,
     ),
     settings={"positions": lambda _seen: POSITIONS, "base_pitches_solved": "found.solved"},
 )  # fmt: skip
