@@ -107,6 +107,10 @@ class CoupledTeeth(ABC):
         """kappa of both gears for the whole face [m/N]."""
         return (self.driver.log_slope + self.driven.log_slope) / self.face_width
 
+    def power(self, member: Member) -> float:
+        """q of a gear's part in a contact that approaches by q w^0.9 more under a line load w [m (m/N)^0.9]."""
+        return self.source(member).power
+
     @property
     def cycles(self) -> int:
         """Base pitches after which the same teeth meet again, as far as they differ: 1 where all are alike."""
@@ -183,7 +187,7 @@ class CoupledTeeth(ABC):
         edges = None
         if follows and at.edge.max() > -np.inf and self.log_slope > 0.0:
             edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
-        q = self.driver.power + self.driven.power if follows else 0.0
+        q = self.power("driver") + self.power("driven") if follows else 0.0
         return PairMatrices(c, ContactLaw(slope, reference, edges, q * face**-EXPONENT))
 
     @property
@@ -208,10 +212,10 @@ class CoupledTeeth(ABC):
         power : bool
             Whether Palmgren's contact counts.
         """
-        source = self.source(member)
+        source, q = self.source(member), self.power(member)
         parts = [source.own(i, radius)]
-        if power and source.power > 0.0:
-            parts.append(np.asarray(source.power * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
+        if power and q > 0.0:
+            parts.append(np.asarray(q * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
         if self.hertz != "none" and source.log_slope > 0.0:
             b = self.half_width(np.asarray(load), relative_radius)
             parts.append(source.log_slope * np.log(source.reference_half_width(radius) / b))
