@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from fegear.case.accuracy import AccuracyPart
-from fegear.case.crack_growth import CrackGrowthPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
 from fegear.case.gear import GearPart
@@ -22,6 +21,7 @@ from fegear.case.studies import CostPart, StudyPart, TolerancePart
 
 if TYPE_CHECKING:
     from fegear.case.compound import CompoundPart
+    from fegear.case.crack_growth import CrackGrowthPart
     from fegear.case.design import DesignPart
     from fegear.case.encoders import EncodersPart
     from fegear.case.fillet_design import FilletDesignPart
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from fegear.case.transmissibility import TransmissibilityPart
 else:  # tables that few cases have
     CompoundPart = Later("fegear.case.compound", "CompoundPart")
+    CrackGrowthPart = Later("fegear.case.crack_growth", "CrackGrowthPart")
     DesignPart = Later("fegear.case.design", "DesignPart")
     EncodersPart = Later("fegear.case.encoders", "EncodersPart")
     FilletDesignPart = Later("fegear.case.fillet_design", "FilletDesignPart")
@@ -71,8 +72,8 @@ class Case(Part):
     encoders: dict[str, Table[EncodersPart]] = Field(
         default_factory=dict, description="Transmission errors measured with encoders, by name."
     )
-    crack_growth: Table[CrackGrowthPart] = Field(
-        default_factory=CrackGrowthPart, description="Growth of the cracks of odd teeth (result `crack-path`)."
+    crack_growth: Table[CrackGrowthPart] | None = Field(
+        default=None, description="Growth of the cracks of odd teeth (result `crack-path`)."
     )
     stiffness: Table[StiffnessPart] = Field(
         default_factory=StiffnessPart, description="Load positions of the compliance and root stress tables."

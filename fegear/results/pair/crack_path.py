@@ -271,17 +271,22 @@ def _first(seen: Seen) -> tuple[str, int]:
     return one.gear, one.tooth
 
 
+def _growth(scene: Scene) -> CrackGrowthPart:
+    """How cracks are followed; as usual where the case does not say it."""
+    return scene.case.crack_growth or CrackGrowthPart()
+
+
 def _inputs(scene: Scene, name: str) -> GrowthInputs:
     revolution = inputs_of(scene, name)
     cracks = []
     for member, _ in revolution.cracked:
         gear = revolution.gears[MEMBERS.index(member)]
         cracks += [(gear, tooth, crack) for tooth, crack in odd_teeth_in(scene, name, gear).cracks]
-    return GrowthInputs(revolution, tuple(cracks), scene.case.crack_growth)
+    return GrowthInputs(revolution, tuple(cracks), _growth(scene))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    part = scene.case.crack_growth
+    part = _growth(scene)
     return Forecast({"steps": part.steps}, _SECONDS * part.steps * len(_inputs(scene, name).cracks))
 
 
