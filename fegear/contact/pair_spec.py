@@ -16,7 +16,6 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.effects import EFFECTS, MISALIGNMENT, RELIEF, SPACING_ERRORS, FaceEffects, RootEffects, ToothEffects
 from fegear.base.errors import InputError
-from fegear.geometry.flank_modification import FlankModification, Topography
 from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
 from fegear.geometry.relief import CombinedRelief, Relief
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from fegear.contact.odd_flank import OddFlank, ToothProfile
     from fegear.contact.wide.shaft_gaps import ShaftGaps
     from fegear.contact.wide_spec import WideSpec
+    from fegear.geometry.flank_modification import FlankModification
 
 #: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.
 Width = Literal["plane", "slices", "solid"]
@@ -133,6 +133,8 @@ class FlankSpec:
 
 
 def _refuse_odd_flank(pair: GearPair, member: Member, parts: tuple[FlankModification, ...]) -> None:
+    from fegear.geometry.flank_modification import Topography
+
     gear, half = pair.gear(member), 0.5 * pair.gear(member).face_width
     low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
     for part in parts:

@@ -10,7 +10,6 @@ import numpy as np
 from fegear.base.effects import RELIEF, SPACING_ERRORS
 from fegear.base.errors import InputError
 from fegear.case.part import Part, at
-from fegear.contact.odd_flank import ToothProfile
 from fegear.contact.pair_spec import FlankSpec
 from fegear.geometry.plausible_flanks import refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from fegear.case.odd_tooth import OddToothPart
     from fegear.case.reading import Scene
     from fegear.case.relief import ReliefPart, ReliefTablePart
+    from fegear.contact.odd_flank import ToothProfile
     from fegear.geometry.gear import Gear
 
 _S = TypeVar("_S")
@@ -98,6 +98,8 @@ def tooth_profile(scene: Scene, name: str, part: OddToothPart, prefix: str) -> T
         relief = replace(_ends(part.relief), tables=_tables(scene, gear, part.relief.table, f"{prefix}.relief.table"))
     if part.deviation:
         deviation = ReliefSpec(tables=_tables(scene, gear, part.deviation, f"{prefix}.deviation"))
+    from fegear.contact.odd_flank import ToothProfile  # late: few gears have odd teeth
+
     return ToothProfile(relief, deviation, prefix)
 
 

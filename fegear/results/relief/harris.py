@@ -169,6 +169,15 @@ _BESIDE_SLIDER = Chart(
 )  # fmt: skip
 
 
+#: Of a design: a map for each of its reliefs.
+HARRIS_CHART = Chart(
+    "harris_map_{name}", "Harris map of pair {name}",
+    "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
+    "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
+    (OVER_ROLL,), views="maps",
+)  # fmt: skip
+
+
 def _round_step(about: float) -> float:
     """The next step of 1, 2, 2.5 or 5 times a power of ten that is no longer than this."""
     power = 10.0 ** math.floor(math.log10(about))

@@ -13,7 +13,7 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import grinding_table
 from fegear.results.relief.ground_tips import tip_numbers
-from fegear.results.relief.harris import OVER_ROLL
+from fegear.results.relief.harris import HARRIS_CHART
 from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_face_data import TipsShown
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, said_at
@@ -89,13 +89,7 @@ RELIEF_OVER_FACE_SHEET = Sheet(
             ),
             under="{d.load:.5g} N",
         ),
-        Chart(
-            "harris_map_{name}", "Harris map of pair {name}",
-            "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
-            "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
-            (OVER_ROLL,),
-            views="maps",
-        ),
+        HARRIS_CHART,
     ),
     remarks=(
         Remark(

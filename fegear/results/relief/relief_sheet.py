@@ -25,7 +25,7 @@ from fegear.results.gear.drawing import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
-from fegear.results.relief.harris import OVER_ROLL, HarrisMap
+from fegear.results.relief.harris import HARRIS_CHART, HarrisMap
 from fegear.results.relief.left_errors import LeftError, left_error
 from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
@@ -430,13 +430,7 @@ RELIEF_SHEET = Sheet(
             ),
             under="{d.load:.5g} N",
         ),
-        Chart(
-            "harris_map_{name}", "Harris map of pair {name}",
-            "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
-            "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
-            (OVER_ROLL,),
-            views="maps",
-        ),
+        HARRIS_CHART,
     ),
     remarks=(
         Remark(
