@@ -43,7 +43,7 @@ def guarded(stage: Stage, name: str, whose: str, known: Collection[str]) -> Stag
         _all(found, Task, "needs")
         for task in found:
             if task.stage not in known:
-                raise ValueError(f'needs() asks for "{task.stage}", which is no stage')
+                raise ValueError(f'needs() asks for "{task.stage}", which is not a stage')
 
     with held_to_words("results", whose):
         for key, kind in (("requires", Need), ("holds", str), ("effects", str), ("answers", str)):

@@ -156,7 +156,7 @@ def _chosen(scene: Scene, names: Sequence[str]) -> list[str]:
     for name in names:
         if name not in every:
             known = [*every, *scene.case.rack]
-            raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, known))
+            raise InputError("--gear", f'"{name}"', "is not a gear of this case", nearest(name, known))
     return list(names or every)
 
 
@@ -200,7 +200,7 @@ def _inside(files: Sequence[Path], name: str, folder: Path) -> Sequence[Path]:
     """The files that a format says it wrote, if they are files of the export."""
     for path in files:
         if not (path.is_file() and path.resolve().is_relative_to(folder.resolve())):
-            rule = f"names {path}, which is no file in the folder of the export"
+            rule = f"names {path}, which is not a file in the folder of the export"
             raise InputError("--format", f'"{name}"', rule, "write below the folder of the request")
     return files
 

@@ -100,7 +100,7 @@ def test_where_a_fillet_cannot_be_slopes_are_taken_on_the_other_side():
     found = least(tent, most=0.06, start=(0.5, 0.06))
     assert found.numbers == pytest.approx([0.3, 0.05], abs=1e-3)
     assert found.stress == pytest.approx(1.0, abs=1e-3)
-    with pytest.raises(GeometryError, match="no fillet of this gear"):
+    with pytest.raises(GeometryError, match="not a fillet of this gear"):
         least(tent, most=-0.1)
 
 

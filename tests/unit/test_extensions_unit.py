@@ -191,7 +191,7 @@ def refuses(*args):
         ("present=lambda data, asked: Outcome(values=2 * (Value('a', 1.0),))", 'two values are called "a"'),
         ("inputs=lambda scene, name: object()", "object has no content key"),
         ("subjects=lambda scene: [1]", "subjects must be of type tuple"),
-        ("needs=lambda scene, name: (Task('nowhere', name),)", 'asks for "nowhere", which is no stage'),
+        ("needs=lambda scene, name: (Task('nowhere', name),)", 'asks for "nowhere", which is not a stage'),
         ("needs=lambda scene, name: (Task('odd', name),)", "waits for itself"),
         ("requires=('relief',)", "each of requires must be of type Need"),
         ("title=None", "title must be of type str"),
@@ -209,7 +209,7 @@ def test_what_goes_wrong_in_a_result_of_another_distribution_is_a_sentence(folde
 
 
 WRONG_FORMATS = {
-    "out": "is no file in the folder of the export",
+    "out": "is not a file in the folder of the export",
     "fails": "division by zero", "answerless": "cannot unpack", "idle": "wrote nothing and said nothing",
     "words": "must answer a list of paths and one of sentences",
 }  # fmt: skip

@@ -24,7 +24,7 @@ def refuse_plastic(scene: Scene, gear: str) -> None:
     if modulus < _SOFTEST_METAL and scene.case.gear[gear].strength is None:
         raise InputError(
             f"gear.{gear}.material", f"{modulus * 1e-9:.4g} GPa",
-            "is no steel or iron: ISO 6336 and AGMA do not rate plastic gears (VDI 2736 applies)",
+            "is neither steel nor iron: ISO 6336 and AGMA do not rate plastic gears (VDI 2736 applies)",
             "remove rating from results; root-stress-history and load-sharing are valid for any material",
         )  # fmt: skip
 

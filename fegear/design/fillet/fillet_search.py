@@ -70,7 +70,7 @@ def search(bench: FilletBench, family: MovedEllipses, present: float, start: Arr
     numbers = np.asarray(start, dtype=float)
     at = _judged(bench, family, numbers)
     if at is None:
-        raise GeometryError("fillet_design", "the start", "is no fillet of this gear")
+        raise GeometryError("fillet_design", "the start", "is not a fillet of this gear")
     for _ in range(_ROUNDS):
         slopes = _slopes(bench, family, numbers, at)
         while trust > _NO_TRUST:

@@ -111,7 +111,7 @@ class TraceBeside:
         return int(np.searchsorted(order, _DRAWN_ORDERS * self.found.teeth))
 
     @property
-    @shows("", "largest order that is no multiple of the mesh order")
+    @shows("", "maximum order that is not a multiple of the mesh order")
     def largest_order(self) -> float | None:
         """None where only mesh orders are resolved."""
         order, amplitude = self.found.spectrum.order, self.found.spectrum.amplitude

@@ -240,7 +240,7 @@ def _chosen(designs: list[str], wanted: str, source: str) -> str:
         return designs[0]
     fitting = [one for one in designs if one == wanted] or [one for one in designs if one.startswith(wanted)]
     if not fitting:
-        raise InputError("--relief", shown(wanted), f"is no design of {source}", f"choose from {', '.join(designs)}")
+        raise InputError("--relief", shown(wanted), f"is not a design of {source}", f"choose from {', '.join(designs)}")
     return fitting[0]
 
 

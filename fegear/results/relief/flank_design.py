@@ -43,7 +43,7 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
     named, wide = _part(scene).pair, tuple(scene.wide_pairs)
     if named is not None:
         if named not in scene.pairs:
-            raise InputError("flank_design.pair", f'"{named}"', "is no pair of this case")
+            raise InputError("flank_design.pair", f'"{named}"', "is not a pair of this case")
         return (named,)
     if len(wide) > 1:
         raise InputError("flank_design.pair", "(not given)", "is required with several 3D pairs", "name one of them")
