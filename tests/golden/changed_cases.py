@@ -4,8 +4,8 @@
 
 Of every key that a case of ``cases/`` or of the folder ``small`` has, the smallest such case is read and planned with
 it left out, negative, zero, larger or another word, one of them by turns. It is kept which key a refusal names;
-otherwise how many tasks and remarks the plan has, and of what they ask for how many numbers it is, and a sum in which
-every number has a weight of its own. Sentences do not count.
+otherwise how many tasks and remarks the plan has, and of what they ask for how many numbers are no defaults, and a sum
+in which every place has a weight of its own. Sentences do not count.
 """
 
 import argparse
@@ -90,34 +90,50 @@ def changed(document, way, change):
     return made
 
 
-def numbers(thing, into, seen, deep=0):
-    """All numbers of what a task asks for."""
-    kind = type(thing)
+def _default(field):
+    """What a field of a dataclass or of a model is where nothing is given, or nothing."""
+    value = getattr(field, "default", None)
+    return value if isinstance(value, (bool, int, float, str, tuple, type(None))) else None
+
+
+def _given(thing):
+    """Fields of a thing that are not at their defaults, with their values: a new field with one changes nothing."""
+    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+        fields = {field.name: field for field in dataclasses.fields(thing)}
+    else:
+        fields = getattr(type(thing), "model_fields", {})
+    values = {name: getattr(thing, name, None) for name in fields}
+    return {
+        name: value
+        for name, value in values.items()
+        if type(value) is not type(_default(fields[name])) or value != _default(fields[name])
+    }
+
+
+def numbers(thing, into, seen, way=0, deep=0):
+    """All numbers of what a task asks for that are no defaults, each with a number for its place."""
     if id(thing) in seen or deep > DEEP:
         return
     if isinstance(thing, (bool, int, float)):
-        into.append(float(thing))
+        into.append((way, float(thing)))
         return
     if isinstance(thing, np.ndarray):
-        into.extend(np.ravel(thing).astype(float) if thing.dtype.kind in "fiub" else ())
-        return
-    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+        thing = np.ravel(thing).tolist() if thing.dtype.kind in "fiub" else ()
+    elif fields := _given(thing):
         seen.add(id(thing))
-        thing = [getattr(thing, field.name, None) for field in dataclasses.fields(thing)]
-    elif hasattr(kind, "model_fields"):
-        seen.add(id(thing))
-        thing = [getattr(thing, name) for name in kind.model_fields]
-    for one in thing.values() if isinstance(thing, dict) else thing if isinstance(thing, (list, tuple)) else ():
-        numbers(one, into, seen, deep + 1)
+        thing = fields
+    named = thing.items() if isinstance(thing, dict) else enumerate(thing) if isinstance(thing, (list, tuple)) else ()
+    for name, one in named:
+        numbers(one, into, seen, zlib.crc32(f"{way} {name}".encode()), deep + 1)
 
 
 def of_asked(asked):
-    """How many numbers it is, and a sum of their logarithms in which every one has a weight of its own."""
-    found, seen = [], set()
-    numbers(asked, found, seen)
-    known = np.nan_to_num(np.array([*found, 0.0]), nan=-1.2345, posinf=1e12, neginf=-1e12)
-    weights = np.cos(1.0 + 2.399963 * np.arange(known.size))  # turned by the golden angle: no two alike
-    mixed = np.dot(weights, np.sign(known) * np.log(1.0 + np.abs(known) / 1e-12))
+    """How many numbers it is, and a sum of their logarithms in which every place has a weight of its own."""
+    found = []
+    numbers(asked, found, set())
+    ways, values = np.array([*found, (0, 0.0)]).T
+    known = np.nan_to_num(values, nan=-1.2345, posinf=1e12, neginf=-1e12)
+    mixed = np.dot(np.cos(ways), np.sign(known) * np.log(1.0 + np.abs(known) / 1e-12))
     return [len(found), float(f"{mixed:.8g}")]
 
 
