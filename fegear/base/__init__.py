@@ -1,1 +1,1 @@
-"""What everything stands on: errors, units, frozen arrays, streams, the store of solved teeth."""
+"""What everything uses: errors, units, frozen arrays, streams, the store of solved teeth."""

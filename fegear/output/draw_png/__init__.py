@@ -1,4 +1,4 @@
-"""Figures as PNG, SVG, PDF by matplotlib: margins are set in inches, legends stand above the panels, off the curves."""
+"""Figures as PNG, SVG, PDF by matplotlib: margins are set in inches, legends are above the panels, off the curves."""
 
 from __future__ import annotations
 
