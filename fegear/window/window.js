@@ -89,6 +89,10 @@ const fegear = (() => {
     requestAnimationFrame(() => setTimeout(() => document.head.append(script)));
   }
 
+  function refit(host) { // another figure beside them makes columns narrower, or wider where one has gone
+    for (const plot of host.querySelectorAll(".js-plotly-plot")) if (plot.clientWidth) Plotly.Plots.resize(plot);
+  }
+
   async function paint(kept, key) { // one figure, in the shades of the ground
     await plotly;
     const spec = kept.specs.get(key), mode = fegearFigure.theme();
@@ -104,6 +108,7 @@ const fegear = (() => {
       figure.append(made("div", "plot-title"), plot, made("figcaption"));
       host.append(figure);
       watch.observe(figure);
+      refit(host);
     }
     const place = figure.querySelector(".plot"), drawn = place.classList.contains("js-plotly-plot");
     owners.set(figure, { kept, key });
@@ -135,9 +140,9 @@ const fegear = (() => {
     }
     renew(kept.element.querySelector(".numbers"), values);
     kept.element.hidden = !values && !figures.length;
-    for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
-      if (!keys.includes(figure.dataset.key)) { drop(figure); kept.specs.delete(figure.dataset.key); kept.drawn.delete(figure.dataset.key); }
-    }
+    const gone = [...kept.element.querySelectorAll(".figures figure")].filter((figure) => !keys.includes(figure.dataset.key));
+    for (const figure of gone) { drop(figure); kept.specs.delete(figure.dataset.key); kept.drawn.delete(figure.dataset.key); }
+    if (gone.length) refit(kept.element.querySelector(".figures"));
     for (const key of keys) if (kept.drawn.get(key) !== kept.specs.get(key)) await paint(kept, key);
   }
 

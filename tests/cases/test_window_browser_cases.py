@@ -547,6 +547,38 @@ def test_names_of_any_length_leave_the_page_its_width(browser, serve, tmp_path):
     served.end()
 
 
+RACK = """results = ["rack-transmission-error"]
+[gear.a]
+teeth = 20
+module = "2 mm"
+profile_shift = 0.3
+face_width = "20 mm"
+[rack.r]
+pinion = "a"
+teeth = 3
+reference_height = "10 mm"
+force = "1 kN"
+positions = 8
+[accuracy]
+tolerance = 0.05
+"""
+
+
+@pytest.mark.dear
+def test_figures_beside_each_other_keep_to_their_columns(browser, serve, tmp_path):
+    """The first was drawn over all of the width, before the second one came, and lay below it."""
+    path = tmp_path / "rack.toml"
+    path.write_text(RACK)
+    browser.size(1500, 1000)
+    served = serve(str(path))
+    go(browser, served.address)
+    plots = "[...document.querySelectorAll('.figures .js-plotly-plot')]"
+    browser.until(f"{IDLE} && {plots}.length === 2 && {plots}.every(one => one.querySelector('.main-svg') !== null)")
+    browser.until(f"{plots}.every(one => one.querySelector('.main-svg').clientWidth <= one.clientWidth + 1)", 10.0)
+    assert browser.run(f"new Set({plots}.map(one => one.getBoundingClientRect().y)).size") == 1
+    served.end()
+
+
 @pytest.mark.dear
 def test_more_than_a_case_may_have_is_not_put_in_and_said_at_once(browser, serve, tmp_path):
     """A browser lays such a text out for half a minute: the page was not heard meanwhile, and lost its connection."""
