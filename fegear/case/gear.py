@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Self
 from pydantic import model_validator
 
 from fegear.base.errors import GeometryError, InputError
-from fegear.case.fillet import FindFile
 from fegear.case.gear_checks import check_asymmetric, check_helical, check_internal, check_odd_teeth, check_web
 from fegear.case.gear_keys import GearKeys
 from fegear.case.part import at, refuse
@@ -22,6 +21,7 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
 
 if TYPE_CHECKING:
+    from fegear.case.fillet import FindFile
     from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
 from fegear.case.deviations import DeviationsPart
-from fegear.case.fillet import FilletPart
 from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_material import MaterialPart
 from fegear.case.gear_teeth import TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
 from fegear.case.odd_tooth import OddToothPart
 from fegear.case.part import (
+    Later,
     LengthOrZero,
     PositiveLength,
     Table,
@@ -32,6 +32,11 @@ from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.case.tolerance_class import ToleranceClass
 from fegear.geometry.gear import USUAL_RING_RIM
+
+if TYPE_CHECKING:
+    from fegear.case.fillet import FilletPart
+else:  # few gears have one
+    FilletPart = Later("fegear.case.fillet", "FilletPart")
 
 #: Two pressure angles that differ by less [of the angle] are one, as written in deg and in rad.
 _ONE_ANGLE = 1e-12

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, NoReturn
 
 from fegear.base.errors import FegearError, GeometryError, InputError
-from fegear.geometry.shift_sum import MeshNumbers, shared_evenly
 from fegear.geometry.thickness import ToothNumbers
 
 if TYPE_CHECKING:
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     from fegear.case.gear import GearPart
     from fegear.case.pair import PairPart
     from fegear.geometry.gear import Gear
+    from fegear.geometry.shift_sum import MeshNumbers
 
 #: Backlash that is none [m].
 _NONE = 1e-9
@@ -86,6 +86,8 @@ def _refuse_asymmetric(name: str, part: PairPart, gears: Mapping[str, GearPart])
 
 def _mesh(part: PairPart, gears: Mapping[str, GearPart]) -> tuple[MeshNumbers, float]:
     """Both gears before their teeth have a thickness, and their module [m]."""
+    from fegear.geometry.shift_sum import MeshNumbers
+
     driver, driven = gears[part.driver], gears[part.driven]
     return MeshNumbers(numbers_of(driver), numbers_of(driven)), driver.module_length
 
@@ -142,6 +144,8 @@ def _searched(name: str, part: PairPart, gears: Mapping[str, GearPart], total: f
             name, "shift_distribution", f'"{rule}"', "is not available for internal pairs",
             'use "driver", "driven" or "equal"',
         )  # fmt: skip
+    from fegear.geometry.shift_sum import shared_evenly
+
     difference = _sliding(part, gears, total) if rule == "equal-sliding" else _root_stress(part, gears, total)
     found = shared_evenly(difference, total)
     if found is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,6 +14,8 @@ ROWS = 10
 
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> str:
     """A table of texts, its first column to the left and the others to the right."""
+    from html import escape  # late: its names of characters are looked through for notebooks only
+
     said = f"<caption style='text-align:left'>{escape(caption)}</caption>" if caption else ""
     head = "".join(f"<th>{escape(one)}</th>" for one in heads)
     body = "".join(
