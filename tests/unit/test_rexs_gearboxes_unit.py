@@ -297,6 +297,38 @@ def test_which_way_bearings_face_and_where_shafts_are_stopped_goes_there_and_bac
     assert len(seats(found)) == 4
 
 
+def halves(second: tuple[str, str], teeth: int = 23) -> str:
+    """A gearbox of two stages on two shafts, written to REXS and imported; hands of the second stage."""
+    common = {"normal_module": "3 mm", "helix_angle": "28 deg", "face_width": "12 mm"}
+    gears = (("a", 23, "right"), ("b", 47, "left"), ("c", teeth, second[0]), ("d", 70 - teeth, second[1]))
+    sections = [{"length": "120 mm", "outer": "30 mm"}]
+    bearings = [{"bearing": "plain", "at": "10 mm"}, {"bearing": "fixed", "at": "110 mm"}]
+
+    def shaft(coupling: str, *on: str) -> dict:
+        placed = [{"gear": gear, "at": at} for gear, at in zip(on, ("44 mm", "76 mm"), strict=True)]
+        return {"sections": sections, "gears": placed, "bearings": bearings, "coupling": coupling}
+
+    document = {
+        "results": ["geometry"],
+        "gear": {name: {"teeth": z, "hand": hand, **common} for name, z, hand in gears},
+        "pair": {"I": {"driver": "a", "driven": "b", "torque": "140 N*m"},
+                 "II": {"driver": "c", "driven": "d", "torque": "140 N*m"}},
+        "shaft": {"in": shaft("0 mm", "a", "c"),
+                  "out": {"axis": ["118.92 mm", "0 mm"], **shaft("120 mm", "b", "d")}},
+        "bearing": {"plain": {"radial": "200 N/um"}, "fixed": {"radial": "200 N/um", "fixed": True}},
+    }  # fmt: skip
+    text, _ = model_text(build_scene(document, "case", Path()), "2026-01-01")
+    return " ".join(case_of(model_of(text, Path("model.rexs"))).replace("\n#", " ").split())
+
+
+def test_stages_that_are_halves_of_a_double_helical_pair_are_named() -> None:
+    """With the gap between their faces; not where hands are equal."""
+    found = halves(("left", "right"))
+    assert "halves of a double helical pair), imported as two pairs" in found
+    assert 'double_helical = { gap = "20 mm" }' in found
+    assert "double helical" not in halves(("right", "left"))
+
+
 def test_faces_that_run_into_each_other_on_one_shaft_are_refused() -> None:
     tree = put(put(two_stages(), 13, u_coordinate_on_shaft=(69.0, "mm")), 14, u_coordinate_on_shaft=(69.0, "mm"))
     with pytest.raises(InputError, match=r"shaft.shaft_4.gears = gear_12 and gear_13: overlap by 1 mm"):

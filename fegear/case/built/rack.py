@@ -182,7 +182,7 @@ def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
                          "remove internal, fillet or coast_pressure_angle of the gear")  # fmt: skip
     if gear.helix_angle != 0.0:
         raise InputError("pinion", f'"{part.pinion}"', "is helical, which is not available with racks",
-                         "use a spur pinion")  # fmt: skip
+                         "use a spur pinion, or a pair with a helical gear of 1000 teeth as the rack")  # fmt: skip
     if part.basic_rack is None:
         basic = replace(tooth.rack, protuberance=0.0, grinding_allowance=0.0) if tooth.rack.protuberance else tooth.rack
     elif part.basic_rack.coast_tip_radius is not None:

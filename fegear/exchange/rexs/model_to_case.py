@@ -12,6 +12,7 @@ from fegear.base.effects import HERTZ, MISALIGNMENT, NEIGHBOUR_COUPLING, RELIEF
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, case_text, listed, plain_name, quantity, text
 from fegear.exchange.rexs.bearings import bearing_tables, bearings_of, fixed_bearing, stopped_along
+from fegear.exchange.rexs.halves import double_helical_notes
 from fegear.exchange.rexs.loads import Spectrum, chosen_load_case, flow_of, spectrum_of
 from fegear.exchange.rexs.operation import lubricant_key, operation_key
 from fegear.exchange.rexs.places import (
@@ -133,6 +134,7 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
     flow = flow_of(said, every, sets, on)
     bins = _bins(said, every, sets, on, flow, spectrum=spectrum if load_case is None else bool(spectrum))
     loaded = _loaded(said, stages, flow, bins)
+    said.notes += double_helical_notes(said, [stages[n] for n in loaded], on, middles)
     gears = {n: gear for n, gear in gears.items() if any(gear in stages[one].gears for one in loaded)}
     names = {n: name for n, name in names.items() if n in gears or n in of_sets}
     shafts = {shaft.id: shaft for n in gears if (shaft := on[n]) is not None}
