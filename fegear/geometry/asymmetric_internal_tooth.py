@@ -21,7 +21,7 @@ With equal flanks it is the generation of `InternalTooth` (ISO 21771).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -32,7 +32,8 @@ from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, PinionTipFillet
 from fegear.geometry.internal_tooth import PinionCutter, leaving_margin
 from fegear.geometry.involute import inv
-from fegear.geometry.involute_side import FLANKS, Flank, InvoluteSide, check_given
+from fegear.geometry.involute_side import FLANKS, Flank, check_given
+from fegear.geometry.two_flanks import OneOfTwoFlanks, TwoFlanks
 
 #: As of `InternalTooth`: fewest teeth more than the cutter has, and places at which a fillet is looked at.
 _FEWEST_MORE, _LOOKED_AT = 3, 129
@@ -41,10 +42,8 @@ _FARTHEST = 4.0
 
 
 @dataclass(frozen=True)
-class AsymmetricInternalTooth:
+class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     """A spur tooth of an internal gear with a flank for driving and another one for coasting.
-
-    It is no `InvoluteTooth`, as `AsymmetricTooth` is none.
 
     Parameters
     ----------
@@ -105,19 +104,8 @@ class AsymmetricInternalTooth:
         self._check_tip()
 
     # ---- the two sides ---------------------------------------------------------------------------------------------
-    @cached_property
-    def drive(self) -> AsymmetricInternalSide:
-        """The tooth seen from its drive flank."""
-        return AsymmetricInternalSide(self, "drive")
-
-    @cached_property
-    def coast(self) -> AsymmetricInternalSide:
-        """The tooth seen from its coast flank."""
-        return AsymmetricInternalSide(self, "coast")
-
-    def side(self, flank: Flank) -> AsymmetricInternalSide:
-        """The tooth seen from a flank."""
-        return self.drive if flank == "drive" else self.coast
+    def _seen_from(self, flank: Flank) -> AsymmetricInternalSide:
+        return AsymmetricInternalSide(self, flank)
 
     @property
     def reversed(self) -> AsymmetricInternalTooth:
@@ -140,15 +128,6 @@ class AsymmetricInternalTooth:
     def pitch_radius(self) -> float:
         """r = z / 2 [modules]."""
         return 0.5 * self.teeth
-
-    @property
-    def _tangents(self) -> float:
-        return math.tan(self.drive_angle) + math.tan(self.coast_angle)
-
-    @property
-    def generating_shift(self) -> float:
-        """x_E: the shift less what the thickness allowance takes."""
-        return self.profile_shift - self.thickness_allowance / self._tangents
 
     @cached_property
     def generating_distance(self) -> float:
@@ -197,11 +176,6 @@ class AsymmetricInternalTooth:
     def root_radius(self) -> float:
         """r_f [modules]: how far the cutter's tip reaches."""
         return self.generating_distance + self.cutter_tip
-
-    @property
-    def thickness(self) -> float:
-        """Thickness on the reference circle [modules]: pi / 2 + x_E (tan alpha_drive + tan alpha_coast)."""
-        return math.pi / 2 + self.generating_shift * self._tangents
 
     def cutter_rounding(self, flank: Flank, share: float = 1.0) -> tuple[float, float, float]:
         """Roll length of the cutter's flank where its tip rounding starts; angles of its normal and of its centre.
@@ -289,14 +263,8 @@ class AsymmetricInternalTooth:
                 )  # fmt: skip
 
 
-#: What both sides of a tooth have in common.
-_COMMON = (
-    "teeth", "profile_shift", "thickness_allowance", "tip_radius", "tip_rounding", "tip_chamfer", "helix_angle",
-)  # fmt: skip
-
-
 @dataclass(frozen=True)
-class AsymmetricInternalSide(InvoluteSide):
+class AsymmetricInternalSide(OneOfTwoFlanks[AsymmetricInternalTooth]):
     """An asymmetric internal tooth seen from one of its flanks.
 
     Parameters
@@ -307,39 +275,9 @@ class AsymmetricInternalSide(InvoluteSide):
 
     side: ClassVar[int] = -1
 
-    tooth: AsymmetricInternalTooth
-    flank: Flank
-    teeth: int = field(init=False, repr=False)
-    profile_shift: float = field(init=False, repr=False)
-    thickness_allowance: float = field(init=False, repr=False)
-    tip_radius: float = field(init=False, repr=False)
-    tip_rounding: float = field(init=False, repr=False)
-    tip_chamfer: float = field(init=False, repr=False)
-    helix_angle: float = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        """Take over what both sides have in common."""
-        for name in _COMMON:
-            object.__setattr__(self, name, getattr(self.tooth, name))
-
-    @property
-    def back(self) -> AsymmetricInternalSide:
-        """The tooth seen from its other flank."""
-        return self.tooth.side("coast" if self.flank == "drive" else "drive")
-
-    @property
-    def working_flank(self) -> Flank:
-        """The flank that it is seen from."""
-        return self.flank
-
-    @property
-    def normal_pressure_angle(self) -> float:
-        """Pressure angle of this flank [rad]."""
-        return self.tooth.angle(self.flank)
-
     @property
     def pressure_angle(self) -> float:
-        """The same."""
+        """As in the normal section [rad]."""
         return self.tooth.angle(self.flank)
 
     @property
@@ -370,11 +308,6 @@ class AsymmetricInternalSide(InvoluteSide):
         """psi_b, angle from the centre line at which the involute leaves the base circle [rad]; may be negative."""
         working = float(inv(self.generating_angle))
         return (math.pi - self.tooth.cutter.teeth * (self._cutter[2] - working)) / self.teeth - working
-
-    @cached_property
-    def tip_middle(self) -> float:
-        """Angle from the centre line to the middle of the tip land [rad], toward this flank."""
-        return 0.5 * (self.tip_half_angle - self.back.tip_half_angle)
 
     @property
     def limit_radius(self) -> float:

@@ -26,16 +26,14 @@ from fegear.geometry.curves import Trochoid
 from fegear.geometry.external_tooth import THINNEST_NECK
 from fegear.geometry.fillet import RackFlankLine, check_trochoid, meeting
 from fegear.geometry.involute import inv
-from fegear.geometry.involute_side import FLANKS, Flank, SideOfTooth, check_given
+from fegear.geometry.involute_side import FLANKS, Flank, check_given
 from fegear.geometry.rack import transverse_angle
+from fegear.geometry.two_flanks import OneOfTwoFlanks, TwoFlanks
 
 
 @dataclass(frozen=True)
-class AsymmetricTooth:
+class AsymmetricTooth(TwoFlanks["AsymmetricSide"]):
     """A generated external tooth with a flank for driving and another one for coasting, spur or helical.
-
-    It is no `InvoluteTooth`: what holds for teeth with equal flanks only is not given it. `drive` and `coast` are the
-    tooth seen from either flank.
 
     Parameters
     ----------
@@ -87,19 +85,12 @@ class AsymmetricTooth:
         self._check_neck()
 
     # ---- the two sides ---------------------------------------------------------------------------------------------
-    @cached_property
-    def drive(self) -> AsymmetricSide:
-        """The tooth seen from its drive flank."""
-        return AsymmetricSide(self, "drive")
+    def _seen_from(self, flank: Flank) -> AsymmetricSide:
+        return AsymmetricSide(self, flank)
 
-    @cached_property
-    def coast(self) -> AsymmetricSide:
-        """The tooth seen from its coast flank."""
-        return AsymmetricSide(self, "coast")
-
-    def side(self, flank: Flank) -> AsymmetricSide:
-        """The tooth seen from a flank."""
-        return self.drive if flank == "drive" else self.coast
+    def angle(self, flank: Flank) -> float:
+        """Pressure angle of a flank [rad]."""
+        return self.rack.half(flank).pressure_angle
 
     @property
     def reversed(self) -> AsymmetricTooth:
@@ -116,20 +107,6 @@ class AsymmetricTooth:
     def root_radius(self) -> float:
         """r_f [modules]."""
         return self.pitch_radius + self.generating_shift - self.rack.dedendum
-
-    @property
-    def _tangents(self) -> float:
-        return math.tan(self.rack.drive.pressure_angle) + math.tan(self.rack.coast.pressure_angle)
-
-    @property
-    def generating_shift(self) -> float:
-        """x_E, generating profile shift coefficient: the shift less what the thickness allowance takes."""
-        return self.profile_shift - self.thickness_allowance / self._tangents
-
-    @property
-    def thickness(self) -> float:
-        """Normal thickness on the reference circle [modules]: pi / 2 + x_E (tan alpha_drive + tan alpha_coast)."""
-        return math.pi / 2 + self.generating_shift * self._tangents
 
     @property
     def least_profile_shift(self) -> float:
@@ -202,7 +179,7 @@ class AsymmetricTooth:
 
 
 @dataclass(frozen=True)
-class AsymmetricSide(SideOfTooth):
+class AsymmetricSide(OneOfTwoFlanks[AsymmetricTooth]):
     """An asymmetric tooth seen from one of its flanks.
 
     Parameters
@@ -211,32 +188,10 @@ class AsymmetricSide(SideOfTooth):
     flank : {"drive", "coast"}
     """
 
-    tooth: AsymmetricTooth
-    flank: Flank
-
-    def __post_init__(self) -> None:
-        """Take over what both sides have in common."""
-        self.take_over(self.tooth)
-
-    @property
-    def back(self) -> AsymmetricSide:
-        """The tooth seen from its other flank."""
-        return self.tooth.side("coast" if self.flank == "drive" else "drive")
-
-    @property
-    def working_flank(self) -> Flank:
-        """The flank that it is seen from."""
-        return self.flank
-
     @property
     def rack(self) -> RackHalf:
         """What generates this side."""
         return self.tooth.rack.half(self.flank)
-
-    @property
-    def normal_pressure_angle(self) -> float:
-        """alpha_n of this flank [rad]."""
-        return self.rack.pressure_angle
 
     @cached_property
     def pressure_angle(self) -> float:
@@ -259,11 +214,6 @@ class AsymmetricSide(SideOfTooth):
         """psi_b, angle from the centre line at which the involute leaves the base circle [rad]."""
         thickness = math.pi / 2 + 2.0 * self.tooth.generating_shift * math.tan(self.rack.pressure_angle)
         return thickness / self.teeth + float(inv(self.pressure_angle)) + self.beside / self.pitch_radius
-
-    @cached_property
-    def tip_middle(self) -> float:
-        """Angle from the centre line to the middle of the tip land [rad], toward this flank."""
-        return 0.5 * (self.tip_half_angle - self.back.tip_half_angle)
 
     @property
     def root_land_half_angle(self) -> float:
