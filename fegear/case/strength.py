@@ -74,6 +74,12 @@ Hardness = Annotated[float, quantity("hardness", positive=True), BeforeValidator
 _WEAKEST, _STRONGEST = 1e6, 10e9
 
 
+#: Keys of such numbers.
+_STRESSES = (
+    "contact", "bending", "bending_allowable", "agma_contact", "agma_bending", "yield_strength", "tensile_strength",
+)  # fmt: skip
+
+
 Stress = Annotated[float, quantity("pressure")]
 
 
@@ -186,6 +192,16 @@ class StrengthPart(Part):
         default=None,
         description="User-defined allowable stress number (bending) sigma_FE = 2 sigma_Flim, instead of bending.",
     )
+    agma_contact: PositivePressure | None = Field(
+        default=None,
+        description="Allowable contact stress number sigma_HP of AGMA 2101. Default: for material and quality (table 3 "
+        "of ANSI/AGMA 2101-D04).",
+    )
+    agma_bending: PositivePressure | None = Field(
+        default=None,
+        description="Allowable bending stress number sigma_FP of AGMA 2101. Default: for material and quality (table 4 "
+        "of ANSI/AGMA 2101-D04).",
+    )
     yield_strength: PositivePressure | None = Field(
         default=None,
         description="Yield point sigma_S or proof stress sigma_0.2, for the notch sensitivity of steels without "
@@ -222,7 +238,7 @@ class StrengthPart(Part):
     def _one_of_each(self) -> Self:
         if self.bending is not None and self.bending_allowable is not None:
             raise refuse("contradicts bending", "specify sigma_Flim or sigma_FE", key="bending_allowable")
-        for key in ("contact", "bending", "bending_allowable", "yield_strength", "tensile_strength"):
+        for key in _STRESSES:
             value = getattr(self, key)
             if value is not None and not _WEAKEST <= value <= _STRONGEST:
                 raise refuse(

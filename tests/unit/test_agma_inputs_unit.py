@@ -46,6 +46,11 @@ def test_own_numbers_and_other_materials_are_not_asked_and_why_is_said():
     nothing, said = asked("gear.pinion.strength.contact='1400 MPa'")
     assert nothing is None
     assert "user-defined stress limits are those of ISO 6336" in said[0]
+    own = "gear.pinion.strength.agma_contact='1400 MPa'", "gear.pinion.strength.agma_bending='430 MPa'"
+    given, said = asked("gear.pinion.strength.contact='1400 MPa'", *own)
+    assert (given.allowed[0].contact, given.allowed[0].bending) == (1400e6, 430e6)
+    assert given.allowed[1].bending == 450e6
+    assert [one for one in said if "set agma_bending" in one] == [one for one in said if "wheel: sigma_FP = 450" in one]
     nothing, said = asked("gear.wheel.strength={material='grey-iron', hardness='200 HBW'}")
     assert nothing is None
     assert "material not included" in said[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
@@ -76,7 +76,7 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
             return None, (f"Pair {asked.name}: AGMA 2101 not evaluated: gear {gear}: {error}",)
         if found is None:
             why = (
-                "user-defined stress limits are those of ISO 6336"
+                "user-defined stress limits are those of ISO 6336 (set agma_contact and agma_bending)"
                 if strength.material in _TREATMENTS
                 else "material not included"
             )
@@ -125,9 +125,10 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
 
 def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStress | None:
     """Stress numbers of AGMA 2101; None where it has none for the material."""
-    own = (strength.contact, strength.bending, strength.bending_allowable)
+    of_iso = (strength.contact, strength.bending, strength.bending_allowable)
+    own = (strength.agma_contact, strength.agma_bending)
     treatment = _TREATMENTS.get(strength.material)
-    if treatment is None or any(one is not None for one in own):
+    if treatment is None or (None in own and any(one is not None for one in of_iso)):
         return None
     grade = min(_GRADES[strength.quality], _HIGHEST[treatment])
     if grade != _GRADES[strength.quality]:
@@ -149,11 +150,11 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
                 )
             )
     found = allowable_stress(treatment, 1 if grade == 1 else 2 if grade == 2 else 3, hardness * BRINELL)
-    if treatment in RECALLED_ROOTS:
+    if treatment in RECALLED_ROOTS and strength.agma_bending is None:
         said.append(
             assuming(
-                f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa (AGMA 2101, {treatment} steel) is not "
-                "verified against a printed source."
+                f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa ({treatment} steel) is not verified against a "
+                "printed source; compare it with table 4 of ANSI/AGMA 2101-D04 and set agma_bending."
             )
         )
-    return found
+    return replace(found, contact=own[0] or found.contact, bending=own[1] or found.bending)

@@ -164,6 +164,8 @@ def case_of(model: Model, load_case: int | None = None, source: str = "", *, spe
             Table("load_distribution", (Key("panels", str(_PANELS), "over the face width: K_Hbeta within 1 %"),)),
             Table("accuracy", (Key("tolerance", f"{_TOLERANCE:g}", "K_Hbeta within 5 % with 3D gears"),)),
         ]
+    if loaded:
+        tables.append(Table("rating", (Key("beside", "[]", 'ISO 6336 only; "agma-2101" and "computed" besides'),)))
     about = f"Imported from {source}" if source else "Imported"
     head = (
         f"{about}: REXS {model.version}, written by {model.program or 'an unnamed program'}"
