@@ -47,7 +47,7 @@ def with_working_flanks(case: Case, gears: Mapping[str, Gear]) -> dict[str, Gear
                 raise InputError(
                     f"pair.{name}.{role if role != 'both' else 'driver'}", f'"{gear}"',
                     f"is an idler with asymmetric teeth (see pair {other}), loaded on both flanks: not available yet",
-                    "use one case for each pair",
+                    'use one case for each pair, with flank = "coast" for one of them',
                 )  # fmt: skip
             first, before = loaded.setdefault(gear, (name, flank))
             if before != flank:

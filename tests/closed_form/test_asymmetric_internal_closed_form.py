@@ -145,6 +145,32 @@ def test_gears_turned_round_are_loaded_on_their_other_flanks(loaded):
     assert np.abs(loaded(PAIR) / coast - 1.0).max() > 0.02
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2, pytest.param(3, marks=pytest.mark.long)])
+def test_random_ring_gears_that_are_not_refused_are_solved_from_either_flank(seed):
+    """Teeth, angles, roundings, shifts and rims at random: compliance and root tension are positive."""
+    draw, solved = np.random.default_rng(seed), 0
+    while solved < (30 if seed == 3 else 2):
+        teeth = int(draw.integers(20, 140))
+        cutter = PinionCutter(
+            max(8, int(teeth * draw.uniform(0.2, 0.6))), draw.uniform(-0.1, 0.3), draw.uniform(1.1, 1.35),
+            tip_radius=draw.uniform(0.0, 0.3),
+        )  # fmt: skip
+        steep, flat = np.radians(draw.uniform(15.0, 32.0, 2))
+        rounding, shift, tip = draw.uniform(0.0, 0.3), draw.uniform(-0.6, 0.3), 0.5 * teeth - draw.uniform(0.5, 1.0)
+        try:
+            tooth = AsymmetricInternalTooth(teeth, cutter, steep, flat, rounding, shift, tip_radius=tip)
+        except GeometryError:
+            continue
+        solved += 1
+        outside = (tooth.root_radius + draw.uniform(1.0, 5.0)) * M
+        for side in (tooth.drive, tooth.coast):
+            known = solve_gear(Gear(side, M, outside, 10e-3), settings_at(-5.0), reach=1, estimate_error=False).fine
+            low, high = side.involute_radii
+            at = np.linspace(low + 0.05, high - 0.05, 3)
+            assert (known.self_compliance(at, 0.3, np.asarray(0.05)) > 0.0).all()
+            assert (known.largest_root_stress(0, "tension", at)[0] > 0.0).all()
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
