@@ -75,7 +75,7 @@ def test_every_command_has_its_line_and_its_section(tmp_path):
 
     page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     names = [command for command, _, _ in COMMANDS]
-    assert re.findall(r"^  \| `fegear (\w+)", README, re.MULTILINE) == names
+    assert re.findall(r"^\| `fegear (\w+)", README, re.MULTILINE) == names
     assert re.findall(r"^## `fegear (\w+)", page, re.MULTILINE) == names
     for name in names:
         section = page.split(f"## `fegear {name}")[1].split("\n## ")[0]
