@@ -68,8 +68,7 @@ def planned():
 #: Results that are made for external teeth only, or for pairs of external gears.
 EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
-    "fillet-design", "flank-design",
-    "flank-fracture", "flank-generation",
+    "flank-design", "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response",
     "rack-geometry", "rack-solution",
     "rack-stiffness", "rack-transmission-error", "sizing", "tooth-contact",
