@@ -12,4 +12,4 @@ _SPEC.loader.exec_module(exchanged)
 
 @pytest.mark.parametrize("name", exchanged.kept())
 def test_a_model_and_its_changes_become_what_is_kept(name):
-    assert exchanged.differences(exchanged.kept()[name], exchanged.of_tree(exchanged.models()[name])) == []
+    assert exchanged.differences(exchanged.kept()[name], exchanged.of_model_named(name)) == []

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+import fegear
 from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import apply_override, build_scene, parse_document, read_scene
+from fegear.engine.run import Silence
 
 CASE = {
     "title": "One gear",
@@ -248,3 +250,30 @@ def test_a_list_for_a_table_is_named_as_it_was_written():
     with pytest.raises(InputError, match="must not be empty") as refused:
         scene_with("dynamics.speeds=[]")
     assert refused.value.key == "dynamics.speeds"
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "words"),
+    [("load_factor = 0.5, share = 1.0", "", ""), ("load_factor = 0.5, time = '2 h'", "", ""),
+     ("torque = '5 N*m', load_factor = 0.5, share = 0.5", "load_factor", "contradicts torque"),
+     ("load_factor = 0.5, share = 0.5, time = '2 h'", "time", "contradicts share"),
+     ("share = 0.5", "torque", "is required, or load_factor"), ("load_factor = 0.5", "share", "is required, or time")],
+)  # fmt: skip
+def test_a_bin_of_a_spectrum_has_one_load_and_one_share(keys, key, words):
+    override = f"pair.I.operation.spectrum=[{{ {keys} }}]"
+    if not key:
+        scene_with(override)
+        return
+    with pytest.raises(InputError, match=words) as error:
+        scene_with(override)
+    assert error.value.key.endswith(f".{key}")
+
+
+@pytest.mark.parametrize("results", [["stiffness"], ["load-sharing"]])
+def test_a_run_never_says_that_more_than_all_of_a_task_is_done(monkeypatch, results):
+    told = []
+    monkeypatch.setattr(Silence, "advance", lambda _self, fraction: told.append(fraction))
+    document = copy.deepcopy(CASE) | {"results": results, "accuracy": {"tolerance": 0.3}}
+    fegear.run(document, progress=False)
+    assert told
+    assert all(0.0 <= fraction <= 1.0 for fraction in told)

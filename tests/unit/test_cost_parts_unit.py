@@ -17,6 +17,7 @@ from fegear.base.errors import FegearError, InputError, RangeError
 from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene, read_scene
+from fegear.case.studies import CostPart
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.formulas.hertz import relative_curvature
@@ -884,3 +885,13 @@ class SolvedGear:
     """What knobs replace the settings of."""
 
     settings: MeshSettings
+
+
+@pytest.mark.parametrize(
+    ("quantities", "stages"),
+    [(None, ()), (["c_0", "root-stress"], ()), (["te-peak-to-peak"], ("loaded-pair",)),
+     (["te-mean"], ("loaded-flanks",)), (["tooth-force", "face-load-factor"], ("loaded-pair", "loaded-flanks")),
+     (["dynamic-factor"], ("loaded-pair", "motion"))],
+)  # fmt: skip
+def test_effects_of_what_is_studied_are_those_of_its_stages(quantities, stages):
+    assert CostPart(quantities=quantities).stages == stages
