@@ -422,3 +422,25 @@ def test_one_face_of_more_than_forty_modules_makes_all_pairs_slices_and_is_said_
     assert text_of(wide).count("external pairs are coupled slices") == 1
     just = put(tree, gears[0]["id"], face_width=(40.0 * module, "mm"))
     assert {pair["width"] for pair in case(just)["pair"].values()} == {"solid"}
+
+
+@pytest.mark.parametrize(("holds", "turned"), [("positive", False), ("negative", True), ("no_direction", False)])
+def test_an_angular_bearing_known_by_its_designation_keeps_its_angle_and_faces_the_way_that_it_holds(
+    holds: str, turned: bool
+) -> None:
+    tree = two_stages()
+    made = part(51, "rolling_bearing_with_catalog_geometry", "7205 BEP", axial_force_absorption=holds,
+                bearing_type="angular_contact_ball_bearing", u_coordinate_on_shaft_inner_side=(10.0, "mm"),
+                inner_diameter=(25.0, "mm"), outer_diameter=(52.0, "mm"), width=(15.0, "mm"),
+                dynamic_capacity=(15.6, "kN"))  # fmt: skip
+    rows, links = (
+        [part(71, "rolling_bearing_row", pressure_angle=(40.0, "deg"))],
+        [link(171, "assembly", assembly=51, part=71)],
+    )
+    tree["components"] = [made if one["id"] == 51 else one for one in tree["components"]] + rows
+    tree["relations"] += links
+    text = text_of(tree)
+    seat = tomllib.loads(text)["shaft"]["shaft_3"]["bearings"][0]
+    assert seat.get("reversed", False) is turned
+    said = "is a non-locating bearing: contact angle of 40 deg kept" in " ".join(text.replace("\n#", " ").split())
+    assert said is (holds == "no_direction")
