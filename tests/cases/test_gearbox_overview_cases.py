@@ -81,6 +81,8 @@ def test_causes_add_up_and_the_table_is_in_order(usual):
     meshes = tables["gearbox_meshes"]
     total = sum(np.array(meshes[f"misalignment_{cause} [um]"]) for cause in CAUSE_WORDS)
     np.testing.assert_allclose(total, meshes["misalignment [um]"], rtol=1e-9)
+    seats = np.abs(meshes["misalignment_housing [um]"])
+    assert all(one == 0.0 or one > 1e-9 for one in seats)
     assert np.all(np.diff(meshes["load_margin"]) >= 0.0)
 
 

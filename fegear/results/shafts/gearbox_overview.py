@@ -53,6 +53,10 @@ if TYPE_CHECKING:
     from fegear.shafts.life import LifeRating
 
 
+#: A cause with less of the sum of all is none: seats that are rigid leave round-off.
+_ROUND_OFF = 1e-12
+
+
 @dataclass(frozen=True)
 class GearboxInputs:
     """What the result reads of the case.
@@ -168,6 +172,8 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, _work: Work) -> GearboxD
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
     pair, none = shafts.gearbox.meshes[n].pair, math.nan
     every, *by_cause = (float(one) for one in state[0].over_face)
+    least = _ROUND_OFF * sum(map(abs, by_cause))
+    by_cause = [one if abs(one) > least else 0.0 for one in by_cause]
     factor = factor_error = peak = swing = swing_error = none
     if inputs.wide[n]:
         teeth = loaded_flanks(upstream, pair)
