@@ -16,6 +16,7 @@ from fegear.atlas.atlas_gear import AtlasGear
 from fegear.atlas.common_rows import KEPT, CommonRows
 from fegear.atlas.domain import KEYS, Domain
 from fegear.atlas.family import REMEDY, Family, place_of
+from fegear.atlas.finer import Finer, kept
 from fegear.atlas.polynomials import products
 from fegear.atlas.tables import VERSION, Layout
 from fegear.base.arrays import ReadOnlyArrays
@@ -52,6 +53,8 @@ class Piece(ReadOnlyArrays):
         Coordinates of the gears that were solved.
     errors : ndarray, shape (N, quantities)
         By how much the fit without each of them misses it, and the estimated error of its solution.
+    finer : Finer, optional
+        Compliances by more products than the parts have.
     """
 
     domain: Domain
@@ -59,6 +62,7 @@ class Piece(ReadOnlyArrays):
     coefficients: Array
     solved: Array
     errors: Array
+    finer: Finer | None = None
 
     def parts(self, at: Array) -> Array:
         """Of the common rows, at coordinates of shape (4, G), shape (G, R)."""
@@ -179,6 +183,8 @@ class Atlas:
                 continue
             at = piece.domain.coordinates(self.family, places[:, here])
             row = piece.parts(at) @ common
+            if piece.finer is not None:
+                row[:, : layout.compliances] = piece.finer.compliances(at)
             layout.turned(row, self.family.turning(places[:, here]))
             rows[here], errors[here] = row, piece.error(at) + KEPT
         return Tables(rows, errors)
@@ -231,7 +237,8 @@ class Atlas:
             "family": asdict(self.family), "settings": asdict(self.settings),
             "pieces": [asdict(one.domain) for one in self.pieces],
         }  # fmt: skip
-        arrays = {"head": np.array(json.dumps(head)), **self.common.kept(self.layout)}
+        finer = [one.finer for one in self.pieces if one.finer is not None]
+        arrays = {"head": np.array(json.dumps(head)), **self.common.kept(self.layout), **kept(finer)}
         for number, one in enumerate(self.pieces):
             arrays[f"degrees_{number}"] = one.degrees.astype(np.uint8)
             for name, values in (("coefficients", one.coefficients), ("solved", one.solved), ("errors", one.errors)):
@@ -284,4 +291,8 @@ def _piece_of(file: np.lib.npyio.NpzFile, number: int, head: dict[str, Any]) -> 
     coefficients, solved, errors = (
         file[f"{name}_{number}"].astype(float) for name in ("coefficients", "solved", "errors")
     )
-    return Piece(Domain(**ends), file[f"degrees_{number}"].astype(int), coefficients, solved, errors)
+    finer = None
+    if f"finer_parts_{number}" in file:
+        parts, common = file[f"finer_parts_{number}"].astype(float), file["finer"].astype(float)
+        finer = Finer(file[f"finer_degrees_{number}"].astype(int), parts @ common)
+    return Piece(Domain(**ends), file[f"degrees_{number}"].astype(int), coefficients, solved, errors, finer)

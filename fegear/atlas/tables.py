@@ -136,14 +136,21 @@ def _slopes() -> Array:
     return np.stack([spline(shares_of_flank(), one).slope for one in np.eye(_LOADS)], axis=1)
 
 
-def row_of(known: SolvedTeeth) -> Array:
-    """The row of a gear."""
-    gear, source, layout = known.gear, finite_element_compliance(known), Layout(known.reach)
-    modulus, m = gear.material.young_modulus, gear.module
-    row = np.empty(layout.size)
+def compliances_of(known: SolvedTeeth) -> Array:
+    """The first numbers of the row of a gear, those that are no stresses."""
+    source, layout, modulus = finite_element_compliance(known), Layout(known.reach), known.gear.material.young_modulus
+    row = np.empty(layout.compliances)
     layout.own(row)[:] = source.own_spline.y * modulus
     for k in range(1, known.reach + 1):
         layout.neighbour(row, k)[:] = source.neighbours[k] * modulus
+    return row
+
+
+def row_of(known: SolvedTeeth) -> Array:
+    """The row of a gear."""
+    gear, source, layout, m = known.gear, finite_element_compliance(known), Layout(known.reach), known.gear.module
+    row = np.empty(layout.size)
+    row[: layout.compliances] = compliances_of(known)
     lengths = source.lowest + shares_of_flank() * (source.highest - source.lowest)
     radii = np.clip(np.hypot(gear.base_radius, lengths), known.lowest_radius, known.highest_radius)
     for k, side in layout.kernels:

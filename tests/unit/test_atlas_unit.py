@@ -14,6 +14,7 @@ from fegear.atlas.build import Budget, build_atlas
 from fegear.atlas.common_rows import KEPT, common_rows
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family, Place, place_of
+from fegear.atlas.finer import compliances, refined
 from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degrees, products
 from fegear.atlas.tables import Layout
 from fegear.base.errors import InputError, RangeError
@@ -69,6 +70,34 @@ def test_of_other_gears_it_is_within_its_stated_error(atlas, place):
     assert [key for key in off if off[key] > stated[key]] == []
     assert stated["c_self"] < 2e-2
     assert stated["tension 0"] < 5e-2
+
+
+def test_finer_compliances_are_nearer_and_leave_the_rest(atlas, tmp_path):
+    told = []
+    cache = cache_on_disk(tmp_path / "cache")
+    finer = refined(atlas, cache=cache, progress=lambda done, wanted: told.append((done, wanted)))
+    assert told[-1][0] == told[-1][1] > 1.4 * len(atlas.pieces[0].degrees)
+    off: dict[str, list[float]] = {"before": [], "after": []}
+    for place in (Place(29, 0.22, 1.0, 0.5), Place(35, 0.13, 1.0, 0.5), Place(44, 0.27, 1.0, 0.5)):
+        gear = FAMILY.gear(place)
+        known = compliances(gear, SETTINGS, atlas.reach)["compliances"]
+        for name, one in (("before", atlas), ("after", finer)):
+            row = one.tables(np.array(place, dtype=float)[:, None], stress=False).rows[0]
+            off[name].append(np.abs(row / known - 1.0)[:95].max())
+        before, after = (one.gear(gear) for one in (atlas, finer))
+        assert after.errors == before.errors
+        np.testing.assert_array_equal(after.row[known.size :], before.row[known.size :])
+    assert max(off["after"]) < 0.5 * max(off["before"])
+    finer.save(tmp_path / "a.npz")
+    again = load_atlas(tmp_path / "a.npz")
+    places = np.array([(31, 0.17, 1.0, 0.5)], dtype=float).T
+    rows = [one.tables(places).rows[0] for one in (finer, again)]
+    np.testing.assert_allclose(rows[1][:95], rows[0][:95], rtol=3e-6)
+    solved = cache.shapes.computed
+    assert solved > 0
+    recalled = cache_on_disk(tmp_path / "cache")
+    refined(atlas, cache=recalled)
+    assert recalled.shapes.computed == 0
 
 
 def test_many_gears_have_the_tables_of_each(atlas):

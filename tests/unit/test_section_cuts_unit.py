@@ -73,6 +73,16 @@ def test_heavy_ports_stay_on_one_side_of_the_first_cut():
     assert len(set(first.tolist())) == 2
 
 
+def test_halves_may_be_many_deep():
+    """Numbers of parts are too many to list then: of a plain grid some 2^32, of which 128 have elements."""
+    centres, nodes = grid(20, 10)
+    free, carried = np.full(int(nodes.max()) + 1, 30.0), np.zeros(int(nodes.max()) + 1)
+    found = halves(centres, nodes, free, carried)
+    assert 20 < found.depth <= 48
+    assert eliminated(found, nodes, free, carried) > 0.0
+    assert np.unique(found.part).size > 50
+
+
 def test_a_part_that_nothing_cheapens_stays_whole():
     found = halves(np.zeros((2, 1)), np.array([[0, 1, 2]]), np.ones(3), np.zeros(3))
     assert found.part.tolist() == [0]

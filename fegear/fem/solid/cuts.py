@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Directions in which cuts are tried, and the least share of the elements on one side.
 _DIRECTIONS, _LEAST_SHARE = 18, 0.05
+#: How often is halved at most: numbers of parts stay exact as floating-point ones.
+_DEEPEST = 48
 #: What moving an entry of a matrix costs, in products.
 _MOVED = 100.0
 #: Digits of positions [modules]: what lies in one line stays in one order whatever the last bits.
@@ -79,7 +81,7 @@ def products_of(n: Array, m: Array) -> Array:
     return n * (n * n / 3.0 + n * m + m * m) + _MOVED * (n + m) ** 2
 
 
-def _halved(section: _Section, group: Index) -> tuple[float, list[tuple[Index, int, int]]]:
+def _halved(section: _Section, group: Index, deep: int = 0) -> tuple[float, list[tuple[Index, int, int]]]:
     """Cost of a group of elements, and its parts: elements, which halves lead there, and how many."""
     own, local, times = np.unique(section.nodes[group], return_inverse=True, return_counts=True)
     inside = times == section.elements[own]
@@ -88,10 +90,10 @@ def _halved(section: _Section, group: Index) -> tuple[float, list[tuple[Index, i
     m = stays.sum()
     whole = float(products_of(heavy.sum(), m))
     cut = _cheapest(section.along[:, group], local.reshape(section.nodes[group].shape), heavy, stays)
-    if cut is None:
+    if cut is None or deep == _DEEPEST:
         return whole, [(group, 0, 0)]
     ordered, at, n = cut
-    near, far = _halved(section, group[ordered[:at]]), _halved(section, group[ordered[at:]])
+    near, far = (_halved(section, group[half], deep + 1) for half in (ordered[:at], ordered[at:]))
     cost = float(products_of(np.asarray(n), m)) + near[0] + far[0]
     if cost >= whole:
         return whole, [(group, 0, 0)]

@@ -68,19 +68,19 @@ def condense_solid(
     natural[number[number >= 0]] = known.number[known.number >= 0]
     steps: list[Eliminated] | None = [] if expandable else None
     elements = np.argsort(leaf, kind="stable")
-    bounds = np.searchsorted(leaf[elements], np.arange((1 << depth) + 1)).tolist()
+    leaf = leaf[elements]
     nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 0))
     products = section.products_along(face)
 
     def part(level: int, i: int) -> tuple[Index, Array]:
-        first, end = bounds[i << level], bounds[(i + 1) << level]
+        first, middle, end = np.searchsorted(leaf, [i << level, (2 * i + 1) << level >> 1, (i + 1) << level]).tolist()
         if first == end:
             return nothing
         if level == 0:
             ids, matrix = _smallest(section, products, number, elements[first:end])
         else:
             # The larger half first: what is made on its way is gone when the other's is.
-            larger = 2 * (bounds[(2 * i + 1) << (level - 1)] - first) >= end - first
+            larger = 2 * (middle - first) >= end - first
             halves_of = {one: part(level - 1, one) for one in sorted((2 * i, 2 * i + 1), reverse=not larger)}
             ids, matrix = joined(halves_of.pop(2 * i), halves_of.pop(2 * i + 1))
         return reduced(ids, matrix, ends[level + 1], natural, steps)
