@@ -15,7 +15,7 @@ from fegear.atlas.atlas import load_atlas
 from fegear.atlas.build import build_atlas
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family
-from fegear.atlas.finer import refined
+from fegear.atlas.refining import refined
 from fegear.base.errors import InputError, RangeError
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from fegear.atlas.build import Budget, build_atlas
 from fegear.atlas.common_rows import KEPT, common_rows
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family, Place, place_of
-from fegear.atlas.finer import compliances, refined
 from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degrees, products
+from fegear.atlas.refining import compliances, refined
 from fegear.atlas.tables import Layout
 from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import cache_on_disk

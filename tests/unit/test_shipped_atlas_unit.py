@@ -69,7 +69,8 @@ def test_of_a_gear_that_is_solved_it_is_within_its_stated_error():
         row, known = solved(gear, atlas.settings, atlas.reach)["row"], atlas.gear(gear)
         off = dict(zip(atlas.layout.quantities, atlas.layout.differences(row, known.row - row), strict=True))
         assert [key for key in off if off[key] > 1.5 * known.errors[key]] == []
-        assert max(off["c_self"], off["c_neighbour"], off["tension 0"]) < 1e-3
+        assert max(off["c_self"], off["c_neighbour"]) < 8e-5  # finer than stresses
+        assert off["tension 0"] < 1e-3
 
 
 @pytest.mark.dear
