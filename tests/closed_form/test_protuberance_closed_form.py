@@ -169,3 +169,13 @@ def test_a_case_names_the_protuberance_in_modules():
 def test_racks_that_no_grinder_can_follow_are_refused(change, words):
     with pytest.raises(GeometryError, match=words):
         BasicRack(tip_radius=0.25, **change)
+
+
+@pytest.mark.parametrize("left", [2e-17, 1e-16])
+@pytest.mark.parametrize("stock", [0.0, 0.05])
+def test_a_protuberance_that_is_lost_in_round_off_leaves_the_plain_tooth(left, stock):
+    """Half of one unit in the last place: nowhere does it come out of the flank."""
+    rack = BasicRack(1.0, 1.4, 0.3, protuberance=stock + left, grinding_allowance=stock)
+    plain, found = Tooth(28, BasicRack(1.0, 1.4, 0.3), 0.1), Tooth(28, rack, 0.1)
+    assert found.form_radius == pytest.approx(plain.form_radius, rel=1e-12)
+    assert found.root_radius == pytest.approx(plain.root_radius, rel=1e-12)
