@@ -12,6 +12,7 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.built.solid_influence import solid_support_remarks
 from fegear.case.reading import build_scene
 from fegear.engine.sheet.seen import Seen
+from fegear.fem.solid.holed_teeth import HoledRing
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody, WebHoles
 from fegear.geometry.mass import mass_properties
@@ -106,3 +107,10 @@ def test_the_figure_of_the_teeth_says_what_pairs_take():
         np.testing.assert_allclose(figure.panels[0].items[0].y, 100.0 * (each / each.mean() - 1.0))
     (remark,) = solid_support_remarks("a", SimpleNamespace(fine=solution), 2)
     assert remark.startswith("Gear a: compliance varies over 3 consecutive teeth because of the web hole.")
+
+
+@pytest.mark.parametrize(("teeth", "holes", "different"), [(24, 8, 3), (24, 5, 24), (24, 36, 2), (24, 24, 1)])
+def test_as_many_teeth_differ_as_pass_until_holes_and_teeth_stand_alike_again(teeth, holes, different):
+    none = np.zeros((1, 1))
+    assert HoledRing(none, none, np.zeros(1, int), np.zeros(1, int), teeth, holes).different == different
+    assert different * holes % teeth == 0
