@@ -162,7 +162,7 @@ SPACING_ERRORS = Effect(
     lambda pair: pair.has("spacing_errors"), (*_LIN, _SPACING, _RELIEF),
 )  # fmt: skip
 ODD_TEETH = Effect(
-    "odd_teeth", "Include teeth that differ (`odd_tooth`: crack, missing, pits) over a revolution and in trains.",
+    "odd_teeth", "Include teeth that differ (`odd_tooth`: crack, missing, hole, pits) over a revolution and in trains.",
     "identical teeth",
     '`odd_tooth` on a spur gear of a plane (2D) pair with compliance source "fe"', "revolution",
     {"odd sectors": "gear with odd teeth solved by FE"},

@@ -146,7 +146,7 @@ class GearKeys(TeethPart):
     )
     odd_tooth: Annotated[list[Table[OddToothPart]], several(OddToothPart)] = Field(
         default_factory=list,
-        description="Teeth that differ (crack, missing, broken, shorter, pits), a table for each "
+        description="Teeth that differ (crack, missing, broken, shorter, hole, pits), a table for each "
         "([[gear.NAME.odd_tooth]]); spur gears in plane (2D) pairs; active with effects.odd_teeth.",
     )
     roughness: Table[RoughnessPart] | None = Field(

@@ -1,4 +1,7 @@
-"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, pitted, ground."""
+"""``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, pitted, ground.
+
+Or above a hole in the gear body.
+"""
 
 from __future__ import annotations
 
@@ -118,6 +121,18 @@ class PitPart(Part):
         return self
 
 
+class HolePart(Part):
+    """``hole = { diameter, position_radius, angle }``."""
+
+    diameter: PositiveLength = Field(description="Diameter of the hole.")
+    position_radius: PositiveLength = Field(description="Radius from the gear axis to the centre of the hole.")
+    angle: Angle = Field(
+        default=0.0,
+        description="Angle about the gear axis from the tooth centre line to the centre of the hole, positive towards "
+        "the loaded flank. Default: 0 deg.",
+    )
+
+
 #: What a tooth may be other than cracked, and which of them exclude each other.
 OUTLINES = ("missing", "broken_at", "tip_diameter")
 
@@ -140,6 +155,11 @@ class OddToothPart(Part):
     tip_diameter: PositiveLength | None = Field(
         default=None, description="Tip diameter of this tooth, at most that of the gear."
     )
+    hole: Table[HolePart] | None = Field(
+        default=None,
+        description="Round hole through the gear body over the full face width, within the sector of this tooth (one "
+        "pitch).",
+    )
     pits: Annotated[list[Table[PitPart]], several(PitPart)] = Field(
         default_factory=list, description="Pits or spalls of the loaded flank, a table for each."
     )
@@ -157,9 +177,9 @@ class OddToothPart(Part):
     @model_validator(mode="after")
     def _something(self) -> Self:
         outlines = [key for key in OUTLINES if getattr(self, key)]
-        if self.crack is None and not outlines and not self.pits and not self.profiled:
+        if not self.reshaped and not self.pits and not self.profiled:
             raise refuse(
-                "is required, or missing, broken_at, tip_diameter, pits, relief or deviation",
+                "is required, or missing, broken_at, tip_diameter, hole, pits, relief or deviation",
                 'set crack = { depth = "0.5 mm" }', key="crack",
             )  # fmt: skip
         if len(outlines) > 1:
@@ -167,6 +187,11 @@ class OddToothPart(Part):
         if self.crack is not None and outlines:
             key, value = outlines[0], "true" if self.missing else None
             raise refuse("is not available for a cracked tooth", "remove it, or remove crack", key=key, value=value)
+        if self.hole is not None and (self.crack is not None or outlines):
+            other = outlines[0] if outlines else "crack"
+            raise refuse(
+                f"is not available together with {other}", f"remove it, or remove {other}", key="hole", value="(given)"
+            )
         for key in ("pits", "relief", "deviation"):
             if self.missing and getattr(self, key):
                 raise refuse("contradicts missing", "remove it: there is no flank", key=key)
@@ -180,4 +205,4 @@ class OddToothPart(Part):
     @property
     def reshaped(self) -> bool:
         """Whether its body differs, not only its flank."""
-        return self.crack is not None or any(getattr(self, key) for key in OUTLINES)
+        return self.crack is not None or self.hole is not None or any(getattr(self, key) for key in OUTLINES)

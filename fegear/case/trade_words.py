@@ -66,6 +66,7 @@ _LETTERS = str.maketrans({
 _RACK = "a rack has a table of its own, with its pinion: [rack.NAME]"
 _STEPPED = "stepped planets are groups with two gears in compound.NAME.planet"
 _DOUBLE = "the gears are the half at end I, with its hand and face width"
+_KEYWAY = "a keyway is not described; a hole within one pitch is (hole in [[gear.NAME.odd_tooth]])"
 _WORN = "wear is not computed; specify worn flanks as measured flanks (gear.NAME.measured)"
 _CROSSED = "only cylindrical gears on parallel axes are supported"
 _UNEVEN = "pressure_angle is that of the drive flank, coast_pressure_angle that of the coast flank"
@@ -229,6 +230,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      "[[gear.NAME.odd_tooth]], one table for each tooth"),
     ("broken_tooth missing_tooth", ("gear.NAME.odd_tooth.missing",), "[[gear.NAME.odd_tooth]], with missing = true"),
     ("spall spalling pit pits gruebchen", ("gear.NAME.odd_tooth.pits",), "[[gear.NAME.odd_tooth]], with pits = [...]"),
+    ("keyway keyseat passfedernut", (), _KEYWAY),
     ("wear wear_depth verschleiss", (), _WORN),
     (("bevel bevel_gear worm worm_gear hypoid crossed_axes shaft_angle_of_axes cone_angle kegelrad schnecke "
      "achsenwinkel"), (), _CROSSED),

@@ -129,6 +129,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               internal=True),
         Entry("stress-inside", "pair.stress_inside.STRESS_INSIDE", "Stress inside the teeth of the gears in mesh",
               internal=True),
+        Entry("crack-shown", "gear.crack_shown.CRACK_SHOWN", "Cracked teeth under load", internal=True),
         Entry("loaded-flanks", "pair.loaded_flanks.LOADED_FLANKS", "Flank contact (3D)", effects=WIDE_EFFECTS,
               internal=True),
         Entry("load-distribution", "pair.load_distribution.LOAD_DISTRIBUTION",

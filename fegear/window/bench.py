@@ -338,25 +338,24 @@ class Bench:
             If the text cannot be changed there.
         """
         desk = self._on_desk()
-        self._put(moved_relief(desk, gear, end, start, amount, index), moving=moving)
+        self.put(moved_relief(desk, gear, end, start, amount, index), moving=moving)
 
     def name_driven(self, pair: str) -> None:
         """Make the driven gear of a pair a gear of its own, where it was the driver as well."""
-        desk = self._on_desk()
-        self._put(own_name(desk.text, desk.document, pair), moving=False)
+        self.put(own_name((desk := self._on_desk()).text, desk.document, pair), moving=False)
 
     def move_load(self, pair: str, key: str, text: str, *, moving: bool) -> None:
         """Give a pair another load or torque, a quantity with its unit."""
-        self._put(with_value(self._on_desk().text, ("pair", pair, key), literal(text)), moving=moving)
+        self.put(with_value(self._on_desk().text, ("pair", pair, key), literal(text)), moving=moving)
 
     def move_value(self, path: KeyPath, value: str | None, *, moving: bool) -> None:
         """Give a key of the case another value, as TOML writes it."""
-        self._put(with_value(self._on_desk().text, path, value), moving=moving)
+        self.put(with_value(self._on_desk().text, path, value), moving=moving)
 
     def drop_relief(self, gear: str) -> None:
         """Leave a gear without relief."""
         desk = self._on_desk()
-        self._put(without_relief(desk.text, desk.document, gear), moving=False)
+        self.put(without_relief(desk.text, desk.document, gear), moving=False)
 
     def _take_reliefs(self, reliefs: dict[str, Any]) -> None:
         """Give gears other reliefs; the case before is pinned, so that both are shown over each other."""
@@ -366,14 +365,15 @@ class Bench:
         written |= {("gear", name, "relief"): literal(one) for name, one in reliefs.items() if one is not None}
         if self.pinned is None:
             self.pin()
-        self._put(with_values(text, written), moving=False)
+        self.put(with_values(text, written), moving=False)
 
     def _on_desk(self) -> Desk:
         if self.desk is None:
             raise InputError("case", "(none)", "is no longer open", "choose a template or a case")
         return self.desk
 
-    def _put(self, text: str, *, moving: bool) -> None:
+    def put(self, text: str, *, moving: bool) -> None:
+        """Take another text of the case, one of those of a value that is moved."""
         desk = self._on_desk()
         desk.change(text, stroke=True)
         if not moving:

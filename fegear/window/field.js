@@ -153,5 +153,5 @@ const fegearField = (() => {
     }
     context.putImageData(image, 0, 0);
   }
-  return { MEASURES, stops, made, loaded, superposed, limitOf, draw };
+  return { MEASURES, stops, tableOf, fill, made, loaded, superposed, limitOf, draw };
 })();

@@ -110,6 +110,13 @@ def field_tasks(scene: Scene) -> list[Task]:
     return [Task("stress-inside", name) for name in found]
 
 
+def crack_tasks(scene: Scene) -> list[Task]:
+    """What has to be computed for the picture of cracked teeth, of gears in plane pairs."""
+    found = (scene.case.pair[one] for one in scene.plane_pairs if scene.case.pair[one].compliance.source == "fe")
+    meshed = {gear for part in found for gear in (part.driver, part.driven)}
+    return [Task("crack-shown", gear) for gear in STAGES.called("crack-shown").subjects(scene) if gear in meshed]
+
+
 def plan_with(scene: Scene, beside: list[Task], more: list[Task]) -> Plan:
     """The plan of a case with what is shown on request, and what of the glance it can have.
 

@@ -46,6 +46,7 @@ _GONE = "The case was changed in another page; the last input was not accepted."
 EVENTS: dict[str, dict[str, type]] = {
     "relief": {"gear": str, "end": str, "index": int, "start": float, "amount": float, "moving": bool},
     "load": {"pair": str, "key": str, "text": str, "moving": bool},
+    "crack": {"gear": str, "place": int, "depth": float, "angle": float, "moving": bool},
     "drop": {"gear": str},
     "name_driven": {"pair": str},
     "design": {"pair": str, "how": str},
@@ -59,7 +60,7 @@ _ONE_OF = {
     "kind": ("stress", "deformed", "tool"),
 }  # fmt: skip
 #: Parts that change while a value is moved.
-_ON_ITS_WAY = {"start", "amount", "text"}
+_ON_ITS_WAY = {"start", "amount", "text", "depth", "angle"}
 #: Parts that may be left out.
 _FREE = {"index", "how"}
 

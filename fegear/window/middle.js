@@ -1,9 +1,9 @@
 "use strict";
-// What stands in the middle of the glance: the gears of a pair, a planetary set, or the gearbox; one at a time.
+// What stands in the middle of the glance: the gears of a pair, a planetary set, the gearbox, or a cracked tooth; one at a time.
 const fegearMiddle = (() => {
   const parts = new Map(); // key -> { host, words, taken }
   let shown = null; // key of the one in the middle
-  const RANK = (key) => (key.startsWith("set ") ? 0 : key === "gearbox" ? 1 : 2);
+  const RANK = (key) => (key.startsWith("set ") ? 0 : key === "gearbox" ? 1 : key.startsWith("crack ") ? 3 : 2);
   const ordered = () => [...parts.keys()].sort((a, b) => RANK(a) - RANK(b));
   function usual() { // what the reader chose; else the whole before its parts
     const wanted = fegearGlance.view().middle;

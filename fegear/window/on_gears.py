@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.results.gear.crack_shown import CracksShownData
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
     from fegear.results.pair.loaded_flanks import LoadedWidePair
     from fegear.results.pair.stress_in_mesh import StressInMeshData
@@ -46,6 +47,10 @@ _NONE = -32768
 _DRAWN = 0.1
 
 
+#: That of a cracked tooth, which is drawn larger [modules].
+_OPENED = 0.25
+
+
 def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
     """What a task found, if it is shown at the gears of a pair.
 
@@ -61,6 +66,8 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
         return {"pair": task.subject, "kind": "deformed", **_deformed(data)}
     if task.stage == "stress-inside":
         return {"pair": task.subject, "kind": "field", "gears": {m: _inside(one) for m, one in data.gears.items()}}
+    if task.stage == "crack-shown":
+        return {"pair": task.subject, "kind": "crack", **_cracks(data)}
     if task.stage == "loaded-flanks":
         return {"pair": task.subject, "kind": "pressure", **_pressure(data)}
     return None
@@ -109,6 +116,34 @@ def _deformed(data: DeformedInMeshData) -> dict[str, Any]:
             for member in data.places
         },
     }
+
+
+def _cracks(data: CracksShownData) -> dict[str, Any]:
+    module = data.gear.module
+    cracks = []
+    for one in data.cracks:
+        largest = float(np.hypot(*one.moved).max())
+        # In colour up to what a fillet has; beside the tip and the load it is more.
+        limit = float(one.mises[one.fillets].max())
+        cracks.append({
+            "tooth": one.tooth, "place": one.place, "ends": one.ends, "back": one.back,
+            "path": millimetres(one.path), "outline": millimetres(one.outline), "points": millimetres(one.points),
+            "moved": packed(one.moved * 1e3), "triangles": one.triangles.ravel().tolist(),
+            "mises": packed(np.minimum(one.mises, 20.0 * limit) * 1e-6), "limit": limit * 1e-6,
+            "faces": [one.left.tolist(), one.right.tolist()], "contact": millimetres(one.contact),
+            "opening": float(np.hypot(*(one.moved[:, one.left[0]] - one.moved[:, one.right[0]]))) * 1e6,
+            "factor": round_factor(_OPENED * module / largest) if largest > 0.0 else 1.0,
+            "k": [_with_error(*one.k_1), _with_error(*one.k_2)], "loss": one.loss, "closed": one.closed,
+        })  # fmt: skip
+    return {
+        "module": module * 1e3, "side": data.gear.tooth.side, "radius": data.radius * 1e3, "load": data.load * 1e-3,
+        "of": data.pair, "cracks": cracks,
+    }  # fmt: skip
+
+
+def _with_error(value: float, error: float) -> dict[str, float | None]:
+    """In MPa.m^(1/2), with its error if there is one."""
+    return {"value": value * 1e-6, "error": error * 1e-6 if np.isfinite(error) else None}
 
 
 def _pressure(data: LoadedWidePair) -> dict[str, Any]:
@@ -180,7 +215,7 @@ _STAGES = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
 
 
 #: Kinds that are shown whenever they are computed: on flanks, of planets, of shafts.
-UNASKED = ("pressure", "loads", "bent", "field")
+UNASKED = ("pressure", "loads", "bent", "field", "crack")
 
 
 #: Why deformed teeth are not shown of gears with a width.

@@ -17,6 +17,7 @@ from fegear.output.draw_plotly.layout import template
 from fegear.output.report.page import plotly_file
 from fegear.window.access import LOOKS
 from fegear.window.bar import Bar
+from fegear.window.crack_handle import moved_crack
 from fegear.window.document import LARGEST
 from fegear.window.first_drawing import first_drawing
 from fegear.window.glance import told_of_view
@@ -55,6 +56,7 @@ _SCRIPTS = (
     "glance",
     "middle",
     "gears",
+    "crack",
     "sets",
     "gearbox",
     "hands",
@@ -110,8 +112,8 @@ class Page:
         self._unsent: list[tuple[str, dict[str, Any]]] = []
         for kind, do in (
             ("relief", bench.move_relief), ("load", bench.move_load), ("drop", bench.drop_relief),
-            ("name_driven", bench.name_driven), ("design", bench.design), ("shows", bench.show), ("sight", bench.see),
-            ("value", self._move_value),
+            ("crack", self._move_crack), ("name_driven", bench.name_driven), ("design", bench.design),
+            ("shows", bench.show), ("sight", bench.see), ("value", self._move_value),
         ):  # fmt: skip
             ui.on(kind, partial(self._said, kind, do))
         ui.on("untaken", self._too_long)
@@ -166,6 +168,11 @@ class Page:
     def _move_value(self, field: str, text: str, *, moving: bool) -> None:
         if self._inputs is not None:
             self._inputs.move(field, text, moving=moving)
+
+    def _move_crack(self, gear: str, place: int, depth: float, angle: float, *, moving: bool) -> None:
+        desk = self._bench.desk
+        if desk is not None:
+            self._bench.put(moved_crack(desk, gear, place, depth, angle), moving=moving)
 
     def _too_long(self) -> None:
         if self._inputs is not None:

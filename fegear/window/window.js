@@ -183,7 +183,7 @@ const fegear = (() => {
       }, FOLLOWED);
       loadsNow.set(content.pair, content);
     },
-    meshed(content) { ({ loads: fegearSets, bent: fegearGearbox }[content.kind] ?? fegearGears).meshed(content); },
+    meshed(content) { ({ loads: fegearSets, bent: fegearGearbox, crack: fegearCrack }[content.kind] ?? fegearGears).meshed(content); },
     assemblies({ sets, gearbox }) { fegearSets.show(sets); fegearGearbox.show(gearbox); },
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
@@ -206,6 +206,7 @@ const fegear = (() => {
     },
     plan({ tasks }) {
       fegearGears.plan(tasks);
+      fegearCrack.plan(tasks);
       fegearGlance.plan(tasks, owner);
       for (const [task, kept] of sections) {
         if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); drop(kept.element); sections.delete(task); }

@@ -21,7 +21,7 @@ from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
 from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, with_previews
 from fegear.window.drag_handles import hands_of
-from fegear.window.glance import field_tasks, glance_tasks, keys_of, numbers_of, plan_with
+from fegear.window.glance import crack_tasks, field_tasks, glance_tasks, keys_of, numbers_of, plan_with
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Newer, Said, Stop, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
@@ -200,6 +200,7 @@ class Worker:
 
         scene = scene_of(asked)
         more, at_once_told = wanted_on_gears(scene, asked.shows)
+        more += crack_tasks(scene) if asked.pictures is not None else []
         beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
         inside = field_tasks(scene) if asked.field else []
         planned = partial(plan_with, beside=[*beside, *inside], more=more)

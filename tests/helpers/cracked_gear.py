@@ -29,7 +29,7 @@ def turned(points, angle):
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def cracked_gear(tooth, bore, path, radii, size, tip=0.05):
+def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=None):
     """Six-node triangles of the whole gear.
 
     Parameters
@@ -44,6 +44,10 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05):
         Edges along these teeth.
     tip : float
         Edge at the crack's tip as a share of its length.
+    fillet : float, optional
+        Edges along their fillets.
+    hole : (float, float, float), optional
+        Radius, and centre in the frame of tooth 0, of a round hole.
 
     Returns
     -------
@@ -60,11 +64,13 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05):
         halves = [(k, right) for k in range(0, -z, -1) for right in (True, False)]  # counterclockwise
         for k, right in halves:
             number = next((n for n in NEAR if (n - k) % z == 0), None)
-            edge = 0.4 if number is None else size
             for name, curve in list(tooth.outline.items())[:: 1 if right else -1]:
+                edge = 0.4 if number is None else fillet or size if name == "fillet" else size
                 stops = _stops(tooth, name, curve, number, right, path, radii)
                 for (low, _), (high, mark) in itertools.pairwise(stops):
-                    xy = curve.points(np.linspace(low, high, 24 if name in ("fillet", "flank") else 5))
+                    # Close to each other at the ends, where a spline has the direction of its last chord: else a kink.
+                    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, 48 if name in ("fillet", "flank") else 5))
+                    xy = curve.points(low + share * (high - low))
                     xy = turned(xy if right else xy * np.array([[-1.0], [1.0]]), 2.0 * math.pi * k / z)
                     inner = [geo.addPoint(*at, 0.0, edge) for at in xy[:, 1:-1].T]
                     if last is None:
@@ -78,7 +84,14 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05):
         centre = geo.addPoint(0.0, 0.0, 0.0)
         turn = [geo.addPoint(bore * math.sin(a), bore * math.cos(a), 0.0, 0.4) for a in 0.5 * math.pi * np.arange(4)]
         held = [geo.addCircleArc(turn[i], centre, turn[(i + 1) % 4]) for i in range(4)]
-        surface = geo.addPlaneSurface([geo.addCurveLoop(loop), geo.addCurveLoop(held)])
+        loops = [geo.addCurveLoop(loop), geo.addCurveLoop(held)]
+        if hole is not None:
+            radius, x, y = hole
+            middle = geo.addPoint(x, y, 0.0)
+            corner = [(x + radius * math.sin(a), y + radius * math.cos(a)) for a in 0.5 * math.pi * np.arange(4)]
+            turn = [geo.addPoint(*at, 0.0, min(size, 0.12 * radius)) for at in corner]
+            loops.append(geo.addCurveLoop([geo.addCircleArc(turn[i], middle, turn[(i + 1) % 4]) for i in range(4)]))
+        surface = geo.addPlaneSurface(loops)
         line = None
         if path is not None:
             end = geo.addPoint(*path[:, 1], 0.0, tip * float(np.hypot(*(path[:, 1] - path[:, 0]))))
@@ -228,9 +241,11 @@ class Solved:
         place, found = np.concatenate(place) / u.size, np.concatenate(found)
         # A smooth curve through the places around the largest value: elements scatter about it.
         close = np.abs(place - place[found.argmax()]).argsort()[:12]
-        middle = place[close].mean()
+        middle, low, high = place[close].mean(), place[close].min(), place[close].max()
+        # Beyond the last of these places there is a part of an edge: the largest value may be at the fillet's end.
+        low, high = 0.0 if low == place.min() else low, 1.0 if high == place.max() else high
         curve = np.polynomial.Polynomial.fit(place[close] - middle, found[close], 4)
-        return float(curve(np.linspace((place[close] - middle).min(), (place[close] - middle).max(), 401)).max())
+        return float(curve(np.linspace(low - middle, high - middle, 401)).max())
 
 
 def _values(u, v):

@@ -1,5 +1,6 @@
 """Cracked teeth compared with whole gears by another mesh and another code (`tests/helpers/cracked_gear.py`)."""
 
+import itertools
 import json
 import math
 from pathlib import Path
@@ -42,13 +43,16 @@ def gear(name):
     "name", ["19 teeth", *(pytest.param(name, marks=pytest.mark.long) for name in list(GEARS)[::2])]
 )
 def test_cracked_ring_is_the_whole_gear(name):
-    """c_ij within 3e-4 of the largest, K within 2e-3, root tension of teeth beside it within 2e-3 of a loaded one's."""
+    """c_ij within 3e-4 of the largest, K within 2e-3, root tension of teeth beside it within 1e-3 of a loaded one's.
+
+    Wherever it is largest: loads on other teeth have it near either end of the fillet, up to 0.96 of the way.
+    """
     tooth, bore, crack, radii = gear(name)
     sector = cracked_sector(tooth, bore, SETTINGS, crack)
     found = solve_odd_influence(
         tooth, mesh_sector(tooth, bore, SETTINGS), {0: OddTooth(tooth, sector)}, 0.3, "strain", SETTINGS
     )
-    whole = Solved(tooth, bore, cracked_gear(tooth, bore, crack.path(tooth), radii, 0.08, 0.025))
+    whole = Solved(tooth, bore, cracked_gear(tooth, bore, crack.path(tooth), radii, 0.08, 0.025, 0.04))
     largest, apart = float(found.own(0, radii, PATCH, 0.02).max()), ~np.eye(3, dtype=bool)
     for i in (-1, 0, 1):
         for j in (-1, 0, 1):
@@ -60,9 +64,9 @@ def test_cracked_ring_is_the_whole_gear(name):
     assert np.sqrt(np.diag(released) / (1.0 - 0.3**2)) == pytest.approx(np.hypot(*k), rel=2e-3)
     assert released / (1.0 - 0.3**2) == pytest.approx(k.T @ k, abs=4e-3 * float((k.T @ k).max()))
     loaded = float(found.largest_root_stress(1, 1, "tension", [radii[1]], 0.02)[0][0])
-    for i, j in ((-1, 0), (1, 0), (1, 1), (-1, -1)):
+    for i, j in itertools.product((-1, 1), (-1, 0, 1)):
         stress, _ = found.largest_root_stress(i, j, "tension", [radii[1]], 0.02)
-        assert whole.root_tension(i, (j, 1)) == pytest.approx(stress[0], abs=2e-3 * loaded)
+        assert whole.root_tension(i, (j, 1)) == pytest.approx(stress[0], abs=1e-3 * loaded, rel=6e-3)
 
 
 @pytest.mark.dear

@@ -61,6 +61,7 @@ WEB = {
 }  # fmt: skip
 #: Stages that the window alone asks for.
 IN_MESH = ("stress-in-mesh", "deformed-in-mesh", "stress-inside")
+CRACKED = Task("crack-shown", "pinion")
 FE = {
     "results": ["geometry", "tooth-geometry-check", "stiffness", "root-stress"], "accuracy": {"tolerance": 0.05},
     "gear": {"Räd": {"teeth": 20, "module": "3 mm", "face_width": "10 mm"}},
@@ -124,6 +125,13 @@ def test_what_the_window_shows_goes_through_pickle():
         assert same(through_pickle(outcome).data, outcome.data), task
 
 
+@pytest.mark.dear
+def test_what_the_window_shows_of_cracked_teeth_travels():
+    scene = read_scene(ROOT / "cases" / "cracked_tooth.toml", ["accuracy.tolerance=0.05", 'results=["geometry"]'])
+    outcome = run_plan(scene, make_plan(scene, STAGES, [CRACKED])).outcomes[CRACKED]
+    assert same(through_pickle(outcome).data, outcome.data)
+
+
 @pytest.mark.long
 def test_no_stage_is_forgotten_here():
     scenes = [read_scene(ROOT / "cases" / f"{name}.toml") for name in ALL if name not in DEAR]
@@ -132,6 +140,7 @@ def test_no_stage_is_forgotten_here():
     plans.append(
         make_plan(read_scene(ROOT / "cases" / "pinion_and_wheel.toml"), STAGES, [Task(s, "I") for s in IN_MESH])
     )
+    plans.append(make_plan(read_scene(ROOT / "cases" / "cracked_tooth.toml"), STAGES, [CRACKED]))
     assert {stage.name for stage in STAGES} == {step.task.stage for plan in plans for step in plan.steps}
 
 

@@ -15,11 +15,12 @@ from fegear.case.built.odd_gears import odd_gears_of, on_other_flank
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
 from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
+from fegear.fem.plane.odd.hole import Hole, hole_at, refuse_hole
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
 
 if TYPE_CHECKING:
-    from fegear.case.odd_tooth import CrackPart, OddToothPart, PitPart
+    from fegear.case.odd_tooth import CrackPart, HolePart, OddToothPart, PitPart
     from fegear.case.reading import Scene
     from fegear.fem.plane.odd.crack import Crack
     from fegear.geometry.gear import Gear
@@ -37,7 +38,7 @@ class OddTeeth:
     Parameters
     ----------
     cracks : tuple of (int, Crack)
-    outlines : tuple of (int, OtherTip or Missing)
+    outlines : tuple of (int, OtherTip, Missing or Hole)
     flanks : tuple of (int, OddFlank)
     profiles : tuple of (int, ToothProfile)
     member : {"driver", "driven"}
@@ -46,13 +47,13 @@ class OddTeeth:
     """
 
     cracks: tuple[tuple[int, Crack], ...]
-    outlines: tuple[tuple[int, OtherTip | Missing], ...]
+    outlines: tuple[tuple[int, OtherTip | Missing | Hole], ...]
     flanks: tuple[tuple[int, OddFlank], ...]
     profiles: tuple[tuple[int, ToothProfile], ...]
     member: Member
     name: str = field(compare=False)
 
-    def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing]:
+    def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing | Hole]:
         """Cracks and outlines by the tooth's own number, as of `fegear.fem.teeth`."""
         return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
 
@@ -68,12 +69,13 @@ class OddTeeth:
             for tooth, flank in self.flanks
             if flank.missing or not math.isnan(flank.tip_radius)
         )
-        return OddTeeth(cracks, self.outlines, flanks, (), "driver", self.name)
+        outlines = tuple((tooth, one.mirrored() if isinstance(one, Hole) else one) for tooth, one in self.outlines)
+        return OddTeeth(cracks, outlines, flanks, (), "driver", self.name)
 
     @property
     def numbers(self) -> tuple[int, ...]:
         """Of all of them, rising."""
-        return tuple(sorted({tooth for tooth, _ in (*self.cracks, *self.flanks, *self.profiles)}))
+        return tuple(sorted({tooth for tooth, _ in (*self.cracks, *self.outlines, *self.flanks, *self.profiles)}))
 
     @property
     def described(self) -> str:
@@ -84,6 +86,7 @@ class OddTeeth:
             "missing": [tooth for tooth, flank in known.items() if flank.missing],
             "shorter": [tooth for tooth, flank in known.items() if not math.isnan(flank.tip_radius)],
             "pitted": [tooth for tooth, flank in known.items() if flank.pits],
+            "above a hole": [tooth for tooth, one in self.outlines if isinstance(one, Hole)],
             "with another profile": [tooth for tooth, _ in self.profiles],
         }
         return ", ".join(
@@ -115,6 +118,8 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
         outline = _outline(gear, part, prefix)
         if outline is not None:
             outlines.append((part.tooth, outline))
+        if part.hole is not None:
+            outlines.append((part.tooth, hole_of(gear, part.hole)))
         pits = tuple(_pit(gear, pit, f"{prefix}.pits[{at}]") for at, pit in enumerate(part.pits))
         if outline is not None or pits:
             tip = outline.radius * gear.module if isinstance(outline, OtherTip) else math.nan
@@ -143,6 +148,35 @@ def _outline(gear: Gear, part: OddToothPart, prefix: str) -> OtherTip | Missing 
             f"must be between {least * 1e3:.6g} and {tip * 1e3:.6g} mm, the tip diameter of the gear",
         )  # fmt: skip
     return OtherTip(min(0.5 * diameter / m, tooth.tip_radius)) if diameter >= shortest else Missing()
+
+
+def hole_of(gear: Gear, part: HolePart) -> Hole:
+    """A hole beside a gear's tooth, lengths in modules."""
+    return hole_at(0.5 * part.diameter / gear.module, part.position_radius / gear.module, part.angle)
+
+
+def check_hole(scene: Scene, gear: str, number: int) -> None:
+    """Refuse a hole that does not lie within the sector of its tooth, before anything is solved.
+
+    Raises
+    ------
+    InputError
+        Under its key in the case.
+    """
+    part, made = scene.case.gear[gear].odd_tooth[number].hole, scene.gears[gear]
+    if part is None:
+        return
+    try:
+        refuse_hole(
+            made.symmetric_tooth, made.bore_radius / made.module, mesh_settings(scene.case.accuracy),
+            hole_of(made, part),
+        )  # fmt: skip
+    except InputError as error:
+        scale = 1e3 * made.module
+        raise InputError(
+            f"gear.{gear}.odd_tooth[{number}].hole.{error.key}", *(_in_mm(text, scale) for text in
+            (error.value, error.rule)), error.remedy,
+        ) from None  # fmt: skip
 
 
 def _pit(gear: Gear, part: PitPart, prefix: str) -> Pit:
@@ -233,6 +267,7 @@ def check_odd_gear(scene: Scene, name: str) -> None:
     odd_teeth_of(scene, name)
     for n in range(len(scene.case.gear[name].odd_tooth)):
         check_crack(scene, name, n)
+        check_hole(scene, name, n)
 
 
 def _is_planet(scene: Scene, name: str) -> bool:
@@ -273,11 +308,7 @@ def _as_given(error: InputError, part: CrackPart, start: str, module: float) -> 
     scale = 1e3 * module * (2.0 if key == "diameter" else 1.0)
 
     def in_mm(text: object) -> str:
-        def length(found: re.Match[str]) -> str:
-            upto = f" to {float(found[3]) * scale:.4g}" if found[3] else ""
-            return f"{float(found[1]) * scale:.4g}{upto} mm"
-
-        return _IN_MODULES.sub(length, str(text)).replace("must be a radius of", f"must be a {key} on")
+        return _in_mm(text, scale).replace("must be a radius of", f"must be a {key} on")
 
     if key == "depth_ratio":
         length = f"(length {error.value}) " if error.value else ""
@@ -287,3 +318,13 @@ def _as_given(error: InputError, part: CrackPart, start: str, module: float) -> 
         value = "[" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in corners.tolist()) + "] mm"
         return InputError(key, value, in_mm(error.rule), error.remedy)
     return InputError(key, in_mm(error.value), in_mm(error.rule), in_mm(error.remedy))
+
+
+def _in_mm(text: object, scale: float) -> str:
+    """Lengths of a text that are in modules, in millimetres."""
+
+    def length(found: re.Match[str]) -> str:
+        upto = f" to {float(found[3]) * scale:.4g}" if found[3] else ""
+        return f"{float(found[1]) * scale:.4g}{upto} mm"
+
+    return _IN_MODULES.sub(length, str(text))

@@ -148,8 +148,13 @@ class SectorElements:
         """Gradients of the shape functions of every element at its own nodes, shape (M, n, 2, n) [1/modules]."""
         return self._gradients_at(_element(self.order).doflocs.T)
 
-    def gradients_at_points(self) -> tuple[Array, Index]:
+    def gradients_at_points(self, inward: float = 0.0) -> tuple[Array, Index]:
         """Gradients of the shape functions at the mesh's six points of every element.
+
+        Parameters
+        ----------
+        inward : float
+            So far on the way from there to the element's middle: at a crack's tip they have no bound.
 
         Returns
         -------
@@ -162,6 +167,7 @@ class SectorElements:
         point_of_edge = np.empty(middle.size, dtype=np.int64)
         point_of_edge[self.edge_of_point[middle]] = middle
         places = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 0.5]])
+        places = places + inward * (1.0 / 3.0 - places)
         return self._gradients_at(places), np.hstack([self.element_nodes[:, :3], point_of_edge[self.grid.t2f.T]])
 
     def _gradients_at(self, places: Array) -> Array:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
 from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.drawing_grid import GRID, line_on_a_grid, on_a_grid, rounded
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.settings import MeshSettings
@@ -31,9 +32,6 @@ SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
 
 #: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
 _STRAIGHT = 1e-12
-#: Each corner of the boundary is drawn on a grid this share of its shorter edge wide: its last bits, which another
-#: processor's rounding changes, do not reach gmsh.
-_GRID = 1e-3
 #: How fast edges inside grow with the distance from the boundary where no one says: level 0's `side_growth`.
 _GROWTH = 0.4
 #: What a mesh depends on. Algorithm 5 is Delaunay's: the frontal one (6) leaves triangles of quality .05 at sharp
@@ -191,7 +189,11 @@ def _mesh(
 
 
 def mesh_inside(
-    chains: list[Chain], teeth: int, started: float | None = None, growth: float | None = _GROWTH
+    chains: list[Chain],
+    teeth: int,
+    started: float | None = None,
+    growth: float | None = _GROWTH,
+    hole: Chain | None = None,
 ) -> SectorMesh:
     """Fill a closed boundary of one sector with curved triangles.
 
@@ -204,6 +206,8 @@ def mesh_inside(
         When the work began [s], of `time.perf_counter`.
     growth : float, optional
         How fast edges inside grow with the distance from the boundary; None fills evenly from the boundary inward.
+    hole : Chain, optional
+        A closed chain inside, the body on its left.
 
     Raises
     ------
@@ -214,9 +218,13 @@ def mesh_inside(
     """
     started = time.perf_counter() if started is None else started
     polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
-    vertices, triangles, _ = fill(polygon, growth)
+    vertices, triangles, _ = fill(polygon, growth, hole=None if hole is None else hole.vertices[:, :-1])
     refuse_flat(vertices, triangles, polygon.shape[1])
     runs, middles, bends = named_runs(chains)
+    if hole is not None:
+        count = hole.middles.shape[1]
+        runs[f"{hole.name}:0"] = polygon.shape[1] + np.arange(count + 1) % count
+        middles[f"{hole.name}:0"], bends[hole.name] = hole.middles, _bends(hole)
     points, six, edges = with_middle_nodes(vertices, triangles, runs, middles)
     return SectorMesh(points, six, by_name(edges), teeth, GENERATED, time.perf_counter() - started, bends)
 
@@ -342,7 +350,9 @@ class Slit:
     around: Array
 
 
-def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tuple[Array, Index, Index]:
+def fill(
+    polygon: Array, growth: float | None, slit: Slit | None = None, hole: Array | None = None
+) -> tuple[Array, Index, Index]:
     """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes.
 
     Two processors whose mathematical functions differ in the last bit draw the same triangles.
@@ -354,11 +364,13 @@ def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tupl
     growth : float or None
         As for `mesh_inside`.
     slit : Slit, optional
+    hole : ndarray, shape (2, h), optional
+        Corners of a closed polygon inside, clockwise, within which there is nothing [modules].
 
     Returns
     -------
     vertices : ndarray, shape (2, N)
-        The polygon's first.
+        The polygon's first, then the hole's.
     triangles : ndarray of int, shape (3, M)
         Counterclockwise.
     line : ndarray of int
@@ -370,14 +382,19 @@ def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tupl
         If gmsh fails.
     """
     n = polygon.shape[1]
-    drawn, length = _on_a_grid(polygon)
+    drawn, length = on_a_grid(polygon)
     middle = 0.5 * (drawn + np.roll(drawn, -1, axis=1))
     line = around = np.zeros((2, 0))
     if slit is not None:
-        line, steps = _line_on_a_grid(np.column_stack([polygon[:, slit.corner], slit.line]))
-        around = _rounded(slit.around, _GRID * steps[-1])
+        line, steps = line_on_a_grid(np.column_stack([polygon[:, slit.corner], slit.line]))
+        around = rounded(slit.around, GRID * steps[-1])
         between = 0.5 * (np.column_stack([drawn[:, slit.corner], line[:, :-1]]) + line)
         middle, length = np.hstack([middle, between]), np.concatenate([length, steps])
+    inner = np.zeros((2, 0))
+    if hole is not None:
+        inner, steps = on_a_grid(hole)
+        middle = np.hstack([middle, 0.5 * (inner + np.roll(inner, -1, axis=1))])
+        length = np.concatenate([length, steps])
     x_middle, y_middle = middle
 
     stopped: list[BaseException] = []
@@ -389,7 +406,7 @@ def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tupl
 
     with gmsh_session("fegear sector") as gmsh, _heard_below(stopped):
         try:
-            along = _draw(gmsh, drawn, None if slit is None else slit.corner, line, around)
+            along = _draw(gmsh, drawn, inner, None if slit is None else slit.corner, line, around)
             if growth is None:
                 gmsh.option.setNumber("Mesh.Algorithm", _FRONTAL)
                 gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
@@ -410,6 +427,8 @@ def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tupl
     position[tags[order].astype(np.int64)] = np.arange(tags.size)
     vertices = coordinates.reshape(-1, 3)[order, :2].T.copy()
     vertices[:, :n] = polygon
+    if hole is not None:
+        vertices[:, n : n + hole.shape[1]] = hole
     numbers = position[np.array(along, dtype=np.int64)]
     if slit is not None:
         vertices[:, numbers[1:]] = slit.line
@@ -419,16 +438,21 @@ def fill(polygon: Array, growth: float | None, slit: Slit | None = None) -> tupl
     return vertices, triangles, numbers
 
 
-def _draw(gmsh: Any, polygon: Array, corner: int | None, line: Array, around: Array) -> list[int]:
-    """Draw a polygon with a line from one of its corners and points inside: tags of the line's points."""
-    geo, n = gmsh.model.geo, polygon.shape[1]
-    for tag, (x, y) in enumerate(polygon.T, start=1):
-        geo.addPoint(x, y, 0.0, tag=tag)
-    for tag in range(1, n + 1):
-        geo.addLine(tag, tag % n + 1, tag)
-        geo.mesh.setTransfiniteCurve(tag, 2)
-    geo.addCurveLoop(list(range(1, n + 1)), 1)
-    geo.addPlaneSurface([1], 1)
+def _draw(gmsh: Any, polygon: Array, hole: Array, corner: int | None, line: Array, around: Array) -> list[int]:
+    """Draw a polygon with a hole, and a line from one of its corners and points inside: tags of the line's points."""
+    geo, before = gmsh.model.geo, 0
+    loops: list[int] = []
+    for closed in (polygon, hole):
+        n = closed.shape[1]
+        for tag, (x, y) in enumerate(closed.T, start=before + 1):
+            geo.addPoint(x, y, 0.0, tag=tag)
+        for tag in range(1, n + 1):
+            geo.addLine(before + tag, before + tag % n + 1, before + tag)
+            geo.mesh.setTransfiniteCurve(before + tag, 2)
+        if n:
+            loops.append(geo.addCurveLoop(list(range(before + 1, before + n + 1)), len(loops) + 1))
+        before += n
+    geo.addPlaneSurface(loops, 1)
     along = [] if corner is None else [corner + 1, *(geo.addPoint(x, y, 0.0) for x, y in line.T)]
     curves = [geo.addLine(*ends) for ends in pairwise(along)]
     single = [geo.addPoint(x, y, 0.0) for x, y in around.T]
@@ -439,28 +463,6 @@ def _draw(gmsh: Any, polygon: Array, corner: int | None, line: Array, around: Ar
         if embedded:
             gmsh.model.mesh.embed(dimension, embedded, 2, 1)
     return along
-
-
-def _on_a_grid(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The polygon with every corner on a grid that suits its shorter edge, and the lengths of its edges then."""
-    length = np.hypot(*(np.roll(polygon, -1, axis=1) - polygon))
-    drawn = _rounded(polygon, _GRID * np.minimum(length, np.roll(length, 1)))
-    # Products, sums and roots are rounded alike everywhere, which np.hypot is not.
-    return drawn, np.sqrt(((np.roll(drawn, -1, axis=1) - drawn) ** 2).sum(axis=0))
-
-
-def _line_on_a_grid(line: Array) -> tuple[Array, Array]:
-    """As `_on_a_grid`, of an open line without its first vertex."""
-    length = np.hypot(*np.diff(line))
-    shorter = np.minimum(length, np.append(length[1:], np.inf))
-    drawn = _rounded(line[:, 1:], _GRID * shorter)
-    return drawn, np.sqrt((np.diff(np.column_stack([line[:, 0], drawn])) ** 2).sum(axis=0))
-
-
-def _rounded(points: Array, size: Array | float) -> Array:
-    """Points on grids whose widths are powers of two, no larger than the sizes given."""
-    grid = 2.0 ** np.floor(np.log2(size))
-    return np.asarray(np.round(points / grid) * grid)
 
 
 def refuse_flat(vertices: Array, triangles: Index, boundary: int) -> None:

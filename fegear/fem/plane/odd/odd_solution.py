@@ -1,4 +1,4 @@
-"""A real gear with odd teeth (cracked, shorter, missing) solved from the same gear of ordinary teeth, on its mesh."""
+"""A real gear with odd teeth (cracked, shorter, missing, above a hole), from the same gear of ordinary teeth."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.mesh import GENERATED, SectorMesh
 from fegear.fem.plane.odd.crack_faces import CrackFaces
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
+from fegear.fem.plane.odd.hole import Hole, holed_sector
 from fegear.fem.plane.odd.odd_gear import TOUCHED, OddGearInfluence
 from fegear.fem.plane.odd.odd_influence import OddInfluence, solve_odd_influence
 from fegear.fem.plane.odd.odd_ring import OddRing
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.rim_support import RimSupport
 
-    Oddity = Crack | OtherTip | Missing
+    Oddity = Crack | OtherTip | Missing | Hole
 
 #: What a solved ring with odd teeth consists of.
 _KINDS: tuple[type, ...] = (OddInfluence, ToothKind, CrackFaces, OddRing, SectorMesh, LoadedFlank, FilletStrain)
@@ -47,13 +48,13 @@ def solve_cracked_gear(
     beside: int | None = None,
     cache: SolutionCache | None = None,
 ) -> OddGearInfluence:
-    """Solve a gear some of whose teeth are cracked, shorter or missing, from the same gear of ordinary teeth.
+    """Solve a gear some of whose teeth are cracked, shorter, missing or above a hole, from the one of ordinary teeth.
 
     Parameters
     ----------
     ordinary : GearInfluence
         Its settings are taken, and whether errors are estimated.
-    cracks : mapping of int to Crack, OtherTip or Missing
+    cracks : mapping of int to Crack, OtherTip, Missing or Hole
         By the number of the tooth.
     beside : int, optional
         Teeth on either side of the outermost odd ones that are known by number, where there are so many; by default
@@ -147,8 +148,14 @@ def _solve(
 
 
 def _odd_tooth(
-    tooth: InvoluteTooth, support: RimSupport | None, bore_radius: float, settings: MeshSettings, one: Crack | OtherTip
+    tooth: InvoluteTooth,
+    support: RimSupport | None,
+    bore_radius: float,
+    settings: MeshSettings,
+    one: Crack | OtherTip | Hole,
 ) -> OddTooth:
+    if isinstance(one, Hole):
+        return OddTooth(tooth, holed_sector(tooth, bore_radius, settings, one, support))
     if isinstance(one, OtherTip):
         return OddTooth(*shorter_sector(tooth, bore_radius, settings, one, support))
     return OddTooth(tooth, cracked_sector(tooth, bore_radius, settings, one, support))
