@@ -62,7 +62,13 @@ def new(
     rack: Annotated[str | None, typer.Option("--rack", metavar="A..D", help="Basic rack of ISO 53.")] = None,
     helix_angle: Annotated[str | None, typer.Option("--helix-angle", metavar="ANGLE", help="Helical pairs.")] = None,
     face_width: Annotated[str | None, typer.Option("--face-width", metavar="LENGTH", help='E.g. "30 mm".')] = None,
-    torque: Annotated[str | None, typer.Option("--torque", help='Torque on the driver, e.g. "260 N m".')] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option(
+            "--torque",
+            help='Torque on the driver, e.g. "260 N m"; for --kind relief also a range, "120 to 320 N m".',
+        ),
+    ] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Speed of the driver, e.g. "1480 rpm".')] = None,
     tip_relief: Annotated[
         tuple[str, str] | None,

@@ -46,6 +46,7 @@ const fegearGlance = (() => {
     if (id === "to-large") { keep({ large: !view.large }); apply(); }
     if (id === "to-exercise") { document.body.classList.remove("revealed"); keep({ exercise: !view.exercise }); apply(); }
     if (id === "to-answers") { document.body.classList.toggle("revealed"); apply(); }
+    if (id === "to-large" || id === "to-exercise") target.closest("details.views")?.removeAttribute("open"); // it lies over the answers' button
   });
   const chosen = () => {
     const usual = told?.usual[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"] ?? [];

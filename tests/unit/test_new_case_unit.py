@@ -223,6 +223,28 @@ def test_a_relief_design_takes_a_helix_and_a_range_of_torques():
     assert "helix" not in draft(Answers("relief", {}), "x")
 
 
+@pytest.mark.parametrize("text", ["120 to 320 N m", "120 N m..320 N m", "120 N m … 0.32 kN m"])
+@pytest.mark.parametrize("helix", [{}, {"helix_angle": "15 deg", "face_width": "12 mm"}])
+def test_a_relief_is_drafted_for_a_range_of_torques(text, helix):
+    drafted = draft(Answers("relief", {"teeth": "20 31", "torque": text, **helix}), "x")
+    scene = build_scene(tomllib.loads(drafted), "x", Path())
+    torques = np.array(design_range(scene, "I").loads) * scene.pairs["I"].driver.base_radius
+    assert torques == pytest.approx([120.0, 220.0, 320.0])
+    assert make_plan(scene, STAGES).idle_effects == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "told"),
+    [
+        ("relief", "320 to 120 N m", "must rise"), ("relief", "0 to 120 N m", "greater than zero"),
+        ("relief", "1 to 2", "has no unit"), ("pair", "120 to 320 N m", "requires --kind relief"),
+    ],
+)  # fmt: skip
+def test_a_range_of_torques_that_is_none_is_refused(kind, text, told):
+    with pytest.raises(InputError, match=told):
+        Answers(kind, {"torque": text})
+
+
 #: 3D gears take ten seconds: here by slices, without figures.
 CHEAP = ("--no-plots", "--set", 'pair.I.width="slices"', "--set", "load_distribution={positions=4, panels=8}")
 

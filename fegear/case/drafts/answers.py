@@ -31,6 +31,10 @@ HELICAL = ("helical", "gearbox")
 _NONE = "none"
 
 
+#: Between both ends of a range of torques; the first end may leave the unit to the second.
+_BETWEEN = re.compile(r"\s*(?:\.\.\.?|…|–|\bto\b)\s*")
+
+
 class Question(NamedTuple):
     """A question.
 
@@ -42,12 +46,15 @@ class Question(NamedTuple):
     default : str
     dimension : str
         Of the quantity; "teeth", "numbers" or "rack" for what is none.
+    ranges : bool
+        Whether it may be a range, "120 to 320 N m".
     """
 
     name: str
     prompt: str
     default: str
     dimension: str
+    ranges: bool = False
 
     @property
     def optional(self) -> bool:
@@ -119,9 +126,9 @@ class Answers:
         return (found + found[-1:] * len(KINDS[self.kind].gears))[: len(KINDS[self.kind].gears)]
 
     def si(self, name: str) -> float:
-        """An answer that is a quantity, in SI."""
+        """An answer that is a quantity, in SI; of a range its upper end."""
         question = next(q for q in questions(self.kind, self.given) if q.name == name)
-        return to_si(self[name], question.dimension, _option(name))
+        return to_si((ends(self[name]) or (self[name],))[-1], question.dimension, _option(name))
 
 
 def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
@@ -161,15 +168,25 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
         elif name == "torque":
             width = _readable(given.get("face_width", face), "length")
             radius = 0.5 * module * (plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0)
-            found.append(
-                Question(name, "Torque on the pinion", f"{float(f'{_LINE_LOAD * width * radius:.2g}'):g} N*m", "torque")
-            )
+            default = f"{float(f'{_LINE_LOAD * width * radius:.2g}'):g} N*m"
+            ranges = kind == "relief"
+            prompt = 'Torque on the pinion, or a range ("120 to 320 N m")' if ranges else "Torque on the pinion"
+            found.append(Question(name, prompt, default, "torque", ranges))
         else:
             prompt, default, dimension = _ALL[name]
             default = _NONE if name == "helix_angle" and kind not in HELICAL else default
             plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
             found.append(Question(name, prompt + plural, default, dimension))
     return found
+
+
+def ends(text: str) -> tuple[str, str] | None:
+    """Both ends of a range, as in "120 to 320 N m" and "120 N m..320 N m"; None for a single quantity."""
+    found = _BETWEEN.split(text.strip())
+    if len(found) != 2 or not all(found):
+        return None
+    first, last = found
+    return (f"{first} {last.lstrip('+-.0123456789eE').strip()}".strip() if _number(first) else first), last
 
 
 def check(question: Question, gears: int, text: str) -> None:
@@ -197,8 +214,21 @@ def check(question: Question, gears: int, text: str) -> None:
             raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "for example 0.3")
     elif question.dimension == "rack":
         BasicRack.named(text)
-    elif text != question.default and to_si(text, question.dimension, key) <= 0.0:
-        raise InputError(key, f'"{text}"', "must be greater than zero")
+    elif text != question.default:
+        both = [to_si(end, question.dimension, key) for end in _allowed(question, text)]
+        if both[0] <= 0.0:
+            raise InputError(key, f'"{text}"', "must be greater than zero")
+        if len(both) > 1 and both[0] >= both[1]:
+            raise InputError(key, f'"{text}"', "must rise", "write the smaller torque first")
+
+
+def _allowed(question: Question, text: str) -> tuple[str, ...]:
+    """A quantity, or both ends of a range where the kind takes one."""
+    both = ends(text) if question.dimension == "torque" else None
+    if both and not question.ranges:
+        key = _option(question.name)
+        raise InputError(key, f'"{text}"', "must be one torque", "a range requires --kind relief")
+    return both or (text,)
 
 
 def _option(name: str) -> str:

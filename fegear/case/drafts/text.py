@@ -11,7 +11,7 @@ from importlib.resources import files
 from string import Template
 
 from fegear.base.units import from_si
-from fegear.case.drafts.answers import HELICAL, Answers
+from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
@@ -72,7 +72,7 @@ _PAIR = """\
 [pair.I]
 driver = {first}
 driven = {second}
-torque = {torque}{torque_note}
+{load}
 speed = {speed}{speed_note}
 # centre_distance = "{centre_distance}"     # default: zero backlash
 {range}
@@ -264,15 +264,27 @@ def _pair(answers: Answers) -> str:
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
     distance = _length(answers.si("module") * (0.5 * teeth / turn + shifts))
     return _PAIR.format(
-        first=first, second=second, centre_distance=distance, range=_range(answers),
-        **_texts(answers, ("torque", "speed")),
+        first=first, second=second, centre_distance=distance, load=_load(answers), range=_range(answers),
+        **_texts(answers, ("speed",)),
     )  # fmt: skip
+
+
+def _load(answers: Answers) -> str:
+    """The torque, or the range of torques that a relief is designed for."""
+    both = ends(answers["torque"])
+    if both is None:
+        torque = _texts(answers, ("torque",))
+        return f"torque = {torque['torque']}{torque['torque_note']}"
+    start, stop = map(toml_string, both)
+    return f"torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for both ends and the middle"
 
 
 def _range(answers: Answers) -> str:
     """Further loads, or of a relief design the range of torques that it may be for."""
     if answers.kind != "relief":
         return '# loads = ["2 kN", "4 kN"]     # further loads along the line of action'
+    if ends(answers["torque"]):
+        return "# weights = [1, 1, 1]     # what each torque counts"
     start, stop = (toml_string(f"{share * answers.si('torque'):.3g} N*m") for share in (0.5, 1.0))
     return f"# torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for a range, instead of torque"
 
