@@ -8,6 +8,7 @@ import pytest
 
 from fegear.contact.wide.along_lines import _loads_below, load_below, swept_mean
 from fegear.contact.wide.lines import contact_lines, shortest_line
+from fegear.contact.wide.over_pitch import every_second
 from fegear.contact.wide.roll_points import _shared, line_breaks, roll_points
 from fegear.contact.wide.transmission_error import (
     FlankTransmissionError,
@@ -165,6 +166,27 @@ def test_curves_through_roll_positions_are_the_same_to_the_last_digit_every_time
         assert np.array_equal(curve_through(points, values, x), found)
         assert np.array_equal(from_half(points, values), half)
     np.testing.assert_allclose(found, np.cos(2.0 * math.pi * x / points.period), atol=1e-3)
+
+
+@pytest.mark.parametrize("positions", [16, 24, 48])
+def test_what_positions_leave_of_harmonics_is_read_as_the_harmonics_are(positions):
+    """Read straight from every second position to the next they were stated 10 times too large."""
+    points = roll_points(pair(20.0), positions)
+    turn = 2.0 * math.pi * (points.x - points.breaks[0]) / points.period
+    values = 1.0 / (1.2 + np.cos(turn + 0.3))
+    flat = np.full(values.shape, 3.0)
+    te = FlankTransmissionError(1.0, points, values, flat, flat, series_over_pitch(points, values), 1.0)
+    stated = flank_transmission_error_shift(te, te, te, te).amplitude[:4]
+    root = math.sqrt(1.2**2 - 1.0)  # of 1 / (a + cos): 2 / root times this power
+    exact = 2.0 / root * (1.2 - root) ** np.arange(1, 5)
+    true = np.abs(te.series.amplitude[:4] - exact)
+    assert (true <= 1.5 * stated + 1e-12).all()
+    kept = every_second(points)
+    straight = np.interp(points.x, points.x[kept], values[kept], period=points.period)
+    by_lines = 2.0 * np.abs(series_over_pitch(points, straight).coefficients - te.series.coefficients)[1:5]
+    assert stated.max() < by_lines.max()
+    if positions == 48:
+        assert stated.max() < 0.3 * by_lines.max()
 
 
 def test_coarser_gears_count_in_part_and_longer_panels_whole():

@@ -9,7 +9,6 @@ import numpy as np
 
 from fegear.contact.wide.root_stress import rooted_lines
 from fegear.fem.plane.root_stress import curves_apart
-from fegear.fem.solid.influence import ENTRY_SHARES
 
 if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
@@ -66,6 +65,6 @@ def largest_tension(
         else:
             again = cache.call(rooted_lines, half.pair, member, lines, gear.coarse, coupling=coupled).value
             other = again.stress("tension", force, z)
-            error = ENTRY_SHARES["root_tension"] * float(curves_apart(felt.value, other.value)[most])
+            error = gear.entry_shares["root_tension"] * float(curves_apart(felt.value, other.value)[most])
         error += largest * float(pair.error.share[:, case].max() / pair.share[number, :, case].max())
     return LargestTension(largest, error, float(places[most]))

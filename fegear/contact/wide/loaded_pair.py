@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import permutations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -40,7 +41,7 @@ from fegear.contact.wide.transmission_error import (
 )
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart
-from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
+from fegear.fem.solid.influence import BESIDE_LARGEST, OF_OTHER_FILLET, SolidInfluence
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
@@ -312,15 +313,19 @@ class LoadedWidePair:
             if i == self.at:
                 over_face[member] = felt
                 across = rooted.largest("tension", force, z, surface["tension"], across=True)
+            apart: dict[Side, Array] = {}
             for side, sign in _SIDES:
                 largest[side].append(felt[side].largest(sign)[0])
                 if again:
                     other = again.stress(side, coarse.contact.force[:, :, i], z)
                     by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)
-                    apart = curves_apart(sign * felt[side].value, sign * by_coarse)
-                    off[side].append(ENTRY_SHARES[f"root_{side}"] * apart)
+                    change = curves_apart(sign * felt[side].value, sign * by_coarse, BESIDE_LARGEST)
+                    apart[side] = influence.entry_shares[f"root_{side}"] * change
                 else:  # slices know how far they are off
                     off[side].append(influence.error.get(f"root_{side}", np.nan) * np.abs(largest[side][-1]))
+            scale = {side: np.abs(largest[side][-1]).max() for side in apart}
+            for (one, first), (two, second) in permutations(apart.items(), 2):
+                off[one].append(np.maximum(first, OF_OTHER_FILLET * second * scale[one] / scale[two]))
         ends = (*largest.values(), *off.values())
         return ToothStress(rooted.x, *(np.stack(one, axis=1) for one in ends)), across
 

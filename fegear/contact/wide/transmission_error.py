@@ -141,12 +141,8 @@ def flank_transmission_error_shift(
     of_gears : (float, float)
         Of what coarser gears change, so much is error: of means, and of the curve's shape.
     """
-    kept = every_second(te.points)
-
-    def straight(values: Array) -> Array:
-        return np.interp(te.points.x, te.points.x[kept], values[kept], period=te.points.period)
-
-    fewer = _error(te.load, te.points, *(straight(one) for one in (te.values, te.local, te.secant)))
+    # read between the positions as `series_over_pitch` reads what is stated
+    fewer = _error(te.load, te.points, *(_of_half(te.points, one) for one in (te.values, te.local, te.secant)))
     pairs = ((te, fewer), (fine, longer), (longer, coarse))
     mean, shape = ((1.0, 1.0, part) for part in of_gears)
 
@@ -182,10 +178,26 @@ def curve_through(points: Panels, values: Array, x: Array) -> Array:
     own, wanted = np.searchsorted(points.breaks, points.x), np.searchsorted(points.breaks, x)
     found = np.interp(x, points.x, values, period=points.period)
     for piece in np.unique(own):
-        at = points.x[own == piece]
-        ends = points.breaks[max(piece - 1, 0)], points.breaks[min(piece, points.breaks.size - 1)]
-        if max(at[0] - ends[0], ends[1] - at[-1]) < _ON_END * points.period:
-            found[wanted == piece] = _polynomial(at, values[own == piece])(x[wanted == piece])
+        if _reaches_ends(points, piece, own):
+            found[wanted == piece] = _polynomial(points.x[own == piece], values[own == piece])(x[wanted == piece])
+    return np.asarray(found)
+
+
+def _reaches_ends(points: Panels, piece: int, own: Index) -> bool:
+    """Whether the positions on a piece of the base pitch reach its ends; `own` is the piece of each, shape (P,)."""
+    at = points.x[own == piece]
+    ends = points.breaks[max(piece - 1, 0)], points.breaks[min(piece, points.breaks.size - 1)]
+    return bool(max(at[0] - ends[0], ends[1] - at[-1]) < _ON_END * points.period)
+
+
+def _of_half(points: Panels, values: Array) -> Array:
+    """What half of the roll positions say at all of them, read as by `curve_through`, shape (P,)."""
+    own, kept = np.searchsorted(points.breaks, points.x), every_second(points)
+    found = np.interp(points.x, points.x[kept], values[kept], period=points.period)
+    smooth = from_half(points, values)
+    for piece in np.unique(own):
+        if _reaches_ends(points, piece, own):
+            found[own == piece] = smooth[own == piece]
     return np.asarray(found)
 
 

@@ -17,7 +17,7 @@ from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import curves_apart, extreme
 from fegear.fem.solid.bands import Bands, bands, hats
 from fegear.fem.solid.contact import line_compliance
-from fegear.fem.solid.influence import ENTRY_SHARES, SolidInfluence
+from fegear.fem.solid.influence import BESIDE_LARGEST, OF_OTHER_FILLET, SolidInfluence
 from fegear.fem.solid.settings import whole
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.gear import Gear
@@ -36,12 +36,6 @@ _ESTIMATE = {
     "c_self": "contact", "c_prev": "neighbour", "c_next": "neighbour", "root_tension": "root_tension",
     "root_compression": "root_compression",
 }  # fmt: skip
-#: Of the largest root stress, above which the curve along the face is compared: what two solutions differ by where
-#: stress is lower does not reach the largest.
-_BESIDE_LARGEST = 0.9
-#: Both fillets have one shape and edges as long: relatively the one errs by no less than this part of what the other
-#: does, should two solutions agree by chance (compression of a gear on a web was 1.94 times the stated error off).
-_OF_OTHER_FILLET = 0.5
 #: Places along the face per module at which root stress is looked at, and how many at least.
 _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
@@ -136,7 +130,7 @@ def solid_table(
     elif influence.coarse is not None:
         beside = _radii_beside(influence.fine, asked.radius)
         for key, difference in fine.apart(band_numbers(influence.coarse, asked, m)).items():
-            relative[key] = ENTRY_SHARES[_ESTIMATE[key]] * _worst_beside(difference.max(axis=1), beside)
+            relative[key] = influence.entry_shares[_ESTIMATE[key]] * _worst_beside(difference.max(axis=1), beside)
         relative |= _no_less_than_part_of_the_other(relative)
     c = {key: value / (gear.material.young_modulus * m) for key, value in fine.compliance.items()}
     errors = {
@@ -221,7 +215,7 @@ class BandNumbers:
         found = {key: np.abs(other.compliance[key] / value - 1.0) for key, value in self.compliance.items()}
         for side, root in self.root.items():
             sign = 1.0 if side == "tension" else -1.0
-            apart = curves_apart(sign * root.along, sign * other.root[side].along, _BESIDE_LARGEST)
+            apart = curves_apart(sign * root.along, sign * other.root[side].along, BESIDE_LARGEST)
             found[f"root_{side}"] = apart / np.abs(root.value)
         return found
 
@@ -255,8 +249,8 @@ def _no_less_than_part_of_the_other(relative: Mapping[str, Array]) -> dict[str, 
     """Relative errors of root stress of both sides, of what solutions differ by on either of them."""
     tension, compression = relative["root_tension"], relative["root_compression"]
     return {
-        "root_tension": np.maximum(tension, _OF_OTHER_FILLET * compression),
-        "root_compression": np.maximum(compression, _OF_OTHER_FILLET * tension),
+        "root_tension": np.maximum(tension, OF_OTHER_FILLET * compression),
+        "root_compression": np.maximum(compression, OF_OTHER_FILLET * tension),
     }
 
 
