@@ -10,6 +10,7 @@ import pytest
 from fegear.fem.plane.estimate import (
     _COMPRESSED,
     _LEAST_NEIGHBOUR_STRESS,
+    _LEAST_OF_OTHER,
     _LEAST_STRESS_SHARE,
     _LESS_OF_OTHER,
     _OF_OWN_STRESS,
@@ -109,7 +110,7 @@ def test_a_fillet_of_the_loaded_tooth_errs_by_a_part_of_what_the_other_does_the_
     stresses = {0: {"tension": (10.0 * samples, 0.1 * samples), "compression": (-20.0 * samples, 0.0 * samples)}}
     found = estimate([0.3 / count] * count, stresses)
     share, whole = found._stress_share, _COMPRESSED * _USUAL * 0.01 * 20.0
-    wanted = found._own_stress_part * share * whole * (1.0 - _LESS_OF_OTHER * share)
+    wanted = found._own_stress_part * share * whole * max(1.0 - _LESS_OF_OTHER * share, _LEAST_OF_OTHER)
     assert found._stress_estimate(0, "compression", np.array([-20.0]), np.zeros(1)) == pytest.approx([wanted])
     assert found._stress_estimate(0, "tension", np.array([10.0]), np.zeros(1)) == pytest.approx(
         [found._own_stress_part * share * _USUAL * 0.1]

@@ -47,10 +47,10 @@ _SCATTERED, _SCATTERED_HERE, _SCATTERED_NEXT = 0.65, 0.85, 1.2
 #: judged by all of it.
 _OWN_STRESS, _OWN_STRESS_BY_SHARE, _MOST_OWN_STRESS = 0.45, 0.55, 0.8
 #: Both fillets have one shape and edges as long: one errs by no less than the other usually does, should its difference
-#: vanish by chance; by so many times the part less, for where edges are few those of the compressed fillet, which are
-#: graded where its stress is largest, err by more of their own (of four of 18 gears and rings tension was stated 10 to
-#: 15 times too large at a tolerance of 0.01).
-_LESS_OF_OTHER = 0.8
+#: vanish by chance; by so many times the part less, down to so much of it, for where edges are few those of the
+#: compressed fillet, which are graded where its stress is largest, err by more of their own (of four of 18 gears and
+#: rings tension was stated 10 to 15 times too large at a tolerance of 0.01).
+_LESS_OF_OTHER, _LEAST_OF_OTHER = 0.8, 0.5
 #: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
@@ -344,7 +344,8 @@ class Estimate:
             error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
             least = _USUAL * max(self._usual_stress.values())
             return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
-        found = self._own_stress_estimate(side, value, difference, scatter, 1.0 - _LESS_OF_OTHER * share)
+        of_other = max(1.0 - _LESS_OF_OTHER * share, _LEAST_OF_OTHER)
+        found = self._own_stress_estimate(side, value, difference, scatter, of_other)
         return self._own_stress_part * found
 
     def _own_stress_estimate(
