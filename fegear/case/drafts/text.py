@@ -21,7 +21,7 @@ _HEAD = """\
 # {about}.
 #   fegear run {file}      computes it; the report is results/{stem}/report.html
 #   fegear plan {file}     what would be computed, why, and how long it would take
-#   fegear results{pad}       list of all available results
+#   fegear results{pad}   list of all available results
 # Values marked "assumed" were not specified: replace them by those of the drawing.
 
 title = {title}
