@@ -726,3 +726,34 @@ def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(bro
         one for one in browser.complaints if "favicon" not in one and "WebSocket" not in one and "ERR_" not in one
     ] == []
     served.end()
+
+
+@pytest.mark.long
+def test_the_tip_of_a_crack_is_dragged_and_its_tooth_follows(browser, tmp_path):
+    """Length and angle of the case, stress intensity and picture."""
+    case = Path(__file__).parents[2] / "cases" / "cracked_tooth.toml"
+    asked = 'results = ["mesh-stiffness-revolution", "odd-tooth-stiffness", "stress-intensity"]'
+    (tmp_path / "c.toml").write_text(case.read_text().replace(asked, 'results = ["odd-tooth-stiffness"]'))
+    served = Served(tmp_path, "c.toml")
+    try:
+        go(browser, served.address)
+        browser.until(f"{IDLE} && document.querySelector('section.crack') !== null")
+        browser.run("fegearMiddle.choose('crack pinion')")
+        browser.until("document.querySelector('.crack-tip')?.getBoundingClientRect().width > 0")
+        words = browser.run("document.querySelector('.crack-words').textContent")
+        assert words.startswith("Crack 2.13 mm: K_I = 8.5")
+        box = "document.querySelector('.crack-tip').getBoundingClientRect()"
+        x, y = browser.run(f"(one => [one.x + one.width / 2, one.y + one.height / 2])({box})")
+        mouse = {"button": "left", "buttons": 1}
+        browser("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, clickCount=1, **mouse)
+        for i in range(1, 6):
+            browser("Input.dispatchMouseEvent", type="mouseMoved", x=x + 8 * i, y=y - 3 * i, **mouse)
+        browser.until(f"document.querySelector('.crack-words').textContent !== {json.dumps(words)}")
+        browser("Input.dispatchMouseEvent", type="mouseReleased", x=x + 40, y=y - 15, button="left", buttons=0)
+        browser.until(f"{IDLE} && document.querySelector('.crack-words').textContent.startsWith('Crack 1.5')")
+        words = browser.run("document.querySelector('.crack-words').textContent")
+        browser.run("document.querySelector('.crack-tip').focus()")
+        press(browser, "ArrowRight", 39)
+        browser.until(f"{IDLE} && document.querySelector('.crack-words').textContent !== {json.dumps(words)}")
+    finally:
+        served.end()

@@ -110,7 +110,8 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
     InputError
         If a crack, a tip or a pit does not fit its tooth.
     """
-    gear, cracks, outlines, flanks, profiles = scene.gears[name], [], [], [], []
+    gear, cracks, flanks, profiles = scene.gears[name], [], [], []
+    outlines: list[tuple[int, OtherTip | Missing | Hole]] = []
     for n, part in enumerate(scene.case.gear[name].odd_tooth):
         prefix = f"gear.{name}.odd_tooth[{n}]"
         if part.crack is not None:
@@ -172,10 +173,9 @@ def check_hole(scene: Scene, gear: str, number: int) -> None:
             hole_of(made, part),
         )  # fmt: skip
     except InputError as error:
-        scale = 1e3 * made.module
+        value, rule = (_in_mm(text, 1e3 * made.module) for text in (error.value, error.rule))
         raise InputError(
-            f"gear.{gear}.odd_tooth[{number}].hole.{error.key}", *(_in_mm(text, scale) for text in
-            (error.value, error.rule)), error.remedy,
+            f"gear.{gear}.odd_tooth[{number}].hole.{error.key}", value, rule, error.remedy
         ) from None  # fmt: skip
 
 

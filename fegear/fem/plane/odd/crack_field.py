@@ -136,7 +136,8 @@ def _shown(known: OddInfluence, i: int, moved: Array, mises: Array) -> CrackFiel
         first, second, middle = mesh.edges[name]
         line = np.append(np.stack([first, middle], axis=1).ravel(), second[-1])
         faces.append(number[line if line[-1] == mesh.tip else line[::-1]])
+    left, right = faces
     fillets = np.unique(np.hstack([mesh.edges[name] for name in ("fillet", "back_fillet")]))
     return CrackField(
-        mesh.points[:, used], triangles.reshape(3, -1), moved[:, used], mises[used], *faces, number[fillets]
+        mesh.points[:, used], triangles.reshape(3, -1), moved[:, used], mises[used], left, right, number[fillets]
     )
