@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.results.relief.relief_in_case import How
     from fegear.window.computing import Computing
     from fegear.window.document import Verdict
+    from fegear.window.glance import View
     from fegear.window.journal import Left
     from fegear.window.reach import Reach
 
@@ -132,8 +133,15 @@ class Bench:
         """Show other small pictures, or another stress inside the teeth; kept for the next time."""
         before, self.view = self.view, self.view.changed(told)
         keep_view(self.desk.path if self.desk is not None else None, self.view)
+        self._tell_exercise(before)
         if (before.pictures, before.measure == "none") != (self.view.pictures, self.view.measure == "none"):
             self.compute()
+
+    def _tell_exercise(self, before: View) -> None:
+        """Have all pages hide or show the answers: a class sees what its lecturer has asked for, and no more."""
+        now = {"exercise": self.view.exercise, "revealed": self.view.revealed}
+        if now != {"exercise": before.exercise, "revealed": before.revealed}:
+            self.tell("exercise", now)
 
     def tell(self, what: str, content: Content | None = None) -> None:
         """Tell every page."""
@@ -214,6 +222,8 @@ class Bench:
 
     def _show_change(self, *, moving: bool) -> None:
         self._judge_aside()
+        before, self.view = self.view, self.view._replace(revealed=False)  # another case is another exercise
+        self._tell_exercise(before)
         self.tell("changed", {"moving": moving})
         self.compute(moving=moving)
         if self._held is not None:

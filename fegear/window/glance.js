@@ -25,7 +25,8 @@ const fegearGlance = (() => {
     document.body.classList.toggle("folded", !!view.folded);
     document.documentElement.classList.toggle("large-type", !!view.large);
     document.body.classList.toggle("exercise", !!view.exercise);
-    const hidden = !document.body.classList.contains("revealed");
+    document.body.classList.toggle("revealed", !!view.revealed);
+    const hidden = !view.revealed;
     for (const [id, on, words] of [
       ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
       ["to-large", view.large, "Large type"], ["to-exercise", view.exercise, "Exercise: answers on request"],
@@ -44,8 +45,8 @@ const fegearGlance = (() => {
     if (id === "to-report") { keep({ report: !view.report }); apply(); if (view.report) fegear.showReport(); }
     if (id === "to-fold") { keep({ folded: !view.folded }); apply(); }
     if (id === "to-large") { keep({ large: !view.large }); apply(); }
-    if (id === "to-exercise") { document.body.classList.remove("revealed"); keep({ exercise: !view.exercise }); apply(); }
-    if (id === "to-answers") { document.body.classList.toggle("revealed"); apply(); }
+    if (id === "to-exercise") { keep({ exercise: !view.exercise, revealed: false }); apply(); }
+    if (id === "to-answers") { keep({ revealed: !view.revealed }); apply(); }
     if (id === "to-large" || id === "to-exercise") target.closest("details.views")?.removeAttribute("open"); // it lies over the answers' button
   });
   const chosen = () => {
@@ -222,11 +223,7 @@ const fegearGlance = (() => {
       apply();
     },
     view: () => view,
-    ask() { // of a case that has changed: its answers are another exercise
-      if (!document.body.classList.contains("revealed")) return;
-      document.body.classList.remove("revealed");
-      apply();
-    },
+    exercise(content) { Object.assign(view, content); apply(); },
     keep,
     found(content) {
       gather(content, { specs, numbers });

@@ -178,6 +178,8 @@ class View(NamedTuple):
         Whether type is large, for a room.
     exercise : bool
         Whether answers are hidden until they are asked for, anew after each change.
+    revealed : bool
+        Whether they have been asked for since; not kept for the next time.
     """
 
     pictures: tuple[str, ...] = ()
@@ -187,6 +189,7 @@ class View(NamedTuple):
     middle: str = ""
     large: bool = False
     exercise: bool = False
+    revealed: bool = False
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""
@@ -210,7 +213,7 @@ def told_of_view(view: View) -> dict[str, Any]:
 def read_view(case: Path | None) -> View:
     """How the page of a case file, or of cases without one, was left; the usual view where nothing is known."""
     with contextlib.suppress(InputError):
-        return View().changed(read_json(_place(case), "view"))
+        return View().changed(read_json(_place(case), "view"))._replace(revealed=False)
     return View()
 
 

@@ -188,7 +188,6 @@ const fegear = (() => {
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");
-      if (content.number !== undefined) fegearGlance.ask();
       if (!moving) offer("Stop");
       say("computing ...");
     },
@@ -197,6 +196,7 @@ const fegear = (() => {
       step = `${number} of ${count}: ${title}`;
       say(`${step} ...${leftWords(left)}`);
     },
+    exercise(content) { fegearGlance.exercise(content); }, // what one page asked for holds for all
     advance({ fraction, left }) { say(`${step}, ${Math.round(100 * fraction)} %${leftWords(left)}`); },
     outdated({ stopped }) { // the case is refused, or nobody computes it
       document.body.classList.remove("computing");

@@ -10,7 +10,7 @@ from fegear.window import bench as benches
 from fegear.window.beginnings import gallery
 from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
-from fegear.window.glance import View
+from fegear.window.glance import View, read_view
 from fegear.window.job_queue import Compute, Design, Export, Said, Stop
 
 CASE = """
@@ -103,6 +103,29 @@ def test_the_case_is_asked_for_with_what_is_seen_and_shown(bench):
     bench.see_otherwise({"pictures": ["te"]})
     assert bench.asked_for[-1].asked.pictures == ("te",)
     assert bench.view == View(pictures=("te",), measure="none")
+
+
+def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_does(bench):
+    def told():
+        return [content for what, content in bench.heard if what == "exercise"]
+
+    hidden, shown = {"exercise": True, "revealed": False}, {"exercise": True, "revealed": True}
+    bench.see_otherwise({"large": True})
+    assert told() == []
+    bench.see_otherwise({"exercise": True, "revealed": False})
+    bench.see_otherwise({"revealed": True})
+    bench.see_otherwise({"measure": "none"})  # another picture of the same case, which is computed
+    assert told() == [hidden, shown]
+    assert bench.view.revealed  # for a page that opens now
+    assert not read_view(None).revealed
+    assert read_view(None).exercise
+    bench.heard.clear()
+    bench.put(bench.desk.text.replace("900 N", "800 N"), moving=True)
+    assert told() == [hidden]
+    assert [what for what, _ in bench.heard].index("exercise") < [what for what, _ in bench.heard].index("asked")
+    bench.put(bench.desk.text.replace("800 N", "700 N"), moving=False)
+    bench.see_otherwise({"exercise": False})
+    assert told() == [hidden, {"exercise": False, "revealed": False}]
 
 
 def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp_path):
