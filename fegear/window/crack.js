@@ -93,8 +93,8 @@ const fegearCrack = (() => {
     context.arc(view.x(cx), view.y(cy), 4, 0, 2 * Math.PI);
     context.fill();
     if (kept.follow) { // while it is moved the line goes ahead of the answer
-      const [tx, ty] = tipOf(one, kept.follow);
-      line([[view.x(crack.path[0][0]), view.y(crack.path[1][0])], [view.x(tx), view.y(ty)]], look.getPropertyValue("--accent") || "#06c", 2, [5, 3]);
+      const [tx, ty] = tipOf(one, kept.follow), ahead = Math.hypot(tx - crack.path[0].at(-1), ty - crack.path[1].at(-1));
+      if (ahead > 0.005 * one.module) line([[view.x(crack.path[0][0]), view.y(crack.path[1][0])], [view.x(tx), view.y(ty)]], look.getPropertyValue("--accent") || "#06c", 2, [5, 3]);
     }
     kept.value.textContent = `${Number(factor.toPrecision(2))} ×`;
     kept.slider.value = Math.round(100 * Math.log10(factor));
