@@ -12,6 +12,7 @@ from fegear.base.notes import OPEN
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
+from fegear.engine.run import Silence
 from fegear.output.figures import described
 from fegear.output.report.blocks import Group
 from fegear.output.report.run import run_page
@@ -247,8 +248,11 @@ LONG = {"flank_design"}
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in small_net.RUNS]
 )
-def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name):
+def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name, monkeypatch):
+    done = []
+    monkeypatch.setattr(Silence, "advance", lambda _self, fraction: done.append(fraction))
     found = small_net.computed(name)
+    assert all(0.0 <= fraction <= 1.0 + 1e-9 for fraction in done)
     for table in found.tables:
         check_any(table)
         kind = max((kind for kind in OF_TABLES if f"{table.name}_".startswith(f"{kind}_")), key=len, default=None)
