@@ -387,6 +387,11 @@ class PairPart(Part):
             return self.torque / pair.driver.base_radius / self.halves
         return max(self.several_loads(pair), default=None) if self.load is None else self.load / self.halves
 
+    def lever(self, pair: GearPair) -> float | None:
+        """Lever of the driver [m] by which loads are torques; None where the case gives loads, or those of a half."""
+        by_torque = self.torque is not None or (self.torques is not None and self.load is None)
+        return pair.driver.base_radius if by_torque and self.halves == 1 else None
+
     def all_loads(self, pair: GearPair) -> tuple[float, ...]:
         """Every load of the case along the line of action [N], ascending, the nominal one among them."""
         nominal = self.normal_load(pair)

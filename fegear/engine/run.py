@@ -23,6 +23,7 @@ from fegear.engine.named import Named
 from fegear.engine.outcome import Outcome
 from fegear.engine.plan import ON_REQUEST, Plan, Step
 from fegear.engine.run_answer import RunAnswer, answer_of_run
+from fegear.engine.sheet.load_words import loads_as_given
 from fegear.engine.stage import Task, Work
 from fegear.engine.table import Table
 from fegear.engine.value import Value
@@ -291,7 +292,8 @@ def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work
     key = Key.of(stage.name, inputs, [done[need].key for need in needs])
     upstream = {need: done[need].data for need in needs}
     solution = work.cache.solve(key, partial(stage.compute, inputs, upstream, work))
-    outcome = stage.present(solution.value, inputs)
+    with loads_as_given(scene, subject):
+        outcome = stage.present(solution.value, inputs)
     seconds = time.perf_counter() - started
     recalled = solution.source != "computed"
     used = work.cache.shapes.since(shapes)

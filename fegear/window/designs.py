@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fegear.base.errors import FegearError, InputError
 from fegear.case.changed_text import literal, value_at, with_values
 from fegear.engine.run import key_without_needs
+from fegear.engine.sheet.load_words import loads_as_given
 from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
 from fegear.window.order import ANSWERS, in_order
 
@@ -76,11 +77,17 @@ def designed(results: Results, pair: str, how: How) -> dict[str, Any]:
     keys = (f"relief_candidates_{pair}", f"relief_{pair}")
     figures = [one for one in results.figures if isinstance(one, Figure) and one.key in keys]
     return {
-        "pair": pair, "reliefs": relief_for_case(results, pair, how), "told": what_it_leaves(results, how),
+        "pair": pair, "reliefs": relief_for_case(results, pair, how), "told": _said_of(results, pair, how),
         "figures": [{"key": f"designed-{one.key}", "heading": one.heading, "caption": one.caption, **plotly_json(one)}
                     for one in figures],
         "darker": darker(figures),
     }  # fmt: skip
+
+
+def _said_of(results: Results, pair: str, how: How) -> str:
+    """What the reliefs leave, at the load as the case gives it."""
+    with loads_as_given(results.scene, pair):
+        return what_it_leaves(results, how)
 
 
 #: How much coarser than the case a draft is, just over the square root of ten: edges of the next level, in less than

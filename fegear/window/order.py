@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fegear.engine.sheet.load_words import loads_as_given
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.results.relief.harris import NOW, load_now, slider_map
@@ -109,7 +110,8 @@ class HarrisMaps:
             if not _LEAST * begun <= load <= _MOST * begun:
                 begun = load
             self._begun[task.subject] = begun
-            figure = slider_map(task.subject, teeth, _MOST * begun)
+            with loads_as_given(results.scene, task.subject):
+                figure = slider_map(task.subject, teeth, _MOST * begun)
             drawn = {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)}
             found[task.subject] = {"figure": drawn, "darker": darker([figure]), "now": NOW}
         return found

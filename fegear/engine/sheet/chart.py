@@ -28,6 +28,7 @@ from fegear.engine.figure.items import (
 )
 from fegear.engine.figure.panel import Panel
 from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.seen import Seen, Text, Where, reach
 
 
@@ -256,7 +257,7 @@ class Chart:
 
 def _only_load(seen: Seen) -> str:
     """The load that a figure holds for, where the pair has one only; else its legend names them."""
-    return f"{seen.loads[0]:.5g} N" if len(seen.loads) == 1 else ""
+    return load_words(seen.loads[0]) if len(seen.loads) == 1 else ""
 
 
 def _panels(seen: Seen, owner: Any, over: Over | Each) -> Iterator[Panel]:
@@ -364,7 +365,7 @@ def drawn_loads(seen: Seen) -> list[tuple[int, str, str]]:
     """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
     loads, nominal = seen.loads, seen.nominal or 0
     chosen = few(len(loads), (nominal,))
-    labels = [f"{loads[i]:.5g} N" + (" (nominal)" if i == nominal and len(loads) > 1 else "") for i in chosen]
+    labels = [load_words(loads[i]) + (" (nominal)" if i == nominal and len(loads) > 1 else "") for i in chosen]
     return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
 
 

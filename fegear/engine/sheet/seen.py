@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.printed import percent, rounded, unit_said
 from fegear.base.shown import declared
 from fegear.base.units import from_si
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.value import Value
 
 #: Where something stands: a path of attributes and of names in mappings ("found.errors.load") from what is shown, or a
@@ -65,7 +66,8 @@ class Seen:
     def said(self, text: Text) -> str:
         """A text with its fields filled in.
 
-        Fields are ``{name}``, ``{key}``, ``{load}`` (nominal, in N), ``{d.…}`` for the data, ``{one.…}`` for the
+        Fields are ``{name}``, ``{key}``, ``{load}`` (nominal, in N; ``{load:said}`` as the case gives it, by the torque
+        or by the force, and so of every load in N), ``{d.…}`` for the data, ``{one.…}`` for the
         object of this repetition and ``{asked.…}``. A declared quantity stands in its unit, which follows it:
         ``{d.te_peak_to_peak:.3g}`` gives ``4.69 µm``, ``{d.te_peak_to_peak:.3g!}`` the number only; of several loads
         that of the nominal one is meant. ``{v[te_peak_to_peak]}`` is a single value of the subject, rounded to what its
@@ -80,7 +82,7 @@ class Seen:
             return text(self)
         if "{" not in text:
             return text
-        load = None if self.nominal is None or not len(self.loads) else self.loads[self.nominal]
+        load = None if self.nominal is None or not len(self.loads) else _Float(self.loads[self.nominal])
         read = {"d": self.data, "one": self.one, "asked": self.asked}
         return text.format(
             name=self.name, key=self.key, load=load, v=_Values(self.values, (self.name, self.key)),
@@ -157,6 +159,8 @@ class _Rounded:
 
 #: Digits of a number in an answer.
 _SAID = 3
+#: The format of a load as the case gives it.
+_SAID_LOAD = "said"
 #: Ends the format of a number without its unit.
 _ONLY = "!"
 
@@ -174,7 +178,9 @@ class _Read:
         try:
             unit = declared(type(self._owner), attribute).unit
         except TypeError:
-            return found if isinstance(found, (str, int, float)) or found is None else _Read(found, self._load)
+            if isinstance(found, float):
+                return _Float(found)
+            return found if isinstance(found, (str, int)) or found is None else _Read(found, self._load)
         if isinstance(found, str):
             return found
         if is_dataclass(found):  # several quantities under one name
@@ -183,6 +189,15 @@ class _Read:
 
     def __format__(self, spec: str) -> str:
         return format(self._owner, spec)
+
+
+class _Float(float):
+    """A number that is written as it is, a load also as the case gives it."""
+
+    __slots__ = ()
+
+    def __format__(self, spec: str) -> str:
+        return load_words(self) if spec == _SAID_LOAD else super().__format__(spec)
 
 
 class _Number:
@@ -194,6 +209,8 @@ class _Number:
         self._si, self._unit = si, unit
 
     def __format__(self, spec: str) -> str:
+        if spec == _SAID_LOAD:
+            return load_words(float(self._si))
         number = float(self._si) * (from_si(self._unit) if self._unit else 1.0)
         if spec.endswith(_ONLY):
             return format(number, spec.removesuffix(_ONLY))

@@ -12,6 +12,7 @@ from fegear.engine.declared import axis_of
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -192,7 +193,7 @@ FILLET_DESIGN_SHEET = Sheet(
                     "height", title="Tool", panel={"height": 1.3, "equal": True}, of="tools", when="tools",
                 ),
             ),
-            of="fillets", columns=3, under=lambda seen: f"{seen.data.data.load:.5g} N",
+            of="fillets", columns=3, under=lambda seen: load_words(seen.data.data.load),
         ),
     ),
     answer=Answer(_answer, figure="fillet_design_{name}"),

@@ -10,6 +10,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Skin
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.load_words import load_words
 from fegear.geometry.outline import tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
@@ -50,7 +51,7 @@ def flank_pressure_figure(name: str, found: LoadedFlanks, case: int) -> Figure:
         f"driven gear on the right, +z to the left. Colour scale limited to {top:.4g} MPa; higher pressure possible "
         "at tips and face ends.",
         (Panel(Axis(), Axis(), (skin,), height=1.0, camera=((1.6, 0.6, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))),),
-        under=f"{found.load[case]:.5g} N",
+        under=load_words(float(found.load[case])),
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
+from fegear.engine.sheet.load_words import load_words
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.path_of_contact import specific_sliding
 
@@ -255,7 +256,7 @@ class ShownSurface:
     @property
     def under(self) -> str:
         """Load and speed that figures hold for."""
-        return f"{self.asked.rated.load:.5g} N, {self.asked.rated.speed * 30.0 / math.pi:.5g} rpm"
+        return f"{load_words(self.asked.rated.load)}, {self.asked.rated.speed * 30.0 / math.pi:.5g} rpm"
 
     # ---- single numbers
 

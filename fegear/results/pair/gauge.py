@@ -85,7 +85,7 @@ _SHEET = Sheet(
     nominal="at",
     tables=(
         Rows(
-            "gauge_{name}", "Strain of gauge {name} over the rotation of the gear, {load:.6g} N",
+            "gauge_{name}", "Strain of gauge {name} over the rotation of the gear, {load:said}",
             (Cell("t", of=lambda seen: seen.data), Every("gauge"), "stress", _ERROR), of="history",
         ),
         EveryLoad(
@@ -132,13 +132,13 @@ _SHEET = Sheet(
                 ),
                 RESIDUAL,
             ),
-            of="history", under="{load:.5g} N",
+            of="history", under="{load:said}",
         ),
         Chart(
             "gauge_places_{name}", "Peak strain over the place of gauge {name}",
             "Gauge {name}: peak strain with the grid displaced along the fillet within the placement tolerance.",
             (Over("displacement", (Line("peak"),), marks=lambda _seen: (Mark("x", 0.0),)),),
-            of="places", under="{load:.5g} N",
+            of="places", under="{load:said}",
         ),
     ),
     answer=Answer(

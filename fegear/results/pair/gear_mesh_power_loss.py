@@ -236,7 +236,7 @@ _SHEET = Sheet(
                 _along_the_path("load", "blue"), _along_the_path("coefficient", "green"),
                 _along_the_path("power", "red"),
             ),
-            under="{asked.load:.5g} N, {asked.speed:.5g}",
+            under="{asked.load:said}, {asked.speed:.5g}",
         ),
         Chart(
             "tooth_loss_loads_{name}", "Gear mesh power loss of pair {name} over load",

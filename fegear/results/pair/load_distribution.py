@@ -164,7 +164,7 @@ _FIGURES = (
                 "lines.z", panel={"height": 1.4},
             ),
         ),
-        of="plane", under="{load:.5g} N",
+        of="plane", under="{load:said}",
     ),
     Chart(
         "load_over_face_{name}", _FACE_TITLE,
@@ -186,7 +186,7 @@ _FIGURES = (
                 "found.over_face", options={"zero": True},
             ),
         ),
-        of="over_face", under="{load:.5g} N",
+        of="over_face", under="{load:said}",
     ),
     Chart(
         "load_over_face_loads_{name}", "Load distribution over the face width of pair {name} for every load",

@@ -110,7 +110,7 @@ _SHEET = Sheet(
     nominal="history.at",
     tables=(
         Rows(
-            "load_sharing_{name}", _TITLE + ", {load:.6g} N",
+            "load_sharing_{name}", _TITLE + ", {load:said}",
             (Every("path"), Cell("corner", of="history"), Off("load", "history.load_error")), of="history.found",
         ),
         EveryLoad(

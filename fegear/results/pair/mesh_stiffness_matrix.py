@@ -60,7 +60,7 @@ def _over_pitch(quantity: str, *levels: Line) -> Over:
 
 
 #: Contact lines of the same stiffness everywhere, in the legend; the load that figures hold for.
-_EVEN, _UNDER = "uniformly stiff lines", "{d.flanks.nominal:.5g} N"
+_EVEN, _UNDER = "uniformly stiff lines", "{d.flanks.nominal:said}"
 
 
 def _check(scene: Scene, name: str) -> None:

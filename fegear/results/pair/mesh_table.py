@@ -72,7 +72,7 @@ def _what_even_steps_lose(seen: Seen) -> str:
 #: Of a result whose data have an `EvenMesh` as ``even``, None where none was asked for.
 MESH_TABLE = Rows(
     "mesh_table_{name}",
-    "Mesh of {name} over one tooth of the driver, {load:.6g} N",
+    "Mesh of {name} over one tooth of the driver, {load:said}",
     ("driver_angle", *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error"))),
     of="even",
     matlab=True,

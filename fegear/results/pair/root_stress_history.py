@@ -225,7 +225,7 @@ _VALUES = Each(
 _FIGURES = (
     Chart(
         "root_stress_history_{name}", "Root stress over the mesh cycle of pair {name}",
-        "Pair {name} at {load:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
+        "Pair {name} at {load:said}: fillet stress of one tooth; by finite elements its own load's and its "
         "neighbours' added. A to E: points of the path of contact. Largest tension {d.largest}.",
         (
             Over(
@@ -245,7 +245,7 @@ _FIGURES = (
                 "stress.tension", marks=lambda seen: (*path_marks(seen.data.pair), Mark("y", 0.0)),
             ),
         ),
-        of=lambda seen: seen.data.sources[0], under="{load:.5g} N",
+        of=lambda seen: seen.data.sources[0], under="{load:said}",
     ),
     Chart(
         "root_stress_over_face_{name}", "Root stress over the face width of pair {name}",
@@ -257,7 +257,7 @@ _FIGURES = (
                 title="{one.member} {one.gear}: {one.most:.4g}",
             ),
         ),
-        when="maps", under="{load:.5g} N",
+        when="maps", under="{load:said}",
     ),
 )  # fmt: skip
 

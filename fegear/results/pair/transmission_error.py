@@ -82,7 +82,7 @@ def _load_with_torque(seen: Seen) -> Axis:
 _TITLE = "Transmission error of {name} over one base pitch"
 _TABLES = (
     Rows(
-        "transmission_error_{name}", _TITLE + ", {load:.6g} N", (Every("pitch"), "te_error"), of="found",
+        "transmission_error_{name}", _TITLE + ", {load:said}", (Every("pitch"), "te_error"), of="found",
     ),
     Rows(
         "transmission_error_harmonics_{name}", "Harmonics of the transmission error of {name}",
@@ -127,7 +127,7 @@ _FIGURES = (
     Chart(
         "transmission_error_{name}", "Transmission error of pair {name}",
         "Pair {name}: loaded transmission error over one base pitch (Harris map of its loads), and mesh stiffness at "
-        "{load:.5g} N: mean {d.found.local_stiffness_mean:.4g} (tangent). Peak to peak "
+        "{load:said}: mean {d.found.local_stiffness_mean:.4g} (tangent). Peak to peak "
         "{d.found.te_peak_to_peak:.3g}, effective error A_e {d.found.te_effective:.3g}.",
         (
             Over(BASE_PITCH, (Line("te", each=LOADS),), marks=_marks),
@@ -162,9 +162,9 @@ _FIGURES = (
     Chart(
         "transmission_error_rotational_{name}", "Rotational harmonics of the transmission error of pair {name}",
         "Pair {name}: harmonics over the {d.found.cycles} base pitches until the same teeth mesh again, at "
-        "{load:.5g} N. Integers are mesh harmonics, the others are due to pitch deviations.",
+        "{load:said}. Integers are mesh harmonics, the others are due to pitch deviations.",
         (Over("mesh_order", (Line("amplitude", kind="stems"),), _AMPLITUDE),),
-        of="found.rotational_harmonics", under="{load:.5g} N",
+        of="found.rotational_harmonics", under="{load:said}",
     ),
 )  # fmt: skip
 _REMARKS = (

@@ -145,7 +145,7 @@ def _for_range(seen: Seen) -> Iterator[str]:
     yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
 
 
-_UNDER = "{d.load:.5g} N"
+_UNDER = "{d.load:said}"
 
 FLANK_DESIGN_SHEET = Sheet(
     of=FlanksShown,
@@ -241,7 +241,7 @@ FLANK_DESIGN_SHEET = Sheet(
         Chart(
             "flank_map_{name}", "Pair {name} over misalignment and load",
             "Pair {name}: transmission error, peak to peak, and K_Hβ over misalignment and load with each relief; "
-            "design load {d.load:.5g} N.",
+            "design load {d.load:said}.",
             (
                 _tiles("peak_to_peak", "peak to peak", "{one.relief}: transmission error", 0.0),
                 _tiles("face_load_factor", "K_{Hβ}", "{one.relief}: K_{{Hβ}}", 1.0),

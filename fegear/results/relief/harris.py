@@ -14,6 +14,7 @@ from fegear.contact.loaded_teeth import POSITIONS, LoadedTeeth
 from fegear.engine.declared import drawn
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import GearPair
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
@@ -127,7 +128,7 @@ class HarrisMap:
         """One for each load."""
         word, marked = f" ({self.word})" if self.load.size > 1 else "", None if self.present is None else False
         return tuple(
-            HarrisCurve(self.x, te, w, f"{w:.5g} N{word if w == self.at else ''}", w == self.at, marked)
+            HarrisCurve(self.x, te, w, f"{load_words(w)}{word if w == self.at else ''}", w == self.at, marked)
             for w, te in zip(self.load.tolist(), self.transmission_error, strict=True)
         )
 
@@ -149,7 +150,7 @@ OVER_ROLL = Over(
 _BESIDE_SLIDER = Chart(
     "slider_map_{name}",
     "Harris map of pair {name}",
-    "Pair {name}: transmission error over the mesh cycle for loads up to {d.greatest:.5g} N with the reliefs of the "
+    "Pair {name}: transmission error over the mesh cycle for loads up to {d.greatest:said} with the reliefs of the "
     "case, and peak-to-peak values; thick line and large point: present load.",
     (
         OVER_ROLL,
@@ -173,7 +174,7 @@ _BESIDE_SLIDER = Chart(
 HARRIS_CHART = Chart(
     "harris_map_{name}", "Harris map of pair {name}",
     "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
-    "wide: the design load, {d.load:.5g} N; grey: the range of torques of the design, if there is one.",
+    "wide: the design load, {d.load:said}; grey: the range of torques of the design, if there is one.",
     (OVER_ROLL,), views="maps",
 )  # fmt: skip
 

@@ -16,6 +16,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Map, Over
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Sheet
@@ -168,8 +169,8 @@ class ReliefChartData:
 
         found = [
             chart_of(
-                f"{load:.5g} N{' (nominal)' if load == self.pair.nominal else ''}", chart.effective_error[:, :, i],
-                self.limits,
+                load_words(load) + (" (nominal)" if load == self.pair.nominal else ""),
+                chart.effective_error[:, :, i], self.limits,
             )
             for i, load in sorted(enumerate(chart.loads.tolist()), key=lambda one: one[1] != self.pair.nominal)
         ]  # fmt: skip
@@ -299,7 +300,7 @@ CHART_SHEET = Sheet(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
                 "with minimum A_e for each amount; star: optimum for all loads, each in proportion, and dashed: within "
                 "10 % of it; diamonds: tip reliefs of the case. Dotted: "
-            ) + f"{seen.data.unit_words} at {seen.data.pair.nominal:.5g} N, {seen.said('{d.delta:.4g}')}.",
+            ) + f"{seen.data.unit_words} at {load_words(seen.data.pair.nominal)}, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
                     "chart.lengths",

@@ -146,7 +146,7 @@ _SHEET = Sheet(
     tables=(
         Rows(
             "relief_curves_{name}",
-            "Transmission error and load of a tooth pair of {name} for each relief, {load:.6g} N",
+            "Transmission error and load of a tooth pair of {name} for each relief, {load:said}",
             (
                 "amount", "length", "history.x", "history.driver_roll_angle",
                 Cell("history.transmission_error", name="te"), "history.load", "history.share",
@@ -172,7 +172,7 @@ _SHEET = Sheet(
                 _over_roll("transmission_error", Axis("transmission error", "um")),
                 _over_roll("load", Axis("load on the pair", "N", zero=True)),
             ),
-            under="{load:.5g} N",
+            under="{load:said}",
         ),
     ),
     settings={"reliefs": lambda seen: len(seen.data.curves) - 1},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.base.printed import percent
+from fegear.engine.sheet.load_words import load_words
 from fegear.results.relief.applied_design import EXACT, keys_of_design, short_keys
 from fegear.results.relief.relief_data import ReliefData
 
@@ -67,7 +68,7 @@ def what_it_leaves(results: Results, how: How) -> str:
     """What the reliefs leave of the transmission error, peak to peak, in a sentence or two."""
     data = _data(results)
     design = data.design
-    te, load = {label: one.peak_to_peak * 1e6 for label, one in design.te.items()}, f"{design.task.load:.5g} N"
+    te, load = {label: one.peak_to_peak * 1e6 for label, one in design.te.items()}, load_words(design.task.load)
     before = f"peak to peak ({te['no relief']:.3g} um without relief, at {load})"
     if how == "exact":
         left = "0 um" if te["designed"] < _NOTHING else f"{te['designed']:.3g} um"

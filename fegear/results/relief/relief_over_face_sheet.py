@@ -74,7 +74,7 @@ RELIEF_OVER_FACE_SHEET = Sheet(
         k_chart("profile_charts"),
         Chart(
             "relief_candidates_{name}", "Transmission error of pair {name} with and without relief",
-            "Pair {name}: remaining transmission error with each relief at the design load, {d.load:.5g} N.",
+            "Pair {name}: remaining transmission error with each relief at the design load, {d.load:said}.",
             (
                 Over(
                     BASE_PITCH,
@@ -87,7 +87,7 @@ RELIEF_OVER_FACE_SHEET = Sheet(
                     marks=lambda seen: pitch_marks(seen.data.data.pair, next(iter(seen.data.left.values())).x),
                 ),
             ),
-            under="{d.load:.5g} N",
+            under="{d.load:said}",
         ),
         HARRIS_CHART,
     ),

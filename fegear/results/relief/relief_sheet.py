@@ -304,7 +304,7 @@ def _neglected(seen: Seen) -> Iterator[str]:
     yield from design_remarks(seen.name, seen.data.data.neglected, seen.asked.effects, seen.asked.tolerance)
 
 
-_LEFT_CAPTION = "Pair {name}: remaining transmission error with each relief at the design load, {d.load:.5g} N."
+_LEFT_CAPTION = "Pair {name}: remaining transmission error with each relief at the design load, {d.load:said}."
 _DIAGONAL_CAPTION = (
     " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), applied to teeth with coupling."
 )
@@ -381,7 +381,7 @@ RELIEF_SHEET = Sheet(
         k_chart("profile_charts"),
         Chart(
             "relief_{name}", "Profile relief of pair {name}",
-            "Pair {name}: relief of both gears for {d.load:.5g} N over the active profile, and the load "
+            "Pair {name}: relief of both gears for {d.load:said} over the active profile, and the load "
             "of the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Grindable reliefs "
             "are tip reliefs only; a constant offset has no effect.",
             (
@@ -401,7 +401,7 @@ RELIEF_SHEET = Sheet(
                     of="table", marks="marked",
                 ),
             ),
-            columns=2, under="{d.load:.5g} N",
+            columns=2, under="{d.load:said}",
         ),
         Chart(
             "relief_points_{name}", "Loads, deflections and relief of pair {name}",
@@ -411,7 +411,7 @@ RELIEF_SHEET = Sheet(
                 _at_points("load"), _at_points("deflection"),
                 _at_points("relief", "relief from the minimum", si="above_least"),
             ),
-            when="points", under="{d.load:.5g} N",
+            when="points", under="{d.load:said}",
         ),
         Chart(
             "relief_candidates_{name}", "Transmission error of pair {name} with and without relief",
@@ -428,7 +428,7 @@ RELIEF_SHEET = Sheet(
                     marks=lambda seen: pitch_marks(seen.data.data.pair.pair, next(iter(seen.data.left.values())).x),
                 ),
             ),
-            under="{d.load:.5g} N",
+            under="{d.load:said}",
         ),
         HARRIS_CHART,
     ),

@@ -216,7 +216,7 @@ TOLERANCE_SHEET = Sheet(
                     marks=lambda seen: (_nominal_mark(seen), *_levels(seen)),
                 ),
             ),
-            when="any_result", views="distributed", view="{one.label}", under="{asked.load:.5g} N",
+            when="any_result", views="distributed", view="{one.label}", under="{asked.load:said}",
         ),
         Chart(
             "robustness_influences_{name}", "Influence of the deviations of pair {name}",
@@ -259,7 +259,7 @@ TOLERANCE_SHEET = Sheet(
                     ),
                 ),
             ),
-            when=lambda seen: seen.data.any_result and seen.data.tips, under="{asked.load:.5g} N",
+            when=lambda seen: seen.data.any_result and seen.data.tips, under="{asked.load:said}",
         ),
     ),
     remarks=(tolerance_remarks,),
