@@ -49,7 +49,7 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     if case.study is not None:
         yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:
-        yield "design.pair", case.design.pair, "spur pair"
+        yield "design.pair", case.design.pair, "pair"
     if case.fillet_design is not None:
         yield "fillet_design.pair", case.fillet_design.pair, "pair"
         yield "fillet_design.gear", case.fillet_design.gear, "gear"

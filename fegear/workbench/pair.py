@@ -159,7 +159,7 @@ class Pair(Described):
         design : Results
             Of `fegear.relief` for this pair.
         shape : {"designed", "linear", "parabolic"}
-            The relief of the tables, or the tip reliefs that a shop can grind.
+            The relief of the tables (plane teeth only), or the tip reliefs that a shop can grind.
 
         Returns
         -------
@@ -220,10 +220,12 @@ def _apart(names: tuple[str, str]) -> tuple[str, str]:
 
 def _relief(design: Results, pair: str, member: Member, label: str, shape: str) -> dict[str, Any]:
     """One gear's relief as a case file has it, in SI."""
-    if shape == "designed":
+    if shape == "designed" and f"relief_{label}" in design.tables:
         table = design.tables[f"relief_{label}"]
         places, removals = table.column("roll_angle").si.tolist(), table.column("relief").si.tolist()
         return {"table": {"roll_angles": places, "removals": removals}}
+    if f"grindable_{pair}" not in design.tables:  # teeth with a width
+        return _ground_over_face(design, pair, label, shape)
     ground = design.tables[f"grindable_{pair}"]
     rows = (ground["shape"] == shape) & (ground["gear"] == member)
     if not rows.any():
@@ -231,3 +233,18 @@ def _relief(design: Results, pair: str, member: Member, label: str, shape: str) 
         raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", f"choose from {known}")
     amount, start = (float(ground.column(key).si[rows][0]) for key in ("amount", "start_roll_angle"))
     return {"tip": {"amount": amount, "start_roll_angle": start, "shape": shape}}
+
+
+def _ground_over_face(design: Results, pair: str, label: str, shape: str) -> dict[str, Any]:
+    """One gear's tip relief of the grinding table, where the design has no relief by theory."""
+    from fegear.results.relief.applied_design import designs_of, keys_of_design
+
+    known = [one for one in designs_of(design.tables, pair) if one.endswith(" tip relief")]
+    chosen = f"{shape} tip relief"
+    if chosen not in known:
+        words = ", ".join(f'"{one.removesuffix(" tip relief")}"' for one in known)
+        remedy = f"choose from {words}" if words else "pass the result of fegear.relief"
+        raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", remedy)
+    driver, driven = design.scene.case.pair[pair].driver, design.scene.case.pair[pair].driven
+    keys = keys_of_design(design.tables, pair, (driver, driven), chosen)
+    return dict(keys[label.removeprefix(f"{pair}_")].get("relief", {}))

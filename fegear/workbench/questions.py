@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.drafts.answers import ends
 from fegear.case.reading import Scene, build_scene
 from fegear.workbench.gear import Gear
 from fegear.workbench.given import cache_of, table, taken, working_folder
@@ -84,6 +85,20 @@ def _loaded(
         return pair.document(**{key: given})
     radius = 1.0 if torque is None else pair.geometry.driver.base_radius
     return pair.document(loads=[in_si(one, dimension, key) / radius for one in several])
+
+
+def _designed_for(
+    pair: Pair, torque: Torque | Iterable[Torque] | Mapping[str, Any] | None, load: Force | Iterable[Force] | None
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """The pair's document under what it is designed for, and what ``[design]`` says of several loads."""
+    _one_load(pair, torque, load)
+    both = ends(torque) if isinstance(torque, str) else None
+    if both is not None:
+        torque = {"start": both[0], "stop": both[1], "count": 3}
+    if torque is not None and (isinstance(torque, Mapping) or listed(torque, "torque") is not None):
+        return pair.document(torques=torque), {}
+    several = load is not None and listed(load, "load") is not None
+    return _loaded(pair, torque, load), {"over": "torques"} if several else {}
 
 
 def stiffness_table(
@@ -307,8 +322,8 @@ def mesh_stiffness_revolution(
 def relief(
     pair: Pair,
     *,
-    torque: Torque | None = None,
-    load: Force | None = None,
+    torque: Torque | Iterable[Torque] | Mapping[str, Any] | None = None,
+    load: Force | Iterable[Force] | None = None,
     design: Mapping[str, Any] | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
@@ -318,11 +333,14 @@ def relief(
 ) -> Results:
     """The profile relief of both gears that leaves least transmission error under a load, and what a shop can grind.
 
+    Of teeth with a width, helical ones too, only what can be ground: tip reliefs.
+
     Parameters
     ----------
     pair : Pair
-    torque, load : torque or force
-        The load that the relief is made for.
+    torque, load : torque or force, or several
+        The load that the relief is made for. Several, or a range of torques, ``"120 to 320 N m"`` (both ends and the
+        middle) or ``{"start": "120 N*m", "stop": "320 N*m", "count": 5}``: what can be ground is designed for all.
     design : mapping, optional
         Keys of ``[design]`` of a case file: ``family``, ``peak``, ``grind``, ``metric``, ...
     effects, tolerance, neglected, progress, cache
@@ -331,10 +349,11 @@ def relief(
     Returns
     -------
     Results
-        Tables ``relief_<pair>_<gear>`` and ``grindable_<pair>``; `Pair.relieved` applies them.
+        Tables ``relief_<pair>_<gear>`` (plane teeth), ``grindable_<pair>`` and ``grinding_<pair>``; `Pair.relieved`
+        applies them.
     """
-    document = _loaded(pair, torque, load)
-    document["design"] = {"pair": pair.name, **table(design, "design")}
+    document, several = _designed_for(pair, torque, load)
+    document["design"] = {"pair": pair.name, **several, **table(design, "design")}
     return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache, neglected=neglected)
 
 

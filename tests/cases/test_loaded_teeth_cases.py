@@ -264,7 +264,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ('design.length="5 mm"',), "base pitches; must be at least 1"),
         ("mark_minimum_excitation", ('design.length="9.3731 mm"',), "times the maximum of.*choose at least 1.0"),
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
-        ("mark_minimum_excitation", ("design.pair=II",), "is not a spur pair of this case"),
+        ("mark_minimum_excitation", ("design.pair=II",), "is not a pair of this case"),
         ("mark_minimum_excitation", ("design.slope=2.5",), "must be between 0 and 2"),
         (
             "mark_minimum_excitation",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,9 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
 from fegear.workbench import questions
 from fegear.workbench.pair import Pair
 from fegear.workbench.results import Results
@@ -94,6 +98,53 @@ def test_reliefs_are_designed_for_the_pair_under_its_load(pair, asked):
     case = fegear.relief(pair, load="1 kN", design={"grind": ["linear"]}).case
     assert (case.results, case.design.pair, case.design.grind) == (["relief"], "I", ["linear"])
     assert case.pair["I"].load == 1000.0
+
+
+HELICAL = {"normal_module": "2.5 mm", "helix_angle": "18 deg", "face_width": "28 mm"}
+HELICAL_CASE = {
+    "results": ["relief"],
+    "gear": {
+        "pinion": {**HELICAL, "teeth": 23, "hand": "right"}, "wheel": {**HELICAL, "teeth": 71, "hand": "left"},
+    },
+    "effects": {"start": "described"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("torque", "in_case"),
+    [
+        ("320 N*m", {"torque": "320 N*m"}),
+        (["120 N*m", 220.0, "320 N*m"], {"torques": ["120 N*m", "220 N*m", "320 N*m"]}),
+        ({"start": "120 N*m", "stop": "320 N*m", "count": 3}, {"torques": ["120 N*m", "220 N*m", "320 N*m"]}),
+        ("120 to 320 N m", {"torques": ["120 N*m", "220 N*m", "320 N*m"]}),
+    ],
+)
+def test_reliefs_of_helical_pairs_are_those_of_the_case_file(asked, torque, in_case):
+    gears = (
+        fegear.Gear(z, hand=hand, name=name, **HELICAL)
+        for z, hand, name in ((23, "right", "pinion"), (71, "left", "wheel"))
+    )
+    scene = fegear.relief(fegear.Pair(*gears), torque=torque, neglected=True)
+    pair = {"driver": "pinion", "driven": "wheel", **in_case}
+    written = build_scene({**HELICAL_CASE, "pair": {"I": pair}}, "case", Path())
+    asked_for, of_case = (make_plan(one, STAGES).steps for one in (scene, written))
+    assert [step.task for step in asked_for] == [step.task for step in of_case]
+    for step in of_case:
+        ours, case_s = step.inputs(scene), step.inputs(written)
+        if step.task.stage != "relief-over-face":  # which holds what names its pair
+            assert repr(ours) == repr(case_s)
+            continue
+        assert ours.gears == case_s.gears == {"driver": "pinion", "driven": "wheel"}
+        assert (case_s.over is None) == ("torque" in in_case)
+        if case_s.over is not None:
+            assert ours.over.loads == pytest.approx(case_s.over.loads, rel=1e-12)
+
+
+def test_several_loads_are_a_range_of_the_design(pair, asked):
+    case = fegear.relief(pair, load=["1 kN", "2 kN"]).case
+    assert (case.design.over, case.pair["I"].loads) == ("torques", [1000.0, 2000.0])
+    only = fegear.relief(pair, load=["1 kN", "2 kN"], design={"over": "load"}).case
+    assert only.design.over == "load"
 
 
 def test_two_gears_turn_between_steady_torques_where_no_train_is_given(pair, monkeypatch):
