@@ -25,6 +25,7 @@ from fegear.design.tip_relief.search import (
     _even,
     _followed,
     _mirrored,
+    _of_every_region,
     scan,
     search,
 )
@@ -387,6 +388,18 @@ def test_metrics_of_harmonics_and_extremes():
 
 #: What searches found: teeth, power, metric; combinations, exact solutions, what is left at least [um]; numbers taken
 #: and where those of equally good reliefs begin and end, amounts in um and lengths over the path.
+def test_a_region_that_one_half_has_missed_is_begun_from_by_both():
+    """On some processors one half of the known reliefs had none of the far region: a band known to a third of itself."""
+    unit, outward = np.ones(4), np.concatenate([-np.eye(4), np.eye(4)])
+    near, far, other = np.full(4, 1.0), np.full(4, 3.0), np.full(4, 2.95)
+    begun = [np.tile(near, (8, 1)), np.concatenate([np.tile(near, (4, 1)), np.tile(far, (4, 1))])]
+    first, second = _of_every_region(begun, np.array([near, far, other]), outward, unit)
+    np.testing.assert_array_equal(first, np.concatenate([np.tile(near, (4, 1)), np.tile(other, (4, 1))]))
+    np.testing.assert_array_equal(second, begun[1])
+    close = [begun[0], begun[0] + 0.2]
+    np.testing.assert_array_equal(_of_every_region(close, close[1], outward, unit), close)
+
+
 SEARCHES = [
     (
         (24, 36), 1.0, "peak_to_peak", 50625, 905, 0.8388938182, (30.1577233, 0.307038304, 31.7317272, 0.322937665),
@@ -414,9 +427,9 @@ def test_the_course_of_searches(teeth, power, metric, count, solved, least, best
     np.testing.assert_allclose(found.best * per, best, rtol=1e-5)
     np.testing.assert_allclose(found.band * per, [low, high], rtol=1e-5)
     assert found.candidates == count
-    # Changes of 1e-16 to 1e-15 of the compliances move the steps by up to 13 % (like gears: 811 to 1035, what is left
-    # to 1e-12): extremes that tie are taken in another order.
-    assert found.evaluations == pytest.approx(solved, rel=0.15 if metric == "peak_to_peak" else 0.06)
+    # Changes of 1e-16 to 1e-15 of the compliances move the steps by up to 18 % (like gears: 811 to 1035, what is left
+    # to 1e-12; on another processor 1069 for 905): extremes that tie are taken in another order.
+    assert found.evaluations == pytest.approx(solved, rel=0.2 if metric == "peak_to_peak" else 0.06)
     assert found.starts == 64
     # Two searches from every other start agree, and so do two of each end; they are known to a thousandth of units.
     assert found.spread < 1e-8 * found.least

@@ -74,8 +74,8 @@ _LONGER = 0.01
 _RULE = np.array([1.0, -_LONGER, 1.0, -_LONGER])
 #: Removals that differ by less, in mean transmission errors, are equal: then the driver's counts.
 _EQUAL = 1e-6
-#: Valleys lie apart by more, in their units.
-_VALLEY = 0.1
+#: Valleys lie apart by more, in their units, and regions of equally good reliefs.
+_VALLEY, _REGION = 0.1, 0.3
 #: Gears are alike whose sizes and compliances differ by less, over these.
 _LIKE = 1e-9
 #: Positions beside changes of pairs, over the distance of the even ones.
@@ -351,6 +351,7 @@ def _among_equals(
     for some in (one if one.size else known for one in each):
         both = np.concatenate([some, _mirrored(some)]) if like else some
         begun.append(both[(both / unit @ outward.T).argmax(axis=0)])
+    begun = _of_every_region(begun, np.concatenate([known, _mirrored(known)]) if like else known, outward, unit)
     p, left, ends, ended, count = _ends_of(trials, fewest, begun, outward, allowed, limits)
     solved += count
     # An end that was still on its way may go on by twice as far again.
@@ -371,6 +372,32 @@ def _among_equals(
     apart = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
     error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, apart)
     return _Choice(p[best], float(left[best]), np.array([low.min(axis=0), high.max(axis=0)]), error), solved
+
+
+def _of_every_region(begun: list[Floats], known: Floats, outward: Floats, unit: Floats) -> list[Floats]:
+    """Let both searches of an end begin in a region of equals that lies far out, though one half has missed it.
+
+    What the halves differ by is doubt about how far a region goes; whether a region was in both is chance, which
+    round-off decides. Where others are known there, the one that had missed it begins from another of them.
+
+    Parameters
+    ----------
+    begun : list of two ndarray, shapes (8, 4)
+        Farthest out of either half, by direction.
+    known : ndarray, shape (B, 4)
+        Of both halves.
+    outward : ndarray, shape (8, 4)
+    unit : ndarray, shape (4,)
+    """
+    far = known / unit @ outward.T
+    reached = [np.einsum("dk,dk->d", one / unit, outward) for one in begun]
+    mended = [one.copy() for one in begun]
+    for direction in np.flatnonzero(np.abs(reached[0] - reached[1]) > _REGION):
+        behind = int(reached[0][direction] > reached[1][direction])
+        in_front = reached[1 - behind][direction]
+        there = np.flatnonzero(far[:, direction] > in_front - 0.5 * _REGION)
+        mended[behind][direction] = known[there[far[there, direction].argmin()]]
+    return mended
 
 
 def _ends_of(
