@@ -388,18 +388,6 @@ def test_metrics_of_harmonics_and_extremes():
 
 #: What searches found: teeth, power, metric; combinations, exact solutions, what is left at least [um]; numbers taken
 #: and where those of equally good reliefs begin and end, amounts in um and lengths over the path.
-def test_a_region_that_one_half_has_missed_is_begun_from_by_both():
-    """On some processors one half of the known reliefs had none of the far region: a band known to a third of itself."""
-    unit, outward = np.ones(4), np.concatenate([-np.eye(4), np.eye(4)])
-    near, far, other = np.full(4, 1.0), np.full(4, 3.0), np.full(4, 2.95)
-    begun = [np.tile(near, (8, 1)), np.concatenate([np.tile(near, (4, 1)), np.tile(far, (4, 1))])]
-    first, second = _of_every_region(begun, np.array([near, far, other]), outward, unit)
-    np.testing.assert_array_equal(first, np.concatenate([np.tile(near, (4, 1)), np.tile(other, (4, 1))]))
-    np.testing.assert_array_equal(second, begun[1])
-    close = [begun[0], begun[0] + 0.2]
-    np.testing.assert_array_equal(_of_every_region(close, close[1], outward, unit), close)
-
-
 SEARCHES = [
     (
         (24, 36), 1.0, "peak_to_peak", 50625, 905, 0.8388938182, (30.1577233, 0.307038304, 31.7317272, 0.322937665),
@@ -414,6 +402,18 @@ SEARCHES = [
         (30.2625505, 0.67127608, 30.3852747, 0.664763651), (32.9383021, 0.720990176, 33.1178351, 0.714066674),
     ),
 ]  # fmt: skip
+
+
+def test_a_region_that_one_half_has_missed_is_begun_from_by_both():
+    """On some processors one half of what is known has none of the far region: its band was known to a third."""
+    unit, outward = np.ones(4), np.concatenate([-np.eye(4), np.eye(4)])
+    near, far, other = np.full(4, 1.0), np.full(4, 3.0), np.full(4, 2.95)
+    begun = [np.tile(near, (8, 1)), np.concatenate([np.tile(near, (4, 1)), np.tile(far, (4, 1))])]
+    first, second = _of_every_region(begun, np.array([near, far, other]), outward, unit)
+    np.testing.assert_array_equal(first, np.concatenate([np.tile(near, (4, 1)), np.tile(other, (4, 1))]))
+    np.testing.assert_array_equal(second, begun[1])
+    close = [begun[0], begun[0] + 0.2]
+    np.testing.assert_array_equal(_of_every_region(close, close[1], outward, unit), close)
 
 
 @pytest.mark.parametrize(("teeth", "power", "metric", "count", "solved", "least", "best", "low", "high"), SEARCHES)
@@ -436,8 +436,9 @@ def test_the_course_of_searches(teeth, power, metric, count, solved, least, best
     known = 1e-3 * np.array([Trials(bench(e, 5, 6), np.array([LOAD]), power, metric).mean(), 1.0] * 2)
     assert (found.band_error >= known * (1.0 - 1e-12)).all()
     if metric == "peak_to_peak":
-        # Two searches of an end may be 1.8e-3 of the path apart after changes of 1e-16 of the compliances.
-        assert (found.band_error <= 2.0 * known).all()
+        # Two searches of an end may be 1.8e-3 of the path apart after changes of 1e-16 of the compliances, 6.7e-3 where
+        # one half of what is known had missed the far region.
+        assert (found.band_error <= 10.0 * known).all()
 
 
 @pytest.mark.dear
