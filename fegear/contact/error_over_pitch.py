@@ -180,6 +180,12 @@ class ErrorOverPitch(Brief):
         return np.array(self.loads)
 
     @property
+    @shows("deg", "rotation of the driver from where this tooth pair is at the pitch point, with its motion")
+    def driver_angle(self) -> Array:
+        """Of the rows, x over the base radius of the driver, shape (P,) [rad]."""
+        return self.x / self.pair.driver.base_radius
+
+    @property
     @shows("N.m", "driver torque at this load", label="torque on the driver", table="loads")
     def driver_torque(self) -> Array:
         """Under each load, shape (L,) [N m]."""

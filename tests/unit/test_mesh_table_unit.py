@@ -53,6 +53,20 @@ def test_its_means_are_those_of_the_curves(results):
     assert any("mesh_table_I has 500 equal steps" in remark for remark in results.remarks)
 
 
+def test_rows_of_the_curve_have_the_rotation_of_the_driver_from_the_pitch_point(results):
+    table = results.tables["transmission_error_I"]
+    angle, x = table.column("driver_angle").si, table.column("x").si
+    assert table.columns[-1].name == "driver_angle"  # behind those that were there
+    assert table.column("driver_angle").unit == "deg"
+    radius = 23 * 1.5e-3 * math.cos(math.radians(20.0))
+    np.testing.assert_allclose(angle, x / radius, rtol=1e-12, atol=1e-15)
+    assert np.ptp(angle) == pytest.approx(2.0 * math.pi / 23)
+    # Positive as the driver turns, towards its tip; `mesh_stiffness` counts from the first row.
+    for key, at in (("local_stiffness", results.mesh_stiffness), ("te", results.transmission_error)):
+        once = np.r_[np.diff(x) > 0.0, False] & np.r_[True, np.diff(x) > 0.0]
+        np.testing.assert_allclose(at(angle - angle[0])[once], table.column(key).si[once], rtol=1e-9)
+
+
 def test_stiffness_and_error_are_functions_of_the_drivers_rotation(results):
     (found,) = (one.data.found for task, one in results.outcomes.items() if task.stage == "transmission-error")
     table = results.tables["mesh_table_I"]

@@ -82,7 +82,8 @@ def _load_with_torque(seen: Seen) -> Axis:
 _TITLE = "Transmission error of {name} over one base pitch"
 _TABLES = (
     Rows(
-        "transmission_error_{name}", _TITLE + ", {load:said}", (Every("pitch"), "te_error"), of="found",
+        "transmission_error_{name}", _TITLE + ", {load:said}", (Every("pitch"), "te_error", "driver_angle"),
+        of="found",
     ),
     Rows(
         "transmission_error_harmonics_{name}", "Harmonics of the transmission error of {name}",
