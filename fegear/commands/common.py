@@ -81,6 +81,27 @@ Out = Annotated[Path | None, out_option("Output folder. Default: results/<case>.
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="No figures; tables, dataset and report only.")]
 
 
+def picture_kind(text: str) -> str:
+    """Format of pictures of an option; another is refused."""
+    from fegear.base.errors import InputError, shown
+    from fegear.output.draw_png import KINDS
+
+    if text not in KINDS:
+        raise InputError("--plots", shown(text), "is not a supported figure format", "choose png, svg or pdf")
+    return text
+
+
+Plots = Annotated[
+    str | None,
+    typer.Option(
+        "--plots",
+        metavar="FORMAT",
+        parser=picture_kind,
+        help="Format of the figures in plots/: png, svg or pdf; stress fields and 3D figures stay png. Default: png.",
+    ),
+]
+
+
 Scheduler = Annotated[
     str | None,
     typer.Option(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fegear.base.errors import InputError
 from fegear.commands.common import (
     INTERRUPTED,
     AsJson,
@@ -18,6 +19,7 @@ from fegear.commands.common import (
     NoPlots,
     Out,
     Overrides,
+    Plots,
     Quiet,
     Scheduler,
     Voice,
@@ -41,6 +43,7 @@ def run(
     wanted: Wanted = None,
     out: Out = None,
     no_plots: NoPlots = False,
+    plots: Plots = None,
     scheduler: Scheduler = None,
     cache: Annotated[
         bool,
@@ -61,16 +64,18 @@ def run(
     ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
+    if no_plots and plots is not None:
+        raise InputError("--plots", plots, "contradicts --no-plots", "remove one of them")
     run_case(
-        case, changes(overrides, wanted), out, Voice(quiet, as_json), scheduler=scheduler, plots=not no_plots,
-        cache=cache, with_fields=fields, only_needs=only_needs,
+        case, changes(overrides, wanted), out, Voice(quiet, as_json), scheduler=scheduler,
+        plots=not no_plots, kind=plots or "png", cache=cache, with_fields=fields, only_needs=only_needs,
     )  # fmt: skip
 
 
 def run_case(
     case: Path, asked: list[str], out: Path | None, voice: Voice, *, scheduler: str | None = None,
     workers: int | None = None, plots: bool = True, cache: bool = False, with_fields: bool = False,
-    only_needs: bool = False,
+    only_needs: bool = False, kind: str = "png",
 ) -> None:  # fmt: skip
     """Compute what a case asks for, write it and say it; what `run` and `size` have in common."""
     from fegear.output.picture_process import PictureProcess
@@ -81,14 +86,14 @@ def run_case(
         process = early.enter_context(PictureProcess()) if plots and not only_needs else None
         _run_case(
             case, asked, out, voice, early, process, start, scheduler=scheduler, workers=workers, cache=cache,
-            with_fields=with_fields, only_needs=only_needs, plots=plots,
+            with_fields=with_fields, only_needs=only_needs, plots=plots, kind=kind,
         )  # fmt: skip
 
 
 def _run_case(
     case: Path, asked: list[str], out: Path | None, voice: Voice, early: contextlib.ExitStack,
     process: PictureProcess | None, start: float, *, scheduler: str | None, workers: int | None, cache: bool,
-    with_fields: bool, only_needs: bool, plots: bool,
+    with_fields: bool, only_needs: bool, plots: bool, kind: str,
 ) -> None:  # fmt: skip
     from fegear.base.solution_cache import SolutionCache, cache_on_disk
     from fegear.case.reading import read_scene
@@ -122,7 +127,7 @@ def _run_case(
             watching = stack.enter_context(voice.watcher())
             stack.enter_context(early.pop_all())  # it ends before the folder that it draws into is moved
             drawing = (
-                Drawing(scratch / "plots", process, scene.name, scene.gears if with_fields else None)
+                Drawing(scratch / "plots", process, scene.name, scene.gears if with_fields else None, kind)
                 if process
                 else None
             )

@@ -20,6 +20,7 @@ class HasName(Protocol):
 
 
 T = TypeVar("T", bound=HasName)
+D = TypeVar("D")
 
 
 class Named(tuple[T, ...]):
@@ -49,6 +50,14 @@ class Named(tuple[T, ...]):
     def __contains__(self, key: object) -> bool:
         """Whether a name or a thing is among them."""
         return any(one.name == key for one in self) if isinstance(key, str) else super().__contains__(key)
+
+    @overload
+    def get(self, name: str) -> T | None: ...
+    @overload
+    def get(self, name: str, default: D) -> T | D: ...
+    def get(self, name: str, default: object = None) -> object:
+        """Return one by its name, or the default where there is none."""
+        return next((one for one in self if one.name == name), default)
 
     def keys(self) -> tuple[str, ...]:
         """Names, in order."""

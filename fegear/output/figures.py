@@ -67,6 +67,8 @@ class Drawing:
         Name that stands at the head of every picture.
     spatial : mapping of str to Gear, optional
         Gears whose plane fields are drawn in space, too, by the names of the fields.
+    kind : {"png", "svg", "pdf"}
+        Of pictures; stress fields and 3D figures are PNG, as the report embeds them.
 
     Attributes
     ----------
@@ -80,7 +82,9 @@ class Drawing:
         process: PictureProcess | None = None,
         case: str = "",
         spatial: Mapping[str, Gear] | None = None,
+        kind: str = "png",
     ) -> None:
+        self._kind = kind
         self._folder, self._process, self._case, self._spatial = folder, process, case, spatial or {}
         self.fields: list[FieldFile] = []
         self._begun: list[tuple[Task, Figure, Future[tuple[Picture, ...] | None] | None]] = []
@@ -100,7 +104,11 @@ class Drawing:
 
     def _send(self, task: Task, figure: Figure) -> None:
         # What a picture shows of a field is in its panels; the field itself stays here.
-        sent = self._process.draw(replace(figure, field=None), self._folder) if self._process else None
+        sent = (
+            self._process.draw(replace(figure, field=None), self._folder, self._kind_of(figure))
+            if self._process
+            else None
+        )
         self._begun.append((task, figure, sent))
 
     def finish(self, advance: Callable[[float], None]) -> tuple[list[Drawn], list[str]]:
@@ -129,7 +137,10 @@ class Drawing:
     def _drawn_here(self, figure: Figure) -> tuple[Picture, ...]:
         from fegear.output.draw_png import draw_pictures
 
-        return tuple(draw_pictures(figure, self._folder))
+        return tuple(draw_pictures(figure, self._folder, self._kind_of(figure)))
+
+    def _kind_of(self, figure: Figure) -> str:
+        return self._kind if figure.drawable_in_page else "png"
 
     @contextlib.contextmanager
     def _remarked(self) -> Iterator[None]:

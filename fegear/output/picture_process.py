@@ -47,12 +47,11 @@ class _Line:
     requests: IO[bytes]
     answers: IO[bytes]
 
-    def drawn(self, figure: Figure, folder: Path) -> Pictures:
+    def drawn(self, figure: Figure, folder: Path, kind: str = "png") -> Pictures:
         """Have a figure drawn; None if that fails."""
         try:
-            request = pickle.dumps(
-                (figure, folder)
-            )  # whole before it is sent: half of one would confuse the other side
+            # Whole before it is sent: half of one would confuse the other side.
+            request = pickle.dumps((figure, folder, kind))
             self.requests.write(request)
             self.requests.flush()
             return pickle.load(self.answers)  # noqa: S301  (our own process's answer)
@@ -93,17 +92,17 @@ class PictureProcess:
         for line in self._lines:
             line.close()
 
-    def draw(self, figure: Figure, folder: Path) -> Future[Pictures]:
-        """Begin to draw a figure into a folder; the pictures are None if it must be drawn here instead.
+    def draw(self, figure: Figure, folder: Path, kind: str = "png") -> Future[Pictures]:
+        """Begin to draw a figure into a folder, as ``png``, ``svg`` or ``pdf``; None if it must be drawn here instead.
 
         Whatever goes wrong there shows itself again, in its own words, when the figure is drawn here.
         """
-        return self._talk.submit(self._drawn, figure, folder)
+        return self._talk.submit(self._drawn, figure, folder, kind)
 
-    def _drawn(self, figure: Figure, folder: Path) -> Pictures:
+    def _drawn(self, figure: Figure, folder: Path, kind: str) -> Pictures:
         line = self._free.get()
         try:
-            return None if line is None else line.drawn(figure, folder)
+            return None if line is None else line.drawn(figure, folder, kind)
         finally:
             self._free.put(line)
 
@@ -174,16 +173,16 @@ def serve(*copy: int) -> None:
             os.close(end)
     with contextlib.suppress(EOFError, pickle.UnpicklingError, BrokenPipeError):  # until the other side ends
         while True:
-            figure, target = pickle.load(sys.stdin.buffer)  # noqa: S301  (from the process that started this one)
-            pickle.dump(_pictures(figure, target), answers)
+            figure, target, kind = pickle.load(sys.stdin.buffer)  # noqa: S301  (from the process that started this one)
+            pickle.dump(_pictures(figure, target, kind), answers)
             answers.flush()
     gc.freeze()
 
 
-def _pictures(figure: Figure, folder: Path) -> Pictures:
+def _pictures(figure: Figure, folder: Path, kind: str) -> Pictures:
     from fegear.output.draw_png import draw_pictures
 
     try:
-        return tuple(draw_pictures(figure, folder))
+        return tuple(draw_pictures(figure, folder, kind))
     except Exception:  # noqa: BLE001  (the other side draws it again and reports what is wrong)
         return None

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fegear.base.errors import MissingLibraryError
+from fegear.base.errors import InputError, MissingLibraryError
 from fegear.cli import program
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Curve, Surface
+from fegear.engine.figure.items import Curve, Surface, TriangleField
 from fegear.engine.figure.panel import Panel
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Task
@@ -151,6 +151,33 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
     assert result.exit_code == 0
     with pytest.raises(AssertionError, match="started"):
         CliRunner().invoke(program(), arguments, catch_exceptions=False)
+
+
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_figures_are_drawn_in_the_wanted_format_and_what_a_report_embeds_as_png(kind, process, tmp_path):
+    x = np.array([0.0, 1.0, 0.0])
+    field = Figure("field", "A field", "", (Panel(Axis("x"), Axis("y"), (
+        TriangleField(np.array([x, x[::-1]]), np.array([[0], [1], [2]]), x, 1.0, "stress", "MPa"),
+    )),))  # fmt: skip
+    for name, of in (("there", process), ("here", None)):
+        found, missing = pictures(Drawing(tmp_path / name, of, kind=kind), figure(), field)
+        assert [one.pictures[0].path.name for one in found] == [f"wave.{kind}", "field.png"]
+        assert missing == []
+    first, second = ((tmp_path / name / f"wave.{kind}").read_bytes() for name in ("there", "here"))
+    assert first == second
+    assert first.lstrip().startswith(b"<?xml" if kind == "svg" else b"%PDF")
+
+
+def test_the_command_takes_a_format_and_refuses_others(tmp_path):
+    arguments = ["run", str(CASE), *QUICK, "--out", str(tmp_path / "out")]
+    assert CliRunner().invoke(program(), [*arguments, "--plots", "svg"], catch_exceptions=False).exit_code == 0
+    assert {path.suffix for path in (tmp_path / "out" / "plots").iterdir()} == {".svg"}
+    for more, said in (
+        (["--plots", "gif"], "is not a supported figure format; choose png, svg or pdf"),
+        (["--plots", "svg", "--no-plots"], "contradicts --no-plots"),
+    ):
+        with pytest.raises(InputError, match=said):
+            CliRunner().invoke(program(), [*arguments, *more], catch_exceptions=False)
 
 
 def test_none_outlives_a_killed_parent_nor_complains(tmp_path):

@@ -54,6 +54,14 @@ def test_type_checkers_know_the_names_of_the_top():
     assert {*typed, "__version__"} == set(fegear.__all__)
 
 
+def test_results_are_had_by_name_or_a_default(found):
+    for named in (found.values, found.tables, found.figures):
+        name = named.keys()[0]
+        assert named.get(name) is named[name]
+        assert named.get("no such thing") is None
+        assert named.get("no such thing", 7.0) == 7.0
+
+
 def test_importing_fegear_loads_none_of_its_own_packages():
     probe = (
         "import sys, fegear; dir(fegear);"

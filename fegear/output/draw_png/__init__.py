@@ -39,6 +39,10 @@ _SETTINGS = {
 }
 
 
+#: Formats of pictures, the usual one first.
+KINDS = ("png", "svg", "pdf")
+
+
 @dataclass(frozen=True, slots=True)
 class Picture:
     """A picture on disk and the sentence below it in the report."""
