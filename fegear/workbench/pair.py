@@ -178,7 +178,10 @@ class Pair(Described):
         labels = table_names(design.scene, self.name)
         reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
         driver, driven = (
-            Gear.of(name, {**gear.keys, "relief": relief})
+            Gear.of(
+                name,
+                {**{k: v for k, v in gear.keys.items() if k != "relief"}, **({"relief": relief} if relief else {})},
+            )
             for name, gear, relief in zip(_apart(self.names), (self.driver, self.driven), reliefs.values(), strict=True)
         )
         keys = {key: value for key, value in self.keys.items() if key != "compliance"}
@@ -239,12 +242,13 @@ def _ground_over_face(design: Results, pair: str, label: str, shape: str) -> dic
     """One gear's tip relief of the grinding table, where the design has no relief by theory."""
     from fegear.results.relief.applied_design import designs_of, keys_of_design
 
-    known = [one for one in designs_of(design.tables, pair) if one.endswith(" tip relief")]
+    tables = {table.name: table for table in design.tables}
+    known = [one for one in designs_of(tables, pair) if one.endswith(" tip relief")]
     chosen = f"{shape} tip relief"
     if chosen not in known:
         words = ", ".join(f'"{one.removesuffix(" tip relief")}"' for one in known)
         remedy = f"choose from {words}" if words else "pass the result of fegear.relief"
         raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", remedy)
     driver, driven = design.scene.case.pair[pair].driver, design.scene.case.pair[pair].driven
-    keys = keys_of_design(design.tables, pair, (driver, driven), chosen)
+    keys = keys_of_design(tables, pair, (driver, driven), chosen)
     return dict(keys[label.removeprefix(f"{pair}_")].get("relief", {}))

@@ -85,6 +85,18 @@ def test_what_is_left_is_told(outcome):
 
 
 @pytest.mark.long
+def test_its_answer_says_what_to_grind_what_theory_leaves_and_what_the_robust_one_is_chosen_by(outcome):
+    grind, exact, robust = outcome.answer.sentences
+    assert grind.startswith("Pair I: grind ")
+    assert grind.endswith("µm at 52.16 N m, peak to peak.")
+    assert exact.startswith("Pair I: the exact topography leaves ")
+    assert exact.endswith("µm at 52.16 N m.")
+    left = value(outcome, "robust.te_mean_over_scatter").value
+    assert robust.startswith(f"Pair I: the robust modification has the minimum mean over the scatter: {left:.2g} µm")
+    assert not any("keys of the gears" in said for said in outcome.answer.sentences)
+
+
+@pytest.mark.long
 def test_the_map_holds_the_design_load(outcome):
     rows = columns(outcome, "flank_map_I")
     assert set(rows["load [N]"].tolist()) == {900.0, 1800.0}

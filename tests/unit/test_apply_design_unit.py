@@ -201,9 +201,31 @@ def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
     ]
     found = keys_of_design({"grinding_I": Table("grinding_I", tuple(columns))}, "I", ("p", "w"))
     wanted = tomllib.loads("\n".join(keys_of(relief, pair, names)))["gear"]
-    assert numbers(found) == pytest.approx(numbers(wanted), rel=1e-6)
+    kept, exact = numbers(found), numbers(wanted)
+    assert kept.keys() == exact.keys()
+    for key, number in kept.items():  # as a shop reads them, and radii to a micron
+        step = 1e-3 if key.endswith("radius") else 1e-2
+        assert number == pytest.approx(exact[key], abs=0.5 * step + 1e-5), key
+        assert number == pytest.approx(round(number / step) * step, abs=1e-9), key
     assert rows[0].length == pytest.approx(3e-3)
     assert rows[1].length_tolerance == pytest.approx(0.2e-3)
+
+
+@pytest.mark.parametrize(
+    ("amount", "error", "written"),
+    [
+        (12.72513e-6, None, ("12.73 um", "33.211 mm")),
+        (0.272513e-6, None, ("0.273 um", "33.2112 mm")),  # of small gears as much of the amount is lost
+        (12.72513e-6, 0.02e-6, ("12.72513 um", "33.2111725 mm")),  # the design states its errors, and is kept
+    ],
+)
+def test_amounts_are_rounded_where_their_effect_is_below_the_error(amount, error, written):
+    row = {**tip("p", amount, 66.422345e-3, 68.5e-3), "amount_error": error}
+    table = grinding([row])
+    if error is not None:
+        table = Table("grinding_I", (*table.columns, Column("amount_error", np.array([error]), "um")))
+    found = keys_of_design({"grinding_I": table}, "I", ("p", "w"))["p"]["relief"]["tip"]
+    assert (found["amount"], found["start_radius"]) == written
 
 
 def numbers(keys, head=""):

@@ -8,10 +8,19 @@ import numpy as np
 import pytest
 
 from fegear.design.flanks import flank_design
-from fegear.design.flanks.flank_design import EXACT, ROBUST, UNRELIEVED, FlankDesignTask, design_flanks
+from fegear.design.flanks.flank_design import (
+    EXACT,
+    ROBUST,
+    UNRELIEVED,
+    FlankDesign,
+    FlankDesignTask,
+    FlankState,
+    design_flanks,
+)
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
 from fegear.design.flanks.scatter import NOMINAL, Scatter
+from fegear.results.relief import flank_design_sheet as sheet
 
 PITCH, START = 8e-3, -3e-3
 
@@ -34,7 +43,10 @@ class Trials:
         """What is tried later leaves less."""
         te = np.full((1, 3, np.size(self.loads)), float(np.sum(gap)))
         return SimpleNamespace(
-            te=te, peak_to_peak=np.full((1, np.size(self.loads)), 1.0 / next(TRIED)), gap=gap, of=self
+            te=te,
+            peak_to_peak=np.full((self.scatter.over_face.size, np.size(self.loads)), 1.0 / next(TRIED)),
+            gap=gap,
+            of=self,
         )
 
 
@@ -101,7 +113,7 @@ def steps(monkeypatch):
 
     def judge(gap):
         judged.append(gap(lines("judged")))
-        return SimpleNamespace(peak_to_peak=SimpleNamespace(value=10.0 - len(judged)))
+        return SimpleNamespace(peak_to_peak=SimpleNamespace(value=10.0 - len(judged), error=1e-3))
 
     plain = Trials(
         pair, SimpleNamespace(lines=lines("plain", START + PITCH * np.arange(3) / 3.0)), "apart", np.array([1.0])
@@ -195,3 +207,89 @@ def test_only_families_that_are_asked_for_are_searched_on_a_grid_that_is_given(s
     assert told == pytest.approx([0.3, 0.5, 0.7, 0.8])
     none, told = designed(steps, families=(), scatter=Scatter(np.array([-1e-6, 1e-6]), np.array([0.5, 0.5])))
     assert (none.found, told) == ({}, [0.3, 0.8])
+
+
+def left_by(*found):
+    """A design for one load by what each of its ways leaves, with which error: label, relief, value, error [um]."""
+
+    def state(label, relief, value, error):
+        judged = SimpleNamespace(peak_to_peak=SimpleNamespace(value=value * 1e-6, error=error * 1e-6))
+        at = np.full(2, value * 1e-6)
+        return FlankState(label, relief, np.zeros(1), judged, None, at, at, at)
+
+    none = state(UNRELIEVED, GroundRelief(), 0.9, 0.01)
+    alone = replace(task(), load=1200.0, loads=(1200.0,))
+    return FlankDesign(
+        alone, "station", np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros(1),
+        (none, none, *(state(*one) for one in found)), {label: "best" for label, *_ in found}, "grid",
+    )  # fmt: skip
+
+
+TIPS = GroundRelief(12.7e-6, 2.5e-3, 18.6e-6, 3e-3)
+WITH_LEAD = replace(TIPS, crowning=0.2e-6, slope=0.17e-6)
+
+
+def test_a_modification_more_has_to_leave_clearly_less():
+    alike = left_by(("profile", TIPS, 0.403, 0.015), ("profile-and-lead", WITH_LEAD, 0.402, 0.018))
+    assert (alike.best.label, alike.least.label) == ("profile", "profile-and-lead")
+    assert [s.modifications for s in alike.states] == [0, 0, 2, 4]
+    # More than 2 % is a gain, whatever the error; so is less than that, beyond the error.
+    for value, error in ((0.394, 0.015), (0.400, 0.002)):
+        clear = left_by(("profile", TIPS, 0.403, error), ("profile-and-lead", WITH_LEAD, value, error))
+        assert clear.best is clear.least
+        assert clear.best.label == "profile-and-lead"
+    # Of equally many modifications the one that leaves least; what would take more is never chosen for more.
+    fewer = left_by(
+        ("lead", TIPS, 0.4, 0.02), ("profile", TIPS, 0.401, 0.02), ("profile-and-lead", WITH_LEAD, 0.403, 0.02)
+    )
+    assert fewer.best.label == "lead"
+
+
+def test_under_several_loads_the_share_of_the_error_counts():
+    design = left_by(("profile", TIPS, 0.403, 0.015), ("profile-and-lead", WITH_LEAD, 0.402, 0.018))
+    over = replace(design, task=replace(design.task, loads=(600.0, 1200.0)), states=tuple(
+        replace(s, over_peak_to_peak=np.array([0.3, 1.0]) * s.judged.peak_to_peak.value) for s in design.states
+    ))  # fmt: skip
+    assert over.error_of(over.best) == pytest.approx(0.015e-6)
+    worse_below = replace(over.states[2], over_peak_to_peak=np.array([0.21e-6, 0.403e-6]))
+    assert replace(over, states=(*over.states[:2], worse_below, over.states[3])).best.label == "profile-and-lead"
+
+
+def sentences(of, design, torque, over=None, robust=None):
+    """What is said of a design whose driver has a base radius of 100 mm; pair I."""
+    states = {s.label: s for s in design.states}
+    over_range = {
+        label: SimpleNamespace(torque=np.array(torque), peak_to_peak=np.array((over or {}).get(label, [0.0])))
+        for label in states
+    }
+    pair = SimpleNamespace(driver=SimpleNamespace(base_radius=0.1))
+    data = SimpleNamespace(design=design, over_range=over_range, load=design.task.load, grinding=(),
+                           data=SimpleNamespace(pair=pair))  # fmt: skip
+    return list(of(SimpleNamespace(name="I", data=data)))
+
+
+def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_modifications_are_ground():
+    design = left_by(("profile", TIPS, 0.403, 0.015), ("profile-and-lead", WITH_LEAD, 0.402, 0.018))
+    exact = replace(design.exact, label=EXACT, judged=SimpleNamespace(peak_to_peak=SimpleNamespace(value=0.04e-6)))
+    design = replace(design, states=(design.states[0], exact, *design.states[2:]))
+    assert sentences(sheet._exact, design, [120.0]) == [
+        "Pair I: the exact topography leaves 0.04 of 0.9 µm at 120 N m."
+    ]
+    over = {UNRELIEVED: [0.353e-6, 0.9e-6], EXACT: [0.386e-6, 0.04e-6]}
+    assert sentences(sheet._exact, design, [45.0, 120.0], over) == [
+        (
+            "Pair I: the exact topography leaves 0.04 of 0.9 µm at 120 N m, but 0.386 µm at 45 N m, more than without "
+            "relief (0.353 µm)."
+        )
+    ]
+    assert sentences(sheet._grind, design, [120.0]) == [
+        "Pair I: grind nothing: transmission error 0.9 -> 0.4 µm at 120 N m, peak to peak.",
+        (
+            "Pair I: profile-and-lead (4 modifications) leaves only 0.25 % less than profile (2), within the estimated "
+            "error."
+        ),
+    ]
+    robust = replace(design.best, label=ROBUST, over_mean=np.array([0.34e-6, 0.8e-6]))
+    scattered = replace(design, states=(*design.states, robust), found={**design.found, ROBUST: "best"})
+    (said,) = sentences(sheet._robust, scattered, [120.0, 320.0])
+    assert "at the worst torque in proportion to it: 0.8 µm at 320 N m (profile 0.4 µm), 0.34 µm at 120 N m" in said

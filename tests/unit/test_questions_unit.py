@@ -11,7 +11,10 @@ import pytest
 import fegear
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
+from fegear.engine.named import Named
 from fegear.engine.plan import make_plan
+from fegear.engine.table import Column as TableColumn
+from fegear.engine.table import Table as RunTable
 from fegear.results.catalogue import STAGES
 from fegear.workbench import questions
 from fegear.workbench.pair import Pair
@@ -232,6 +235,30 @@ def test_a_pair_takes_the_relief_of_its_design_and_keeps_its_names_and_solutions
     for wrong, shape in ((1, "designed"), (found, 3)):
         with pytest.raises(InputError):
             pair.relieved(wrong, shape)
+
+
+def test_tip_relief_of_a_pair_with_a_width_is_taken_from_its_grinding_table(pair, monkeypatch):
+    monkeypatch.setattr("fegear.workbench.pair.table_names", lambda scene, name: {
+        "driver": "I_pinion", "driven": "I_wheel",
+    })  # fmt: skip
+    found, columns = design_of(pair), {
+        "gear": (["pinion", "wheel", "pinion"], ""),
+        "design": (["linear tip relief"] * 2 + ["parabolic tip relief"], ""),
+        "modification": (["tip relief"] * 3, ""), "shape": (["linear", "linear", "parabolic"], ""),
+        "amount": ([12e-6, 18e-6, 20e-6], "um"), "start_diameter": ([61e-3, 101e-3, 60e-3], "mm"),
+        "end_diameter": ([65.9e-3, 104.9e-3, 65.9e-3], "mm"),
+    }  # fmt: skip
+    made = (TableColumn(name, np.array(values), unit) for name, (values, unit) in columns.items())
+    type(found).tables = Named([RunTable("grinding_I", tuple(made))])
+    ground = pair.relieved(found, "linear")
+    assert ground.driver.keys["relief"]["tip"]["start_radius"] == "30.5 mm"
+    assert ground.driven.keys["relief"]["tip"]["amount"] == "18 um"
+    curved = pair.relieved(found, "parabolic")
+    assert curved.driver.keys["relief"]["tip"]["shape"] == "parabolic"
+    assert "relief" not in curved.driven.keys  # nothing is ground there
+    for shape in ("cubic", "designed"):
+        with pytest.raises(InputError, match='choose from "linear", "parabolic"'):
+            pair.relieved(found, shape)
 
 
 def test_pairs_are_alike_where_they_are_described_alike(pair):

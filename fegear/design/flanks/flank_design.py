@@ -17,7 +17,7 @@ from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
-from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge
+from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
 from fegear.design.flanks.scatter import Scatter
 from fegear.design.flanks.topography import (
     FlankLoading,
@@ -36,6 +36,11 @@ from fegear.geometry.flank_modification import Topography
 from fegear.geometry.pair import Member
 
 UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
+
+#: A modification more has to leave less by this share at least, and by more than the error of what is left.
+_WORTH = 0.02
+#: Amounts below this are no modification [m].
+_NOTHING = 5e-9
 
 
 @dataclass(frozen=True)
@@ -97,6 +102,8 @@ class FlankState(ReadOnlyArrays):
         Over the misalignments and loads of the maps.
     over_peak_to_peak, over_first : ndarray, shape (L,)
         Peak-to-peak value and amplitude of the first harmonic at each of the task's loads, aligned as given [m].
+    over_mean : ndarray, shape (L,)
+        Mean of the peak-to-peak value over the scatter at each of these loads [m].
     """
 
     label: str
@@ -106,6 +113,14 @@ class FlankState(ReadOnlyArrays):
     mapped: Tried
     over_peak_to_peak: Array
     over_first: Array
+    over_mean: Array
+
+    @property
+    def modifications(self) -> int:
+        """How many a shop has to grind: amounts, of both gears."""
+        relief = self.relief or GroundRelief()
+        amounts = (relief.driver_tip, relief.driven_tip, relief.crowning, relief.end_relief, relief.slope, relief.bias)
+        return sum(abs(amount) > _NOTHING for amount in amounts)
 
 
 @dataclass(frozen=True)
@@ -155,9 +170,26 @@ class FlankDesign(ReadOnlyArrays):
         return tuple(state for state in self.states if state.label == ROBUST)
 
     @property
-    def best(self) -> FlankState:
+    def least(self) -> FlankState:
         """What can be ground and leaves the least, aligned as given: at the design load, or by the worst of several."""
         return min((s for s in self.states if s.label in self.found and s.label != ROBUST), key=self.left_by)
+
+    @property
+    def best(self) -> FlankState:
+        """The one to be ground: `least`, or one of fewer modifications that leaves no more within its error."""
+        least = self.least
+        left = self.left_by(least)
+        like = [
+            s for s in self.states
+            if s.label in self.found and s.label != ROBUST and s.modifications <= least.modifications
+            and self.left_by(s) - left <= min(_WORTH * left, max(self.error_of(s), self.error_of(least)))
+        ]  # fmt: skip
+        return min(like, key=lambda s: (s.modifications, self.left_by(s)))
+
+    def error_of(self, state: FlankState) -> float:
+        """Of `left_by` [m]; under several loads with the share of the value that it has at the design load."""
+        ripple = state.judged.peak_to_peak
+        return ripple.error if ripple.value == 0.0 else ripple.error / ripple.value * self.left_by(state)
 
     def left_by(self, state: FlankState) -> float:
         """Peak-to-peak value that a way leaves: at the design load, or by the worst of several in proportion [m]."""
@@ -276,9 +308,12 @@ def _state(
     over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
     mapped = replace(judge.plain, scatter=over, loads=np.array(task.map_loads))
     at_loads = over_loads.of_gap(gap(over_loads.known.lines))
+    mean = at_loads.peak_to_peak[0]
+    if task.scatter.over_face.size > 1:
+        mean = mean_over_scatter(over_loads, gap(over_loads.known.lines), task.deviation)
     te, phase = at_loads.te[0], 2j * np.pi * over_loads.known.lines.roll / here.pair.base_pitch
     first = 2.0 * np.abs(np.exp(-phase) @ (te - te.mean(axis=0))) / phase.size
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
-        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), at_loads.peak_to_peak[0], first,
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), at_loads.peak_to_peak[0], first, mean,
     )  # fmt: skip

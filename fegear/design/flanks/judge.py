@@ -140,6 +140,22 @@ def over_scatter(values: Array, percentile: float | None, off: float) -> Number:
     return Number(whole, _OF_FEWER * abs(found(slice(None, None, 2)) - whole) + off)
 
 
+def mean_over_scatter(trials: FlankTrials, gap: Array, deviation: float) -> Array:
+    """Mean peak-to-peak value over normally scattered misalignment, shape (L,) [m].
+
+    Parameters
+    ----------
+    trials : FlankTrials
+    gap : ndarray, shape (P, M)
+        That a relief leaves [m].
+    deviation : float
+        Standard deviation of the misalignment over the face [m].
+    """
+    every = Scatter(deviation * _LEVELS, np.full(_LEVELS.size, 1.0 / _LEVELS.size))
+    left = replace(trials, scatter=every).of_gap(gap).peak_to_peak
+    return np.array([over_scatter(values, None, 0.0).value for values in left.T])
+
+
 def flank_judge(
     flanks: FlankPair, coarse: Mapping[Member, FlankBody], apart: FlankGaps, load: float, deviation: float
 ) -> FlankJudge:

@@ -32,6 +32,8 @@ _GRINDING = (OF_FLANKS, OF_LEADS)
 _LEAD = {SLOPE: "slope", CROWNING: "crowning"}
 #: Flank modifications of a gear.
 _MODIFIED = ("relief", "lead", "bias", "topography")
+#: Decimals of an amount that is not rounded.
+_ALL = 9
 #: Sizes of gears are the same within this of themselves.
 _SAME = 1e-6
 
@@ -90,28 +92,30 @@ def keys_of_design(tables: Mapping[str, Table], pair: str, gears: tuple[str, str
     rows = [row for of in _GRINDING for row in _rows(tables, of, pair)]
     chosen = design or str(rows[0]["design"])
     found: Keys = {gear: {} for gear in gears}
+    rows = [row for row in rows if str(row["design"]) == chosen]
+    decimals = _decimals(rows)
     for row in rows:
-        if str(row["design"]) != chosen:
-            continue
         kind, keys, amount = str(row["modification"]), found[str(row["gear"])], float(row["amount"])
         if abs(amount) <= NOTHING:
             continue
         if kind == TIP:
-            keys["relief"] = {"tip": _tip(row)}
+            keys["relief"] = {"tip": _tip(row, decimals)}
         elif kind in _LEAD:
-            keys.setdefault("lead", {})[_LEAD[kind]] = _um(amount)
+            keys.setdefault("lead", {})[_LEAD[kind]] = _um(amount, decimals)
         elif kind == END:
-            keys.setdefault("lead", {})["end_relief"] = {"amount": _um(amount), "length": _mm(row["face_length"])}
+            length = _mm(row["face_length"], decimals)
+            keys.setdefault("lead", {})["end_relief"] = {"amount": _um(amount, decimals), "length": length}
         elif kind == BIAS:
-            keys["bias"] = _um(amount)
+            keys["bias"] = _um(amount, decimals)
     return found
 
 
-def _tip(row: Mapping[str, Any]) -> dict[str, str]:
+def _tip(row: Mapping[str, Any], decimals: int) -> dict[str, str]:
+    """Radii have a decimal more than lengths: a length on the path of contact grows by several times as much."""
     shape = str(row["shape"])
     return {
-        "amount": _um(row["amount"]), "start_radius": _mm(0.5 * row["start_diameter"]),
-        "at_radius": _mm(0.5 * row["end_diameter"]), **({} if shape == "linear" else {"shape": shape}),
+        "amount": _um(row["amount"], decimals), "start_radius": _mm(0.5 * row["start_diameter"], decimals + 1),
+        "at_radius": _mm(0.5 * row["end_diameter"], decimals + 1), **({} if shape == "linear" else {"shape": shape}),
     }  # fmt: skip
 
 
@@ -126,12 +130,23 @@ def _exact(table: Table) -> dict[str, list[str]]:
     }
 
 
-def _um(value: float) -> str:
-    return f"{value * 1e6:.7g} um"
+def _decimals(rows: list[dict[str, Any]]) -> int:
+    """Decimals of the amounts of a design [um]: two from 1 um on, so that rounding stays below the error of 3D pairs.
+
+    Designs of plane pairs, whose amounts have errors of their own, keep all.
+    """
+    most = max((abs(float(row["amount"])) for row in rows), default=0.0)
+    if most <= NOTHING or any(np.isfinite(row.get("amount_error", math.nan)) for row in rows):
+        return _ALL
+    return max(2, 2 - math.floor(math.log10(most * 1e6)))
 
 
-def _mm(value: float) -> str:
-    return f"{value * 1e3:.9g} mm"
+def _um(value: float, decimals: int) -> str:
+    return f"{round(value * 1e6, decimals):.7g} um"
+
+
+def _mm(value: float, decimals: int) -> str:
+    return f"{round(value * 1e3, decimals):.9g} mm"
 
 
 def applied_design(
@@ -210,7 +225,10 @@ def _leads(scene: Scene, tables: Mapping[str, Table], pair: str, keys: Keys) -> 
 def short_keys(scene: Scene, gear: str, keys: Any) -> Any:
     """Without the radius at which the amount of a tip relief applies, where it is the end of the involute."""
     tip = keys.get("tip") if isinstance(keys, dict) else None
-    if tip is None or tip["at_radius"] != _mm(scene.gears[gear].involute_tip_radius):
+    if tip is None:
+        return keys
+    written = tip["at_radius"].split()[0]
+    if tip["at_radius"] != _mm(scene.gears[gear].involute_tip_radius, max(len(written.partition(".")[2]), 3)):
         return keys
     return {"tip": {key: value for key, value in tip.items() if key != "at_radius"}}
 

@@ -286,16 +286,19 @@ class FlanksShown:
         return {
             state.label: LeftOverRange(
                 load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
-                state.over_first,
+                state.over_first, mean=state.over_mean if self.scattered else None,
             )
             for state in self.design.states
         }  # fmt: skip
 
     @cached_property
     def grinding(self) -> tuple[Grinding, ...]:
-        """What can be ground, the best first."""
+        """What can be ground: first what is to be, then by what is left."""
         design, found = self.design, self.design.found
-        ordered = sorted((state for state in design.states if state.label in found), key=design.left_by)
+        ordered = sorted(
+            (state for state in design.states if state.label in found),
+            key=lambda state: (bool(found) and state is not design.best, design.left_by(state)),
+        )  # fmt: skip
         return tuple(
             row
             for state in ordered

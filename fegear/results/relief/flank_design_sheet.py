@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from fegear.base.printed import figures
+import numpy as np
+
+from fegear.base.printed import figures, percent
 from fegear.contact.wide.lines import ContactLines
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
@@ -20,7 +22,12 @@ from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.design.flanks.flank_design import FlankState
     from fegear.engine.sheet.seen import Seen
+
+#: A transmission error below this is none [m].
+_NONE = 1e-12
 
 #: What is stated of every relief; the last three where misalignment scatters.
 _JUDGED = (
@@ -130,19 +137,78 @@ def _keys(seen: Seen) -> str:
     return f"Pair {asked.name}, {seen.one.label}: keys of the gears: {keys or 'none'}."
 
 
-def _for_range(seen: Seen) -> Iterator[str]:
-    """What the best modification to grind leaves from the largest to the smallest torque of a range."""
-    design, over = seen.data.design, seen.data.over_range
-    none, best = over[design.unrelieved.label], over[design.best.label]
-    if none.torque.size < 2:
-        return
-    words = [row.words for row in seen.data.grinding if row.design == design.best.label and row.words]
+def _left(seen: Seen, label: str) -> tuple[Array, Array]:
+    """Torques [N m] and what a way leaves under each [m], aligned as given: of a range, or at the design load."""
+    data = seen.data
+    if data.over_range[label].torque.size > 1:
+        return data.over_range[label].torque, data.over_range[label].peak_to_peak
+    state = next(state for state in data.design.states if state.label == label)
+    return np.array([data.load * data.data.pair.driver.base_radius]), np.array([state.judged.peak_to_peak.value])
+
+
+def _microns(size: float) -> str:
+    return figures(size * 1e6, 2)
+
+
+def _torque(torque: float) -> str:
+    return f"{figures(torque, 4)} N m"
+
+
+def _grind(seen: Seen) -> Iterator[str]:
+    """What to grind and what it leaves, from the largest to the smallest torque of a range; why no more is ground."""
+    design = seen.data.design
+    best, least = design.best, design.least
+    torque, none = _left(seen, design.unrelieved.label)
+    after = _left(seen, best.label)[1]
+    words = [row.words for row in seen.data.grinding if row.design == best.label and row.words]
     left = ", ".join(
-        f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
-        f"{figures(none.torque[i], 4)} N m"
-        for i in (-1, 0)
+        f"{_microns(none[i])} -> {_microns(after[i])} µm at {_torque(torque[i])}"
+        for i in dict.fromkeys(i % torque.size for i in (-1, 0))
     )
     yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
+    if least is not best:
+        gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
+        yield (
+            f"Pair {seen.name}: {least.label} ({least.modifications} modifications) leaves only {gain} less than "
+            f"{best.label} ({best.modifications}), within the estimated error."
+        )
+
+
+def _exact(seen: Seen) -> Iterator[str]:
+    """What the topography leaves at the design load, and where in a range it leaves more than no relief."""
+    design = seen.data.design
+    before, after = (state.judged.peak_to_peak.value for state in (design.unrelieved, design.exact))
+    at = _torque(seen.data.load * seen.data.data.pair.driver.base_radius)
+    said = f"Pair {seen.name}: the exact topography leaves {_microns(after)} of {_microns(before)} µm at {at}"
+    (torque, none), left = _left(seen, design.unrelieved.label), _left(seen, design.exact.label)[1]
+    worst = int(np.argmax(left / np.maximum(none, _NONE)))
+    if left[worst] > none[worst]:
+        said += (
+            f", but {figures(left[worst] * 1e6)} µm at {_torque(torque[worst])}, more than without relief "
+            f"({figures(none[worst] * 1e6)} µm)"
+        )
+    yield f"{said}."
+
+
+def _robust(seen: Seen) -> Iterator[str]:
+    """What the relief for scattered misalignment is chosen by, which is not what is stated at the design load."""
+    data, best = seen.data, seen.data.design.best
+
+    def means(state: FlankState) -> Array:
+        """Over the scatter at each torque [m]; at the design load as it is stated."""
+        return state.over_mean if several else np.array([state.judged.mean_over_scatter.value])
+
+    for state in data.design.robust:
+        torque = data.over_range[state.label].torque
+        several = torque.size > 1
+        mean, of_best = means(state), means(best)
+        torque = torque if several else _left(seen, state.label)[0]
+        left = ", ".join(
+            f"{_microns(mean[i])} µm at {_torque(torque[i])} ({best.label} {_microns(of_best[i])} µm)"
+            for i in dict.fromkeys(i % torque.size for i in (-1, 0))
+        )
+        worst = ", at the worst torque in proportion to it" if several else ""
+        yield f"Pair {seen.name}: the robust modification has the minimum mean over the scatter{worst}: {left}."
 
 
 _UNDER = "{d.load:said}"
@@ -250,9 +316,7 @@ FLANK_DESIGN_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        _for_range,
-        "Pair {name}: the exact topography leaves {v[exact_topography.te_peak_to_peak]} peak to peak.",
-        Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),
+        _grind, _exact, _robust,
         figure=lambda seen: seen.said(
             "relief_over_torque_{name}" if len(seen.data.design.task.loads) > 1 else "flank_topography_{name}"
         ),

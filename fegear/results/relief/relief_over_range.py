@@ -52,6 +52,10 @@ class LeftOverRange:
         name="te_peak_to_peak_max", default=None,
     )  # fmt: skip
     error: float | Array | None = None
+    mean: Array | None = shown(
+        "um", "peak-to-peak transmission error, mean over the scatter of misalignment",
+        name="te_mean_over_scatter", default=None,
+    )  # fmt: skip
 
     @property
     def allowed(self) -> Array:
@@ -176,6 +180,7 @@ OVER_RANGE = Rows(
             Off("peak_to_peak", "errors", name=lambda seen: f"te_peak_to_peak_{_key(seen)}"),
             Cell("most", name=lambda seen: f"te_peak_to_peak_max_{_key(seen)}", further="{key}"),
             Cell("first", name=lambda seen: f"te_first_harmonic_{_key(seen)}", further="{key}"),
+            Cell("mean", name=lambda seen: f"te_mean_over_scatter_{_key(seen)}", further="{key}"),
         ),
     ),
     of=_first, when="over_range", printed=True,
