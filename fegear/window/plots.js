@@ -65,10 +65,11 @@ const fegearPlots = (() => {
   }
   const plain = (text) => text.replace(/<[^>]*>/g, "");
 
+  const letter = () => (document.documentElement.classList.contains("large-type") ? 7.5 : 5.4); // about its width [px]
   function fitting(text, most) { // words from the end are left away, but for the unit
     const [, words, unit] = /^(.*?)\s*(\[[^\]]*\])?$/.exec(text), kept = words.split(" ");
     while (kept.length > 1 && kept.join(" ").length + (unit?.length ?? 0) > most) kept.pop();
-    while (kept.length > 1 && ["the", "of", "on", "from", "over", "one", "in"].includes(kept.at(-1))) kept.pop();
+    while (kept.length > 1 && (["the", "of", "on", "from", "over", "one", "in"].includes(kept.at(-1)) || kept.at(-1).endsWith("'s"))) kept.pop();
     return [...kept, unit].filter(Boolean).join(" ");
   }
 
@@ -178,7 +179,7 @@ const fegearPlots = (() => {
         }
       }
       const along = spec.layout[`xaxis${anchor(panel)}`]?.title?.text;
-      if (along) axes("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, fitting(plain(along), (x1 - x0 + 2 * ROOM.right) / 5.4));
+      if (along) axes("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, fitting(plain(along), (x1 - x0 + 2 * ROOM.right) / letter()));
       let last = -Infinity;
       for (const shape of spec.layout.shapes ?? []) {
         if (shape.xref !== `x${anchor(panel)}` || shape.x0 !== shape.x1) continue;

@@ -141,7 +141,8 @@ def test_a_slider_s_map_stays_until_the_load_is_beyond_twice_or_below_a_fiftieth
 
     def at_rest(load):
         teeth = SimpleNamespace(nominal=load)
-        results = SimpleNamespace(outcomes={Task("loaded-pair", "I"): SimpleNamespace(data=teeth),
+        results = SimpleNamespace(scene=SimpleNamespace(case=SimpleNamespace(pair={})),
+                                  outcomes={Task("loaded-pair", "I"): SimpleNamespace(data=teeth),
                                             Task("geometry", ""): SimpleNamespace(data=None)})  # fmt: skip
         (name,) = maps.at_rest(results)
         return name, asked[-1]
