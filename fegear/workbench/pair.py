@@ -223,11 +223,12 @@ def _apart(names: tuple[str, str]) -> tuple[str, str]:
 
 def _relief(design: Results, pair: str, member: Member, label: str, shape: str) -> dict[str, Any]:
     """One gear's relief as a case file has it, in SI."""
-    if shape == "designed" and f"relief_{label}" in design.tables:
+    names = list(design.tables.keys())
+    if shape == "designed" and f"relief_{label}" in names:
         table = design.tables[f"relief_{label}"]
         places, removals = table.column("roll_angle").si.tolist(), table.column("relief").si.tolist()
         return {"table": {"roll_angles": places, "removals": removals}}
-    if f"grindable_{pair}" not in design.tables:  # teeth with a width
+    if f"grindable_{pair}" not in names:  # teeth with a width
         return _ground_over_face(design, pair, label, shape)
     ground = design.tables[f"grindable_{pair}"]
     rows = (ground["shape"] == shape) & (ground["gear"] == member)
