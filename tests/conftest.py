@@ -134,8 +134,12 @@ def profile_of(config):
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_state(tmp_path_factory):
-    """What the window keeps beyond a crash stays among the tests: one of them left a case of its own to the user."""
+    """What the window keeps beyond a crash stays among the tests: one of them left a case of its own to the user.
+
+    So does what runs keep for later ones, above all what their tasks took: tests did change the user's forecasts.
+    """
     with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FEGEAR_CACHE", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("FEGEAR_STATE", str(tmp_path_factory.mktemp("state")))
         yield
 

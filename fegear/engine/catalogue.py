@@ -144,7 +144,10 @@ class Catalogue(Sequence[Stage]):
         return self._loaded[name]
 
     def table_of(self, name: str) -> str:
-        """Table of a case that describes what a stage is computed for; empty for gears and pairs."""
+        """Table of a case that describes what a stage is computed for; empty for gears and pairs.
+
+        Its name, or in brackets what a refusal says of it, where some such tables are not enough.
+        """
         return self._by_name[name].table
 
     def holds(self, stage: Stage) -> bool:

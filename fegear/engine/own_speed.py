@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -28,6 +27,8 @@ if TYPE_CHECKING:
 _FILE = "speed.json"
 #: Tasks of a stage that count: the last ones.
 _LAST = 8
+#: What no task is predicted to take [s], and how many times that it may take, beside a second, to count.
+_LONGEST, _SLOWEST = 1e7, 30.0
 
 #: Seconds predicted and seconds taken.
 Task = tuple[float, float]
@@ -77,12 +78,14 @@ def own_speed(folder: Path | None = None) -> OwnSpeed:
         if kept["version"] != fegear.__version__:
             return OwnSpeed()
         found = {str(stage): tuple((float(p), float(t)) for p, t in tasks) for stage, tasks in kept["tasks"].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         return OwnSpeed()
-    right = all(
-        math.isfinite(p) and math.isfinite(t) and p > 0.0 and t > 0.0 for tasks in found.values() for p, t in tasks
-    )
-    return OwnSpeed(found) if right else OwnSpeed()
+    return OwnSpeed(found) if all(_credible(*task) for tasks in found.values() for task in tasks) else OwnSpeed()
+
+
+def _credible(predicted: float, taken: float) -> bool:
+    """Whether a task tells how fast a machine is: one that stood or swapped tells what no other will take."""
+    return 0.0 < predicted < _LONGEST and 0.0 < taken < _SLOWEST * predicted + 1.0
 
 
 def remember(results: Results, predicted: Sequence[float | None], folder: Path | None = None) -> None:
@@ -99,7 +102,7 @@ def remember(results: Results, predicted: Sequence[float | None], folder: Path |
     place, tasks = folder or cache_folder(), []
     for step, seconds in zip(results.plan.steps, predicted, strict=True):
         timing = results.timings[step.task]
-        if seconds and timing.processor > 0.0 and not (timing.recalled or timing.from_disk):
+        if seconds and _credible(seconds, timing.processor) and not (timing.recalled or timing.from_disk):
             tasks.append((step.stage.name, seconds, timing.processor))
     if not tasks:
         return

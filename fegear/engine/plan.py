@@ -183,7 +183,7 @@ def _refuse_unknown(known: Catalogue, result: str, by_result: Collection[str]) -
 
 def _missing(tables: Sequence[str]) -> str:
     """What to add to a case in which none of these tables is, by which stages of one result are described."""
-    named = [f"[{table}]" for table in dict.fromkeys(tables) if table]
+    named = [table if table.startswith("[") else f"[{table}]" for table in dict.fromkeys(tables) if table]
     return f"add {' or '.join(named)}" if named else "add the required gear or pair"
 
 

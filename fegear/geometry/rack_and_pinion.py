@@ -91,8 +91,11 @@ class RackAndPinion:
                 f"set distance to at least {(self.distance - self.backlash / 2 / self._slope) * 1e3:.6g} mm",
             )  # fmt: skip
         if self.contact_ratio < 1.0:
-            raise GeometryError("contact_ratio", f"{self.contact_ratio:.6g}", "is below 1: contact is interrupted",
-                                "reduce distance, or increase the addendum")  # fmt: skip
+            raise GeometryError(
+                "distance", f"{self.distance * 1e3:.6g} mm",
+                f"gives a contact ratio of {self.contact_ratio:.4g}, below 1: contact is interrupted",
+                "reduce distance, or increase the addendum",
+            )  # fmt: skip
 
     @property
     def _slope(self) -> float:

@@ -78,6 +78,12 @@ class RackTooth:
                                 "gives the rack a sharp corner at its root", "0.25 or 0.38 is usual")  # fmt: skip
         width = 2.0 * float(self.half_thickness(self.tip_height))
         if width < _SMALLEST:
+            if self._pointed < _SMALLEST:
+                most = 0.5 * math.pi - 2.0 * _SMALLEST * math.tan(self.pressure_angle)
+                raise GeometryError(
+                    "thickness_allowance", f"{self.thickness_allowance:.6g} modules",
+                    "gives rack teeth that are pointed below their reference line", f"use less than {most:.4f} modules",
+                )  # fmt: skip
             raise GeometryError("rack.addendum", self.rack.addendum, "gives pointed rack teeth",
                                 f"use less than {self._pointed:.4f} modules")  # fmt: skip
         if not (self.flank_end > self.form_height and self._land_start > 0.5 * _SMALLEST):
@@ -86,7 +92,7 @@ class RackTooth:
             if size == 0.0:
                 raise GeometryError("rack.addendum", self.rack.addendum, "leaves no straight flank",
                                     "increase it, or reduce rack.tip_radius")  # fmt: skip
-            raise GeometryError(key, size, "is too large for the tip of the rack", "reduce it")
+            raise GeometryError(key, f"{size:.6g} modules", "is too large for the tip of the rack", "reduce it")
 
     @property
     def pressure_angle(self) -> float:

@@ -117,11 +117,7 @@ def _started() -> tuple[subprocess.Popen[bytes] | None, list[_Line]]:
     if not _pays() or not sys.executable or getattr(sys, "frozen", False):
         return None, []
     # Only on Linux may a process that has loaded its libraries be copied, whatever these are.
-    (its_requests, requests), (answers, its_answers) = (
-        (os.pipe(), os.pipe()) if sys.platform == "linux" else ((-1, -1), (-1, -1))
-    )
-    its = tuple(end for end in (its_requests, its_answers) if end >= 0)
-    lines = [_Line(os.fdopen(requests, "wb"), os.fdopen(answers, "rb"))] if its else []
+    its, lines = _line_to_copy() if sys.platform == "linux" else ((), [])
     try:
         child = subprocess.Popen(  # noqa: S603  (this Python, running this program)
             [sys.executable, "-c", _PROGRAM, " ".join(map(str, its)), *sys.path],
@@ -140,6 +136,21 @@ def _started() -> tuple[subprocess.Popen[bytes] | None, list[_Line]]:
         for end in its:
             os.close(end)
     return child, [_Line(child.stdin, child.stdout), *lines]  # type: ignore[arg-type]  # both are pipes
+
+
+def _line_to_copy() -> tuple[tuple[int, ...], list[_Line]]:
+    """The ends of a copy, its requests and its answers, and the line to it; nothing where no pipe is left."""
+    try:
+        its_requests, requests = os.pipe()
+    except OSError:
+        return (), []
+    try:
+        answers, its_answers = os.pipe()
+    except OSError:
+        for end in (its_requests, requests):
+            os.close(end)
+        return (), []
+    return (its_requests, its_answers), [_Line(os.fdopen(requests, "wb"), os.fdopen(answers, "rb"))]
 
 
 def _end(child: subprocess.Popen[bytes]) -> None:
@@ -166,9 +177,10 @@ def serve(*copy: int) -> None:
 
     warm_up()
     if copy:
-        if os.fork() == 0:  # it holds no end of a pipe that the other process reads or writes
-            os.dup2(copy[0], 0)
-            os.dup2(copy[1], answers.fileno())
+        with contextlib.suppress(OSError):  # where no copy is to be had, this process draws what it can
+            if os.fork() == 0:  # it holds no end of a pipe that the other process reads or writes
+                os.dup2(copy[0], 0)
+                os.dup2(copy[1], answers.fileno())
         for end in copy:
             os.close(end)
     with contextlib.suppress(EOFError, pickle.UnpicklingError, BrokenPipeError):  # until the other side ends

@@ -27,6 +27,8 @@ from fegear.base.effects import (
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Need, Stage
 
+#: What results on cracks need.
+_CRACKED = "[[gear.NAME.odd_tooth]] with crack, counted by effects.odd_teeth"
 #: Effects on loads in mesh and on root stress under them, of results on root stress.
 _STRESS, _PLANE_STRESS = (*PAIR_EFFECTS, *ROOT_EFFECTS), (*PLANE_EFFECTS, *ROOT_EFFECTS)
 #: Effects on root stress under forces that are given by a train.
@@ -70,7 +72,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("odd-tooth-stiffness", "gear.odd_tooth_stiffness.ODD_TOOTH_STIFFNESS",
               "Stiffness of cracked teeth", ("odd-tooth-stiffness",),
               "stiffness of a cracked tooth and of its neighbours along the flank",
-              effects=(ODD_TEETH.name,), internal=True, table="gear.NAME.odd_tooth",
+              effects=(ODD_TEETH.name,), internal=True, table=_CRACKED,
               requires=(Need(ODD_TEETH.name, "its teeth are what the result is about"),)),
         Entry("crosscheck", "gear.crosscheck.CROSSCHECK", "Analytical formulas compared with FE", ("crosscheck",),
               "formulas for stiffness and root stress (ISO 6336, AGMA 908, ...) compared with finite elements",
@@ -102,11 +104,11 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("stress-intensity", "pair.stress_intensity.STRESS_INTENSITY",
               "Stress intensity of cracked teeth", ("stress-intensity",),
               "stress intensity factors K_I, K_II of cracks over the mesh under shared load",
-              effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True, table="gear.NAME.odd_tooth",
+              effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True, table=_CRACKED,
               requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
         Entry("crack-path", "pair.crack_path.CRACK_PATH", "Growth of cracks", ("crack-path",),
               "path of cracks through tooth or rim, load cycles, stiffness on the way",
-              effects=(*PLANE_EFFECTS, ODD_TEETH.name), table="gear.NAME.odd_tooth",
+              effects=(*PLANE_EFFECTS, ODD_TEETH.name), table=_CRACKED,
               requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
         Entry("gauge", "pair.gauge.GAUGE", "Strain of gauges in root fillets", ("gauge",),
               "strain and stress under strain gauges over the rotation; comparison with measured strain",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
-from fegear.case.built.rack import rack_inputs, relieved_parts
+from fegear.case.built.rack import drawn_rack, rack_inputs, relieved_parts
 from fegear.case.rack import RackAndPinionPart
 from fegear.case.reading import build_scene
 from fegear.workbench.gear import Described, Gear
@@ -67,7 +67,7 @@ class Rack(Described):
         given = {"teeth": teeth, "reference_height": reference_height, **keys}
         self._keys: dict[str, Any] = taken(given, f"rack.{self.name}")
         self.known = SolutionCache()
-        self.geometry  # noqa: B018  (a rack that cannot be is refused where it is described)
+        drawn_rack(self._scene, self.name)  # a rack, or a relief, that cannot be is refused where it is described
 
     def document(self, **load: Any) -> dict[str, Any]:
         """It and its pinion as the tables of a case file, with the key of its load."""

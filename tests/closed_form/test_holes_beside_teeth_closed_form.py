@@ -116,7 +116,7 @@ def test_rims_with_a_hole(support):
 def test_a_hole_lies_within_one_pitch():
     for hole, key in (
         (hole_at(2.0, 11.2, 0.0), "diameter"),
-        (hole_at(0.5, 11.2, math.radians(6.5)), "position_radius"),
+        (hole_at(0.5, 11.2, math.radians(6.5)), "angle"),
         (hole_at(0.5, 5.0, 0.0), "position_radius"),
         (hole_at(0.01, 11.2, 0.0), "diameter"),
     ):
@@ -161,7 +161,7 @@ def test_a_case_says_where_the_hole_is_and_what_is_refused():
     assert made.centre == pytest.approx((9.75 * math.sin(math.radians(2.0)), 9.75 * math.cos(math.radians(2.0))))
     assert found.on_other_flank().outlines == ((3, made.mirrored()),)
     for given, more, said in (
-        ({**hole, "angle": "9 deg"}, {}, r"odd_tooth\[0\].hole.position_radius = 19.5 mm: puts the hole outside"),
+        ({**hole, "angle": "9 deg"}, {}, r"odd_tooth\[0\].hole.angle = 9 deg: must be between"),
         ({**hole, "diameter": "4.5 mm"}, {}, r"hole.diameter = 4.5 mm: must be at most \d.\d+ mm at this place"),
         (hole, {"missing": True}, "hole = .given.: is not available together with missing"),
         (hole, {"crack": {"depth": "0.5 mm"}}, "is not available together with crack"),

@@ -237,7 +237,8 @@ def test_a_relief_is_drafted_for_a_range_of_torques(text, helix):
     ("kind", "text", "told"),
     [
         ("relief", "320 to 120 N m", "must rise"), ("relief", "0 to 120 N m", "greater than zero"),
-        ("relief", "1 to 2", "has no unit"), ("pair", "120 to 320 N m", "requires --kind relief"),
+        ("relief", "1 to 2", "has no unit"), ("relief", "3e2 to 2e2 N m", "must rise"),
+        ("pair", "120 to 320 N m", "requires --kind relief"),
     ],
 )  # fmt: skip
 def test_a_range_of_torques_that_is_none_is_refused(kind, text, told):

@@ -56,10 +56,23 @@ def test_a_run_is_remembered_and_a_plan_scaled(tmp_path):
 @pytest.mark.parametrize(
     "kept", ["", "[]", "{}", '{"version": "0.0.1", "tasks": {"relief": [[1, 2]]}}',
              json.dumps({"version": fegear.__version__, "tasks": {"relief": [[0.0, 1.0]]}}),
-             json.dumps({"version": fegear.__version__, "tasks": {"relief": [["x", 1.0]]}})],
+             json.dumps({"version": fegear.__version__, "tasks": {"relief": [["x", 1.0]]}}),
+             json.dumps({"version": fegear.__version__, "tasks": {"relief": [[1e-300, 1e300]]}}),
+             json.dumps({"version": fegear.__version__, "tasks": {"relief": [[1e308, 1.0], [1e308, 1.0]]}}),
+             "[" * 200_000],
 )  # fmt: skip
 def test_a_file_of_another_version_or_a_broken_one_is_none(tmp_path, kept):
     (tmp_path / "speed.json").write_text(kept)
+    assert own_speed(tmp_path) == OwnSpeed()
+
+
+def test_a_run_of_a_machine_that_stood_does_not_count(tmp_path):
+    scene = read_scene(CASE, ASKED)
+    plan = make_plan(scene, STAGES)
+    results = run_plan(scene, plan)
+    for task, timing in list(results.timings.items()):
+        results.timings[task] = timing._replace(processor=1e4)
+    remember(results, forecast_seconds(scene, plan), tmp_path)
     assert own_speed(tmp_path) == OwnSpeed()
 
 

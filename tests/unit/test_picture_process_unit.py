@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -21,7 +22,7 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Task
 from fegear.output.draw_png import draw_pictures
 from fegear.output.figures import Drawing
-from fegear.output.picture_process import PictureProcess
+from fegear.output.picture_process import PictureProcess, _line_to_copy
 
 CASE = Path(__file__).parents[2] / "cases" / "lin_table1.toml"
 #: A case of which nothing costs anything to compute.
@@ -118,6 +119,25 @@ def test_leaving_ends_it_whatever_it_draws(monkeypatch, tmp_path):
     assert process._child.poll() is not None
     # Pictures that take seconds each: whoever waited for them would have them.
     assert all(one.cancelled() or one.result() is None for one in waiting[5:])
+
+
+@pytest.mark.parametrize("left", [0, 1])
+def test_where_no_pipe_is_left_there_is_no_copy(left, monkeypatch):
+    made, closed, pipe = [], [], os.pipe
+
+    def few():
+        if len(made) == left:
+            raise OSError(24, "Too many open files")
+        made.append(pipe())
+        return made[-1]
+
+    monkeypatch.setattr("fegear.output.picture_process.os.pipe", few)
+    assert _line_to_copy() == ((), [])
+    for end in (end for both in made for end in both):
+        with pytest.raises(OSError, match="Bad file descriptor"):
+            os.fstat(end)
+        closed.append(end)
+    assert len(closed) == 2 * left
 
 
 @pytest.mark.parametrize("held", ["cores", "matplotlib", "system"])

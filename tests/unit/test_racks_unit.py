@@ -92,6 +92,9 @@ def test_outline_encloses_teeth_and_body():
         ({"mounting_distance": "30.6 mm", "distance": "20.6 mm"}, "contradicts mounting_distance"),
         ({"mounting_distance": "30 mm"}, "rack.r.mounting_distance = 30 mm: lets the tip"),
         ({"mounting_distance": "30.5 mm"}, "set mounting_distance to at least 30.6 mm"),
+        ({"mounting_distance": "34 mm"}, "rack.r.mounting_distance = 34 mm: gives a contact ratio of"),
+        ({"distance": "1 m"}, "rack.r.distance = 1000 mm: gives a contact ratio of"),
+        ({"thickness_allowance": "30 mm"}, "rack.r.thickness_allowance = 15 modules: gives rack teeth"),
         ({"mounting_distance": "9 mm"}, "must exceed reference_height, 10 mm"),
         ({"torque": "1 N*m"}, "contradicts force"), ({"pin_every": 3}, "is used with pins only"),
         ({"support": "pins", "first_pin": 9}, "rack.r.first_pin = 9"),
@@ -235,6 +238,8 @@ def test_a_rack_in_a_script_answers_as_its_case(results):
         rack.transmission_error()
     with pytest.raises(InputError, match=r"must be a fegear\.Gear"):
         fegear.Rack("p", 6, "10 mm")
+    with pytest.raises(InputError, match=r"rack\.r\.tip_relief\.amount"):
+        fegear.Rack(pinion, 6, "10 mm", name="r", tip_relief={"amount": "3 mm", "length": "1 mm"})
 
 
 def test_results_state_errors_and_ends(results):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fegear.geometry.relief_spec import ReliefSpec, TipReliefSpec
 
 #: Keys of the rack's teeth under other names in a case.
-_KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "contact_ratio": "distance", "body":
+_KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "body":
          "reference_height", "module": "pinion", "pressure_angle": "pinion"}  # fmt: skip
 
 
@@ -158,16 +158,15 @@ def _pinion_relief(spec: ReliefSpec, pair: RackAndPinion) -> Relief:
 
 def _from_the_back(part: RackAndPinionPart, error: InputError) -> InputError:
     """A refusal of the distance to the reference line as one of the mounting distance, where that is given."""
-    if part.mounting_distance is None or error.key not in ("distance", "contact_ratio"):
+    if part.mounting_distance is None or error.key != "distance":
         return error
 
     def moved(found: re.Match[str]) -> str:
         return f"{found[1]}{float(found[2]) + part.reference_height * 1e3:.6g} mm"
 
     remedy = re.sub(r"((?:increase|reduce|set) distance(?: to at least )?)([0-9.]+) mm", moved, error.remedy)
-    value = f"{part.mounting_distance * 1e3:.6g} mm" if error.key == "distance" else error.value
-    key = "mounting_distance" if error.key == "distance" else error.key
-    return type(error)(key, value, error.rule, remedy.replace("distance", "mounting_distance"))
+    value = f"{part.mounting_distance * 1e3:.6g} mm"
+    return type(error)("mounting_distance", value, error.rule, remedy.replace("distance", "mounting_distance"))
 
 
 def replace_key(error: InputError, key: str) -> InputError:

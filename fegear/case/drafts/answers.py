@@ -240,7 +240,7 @@ def _split(text: str) -> list[str]:
 
 
 def _number(text: str) -> bool:
-    return re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)", text) is not None
+    return re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", text) is not None
 
 
 def _readable(text: str, dimension: str) -> float:

@@ -79,6 +79,10 @@ def refuse_hole(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings
     ------
     InputError
     """
+    angle, half = math.degrees(math.atan2(*hole.centre)), 180.0 / tooth.teeth
+    if abs(angle) >= half:
+        raise InputError("angle", f"{angle:.6g} deg", f"must be between -{half:.6g} and {half:.6g} deg (half a pitch)",
+                         "describe the hole at the nearest tooth")  # fmt: skip
     chains = sector_boundary(tooth, bore_radius, settings)
     return _room(chains, hole)
 
