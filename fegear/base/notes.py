@@ -43,25 +43,29 @@ class Note(str):
     ----------
     text : str
     kind : NoteClass
+    margin : float
+        What is there over what is required, of something that falls short: the smaller, the sooner among its class. 0
+        where that has no measure.
     """
 
-    __slots__ = ("kind",)
+    __slots__ = ("kind", "margin")
     kind: NoteClass
+    margin: float
 
-    def __new__(cls, text: str, kind: NoteClass = NoteClass.INFORMATION) -> Note:
+    def __new__(cls, text: str, kind: NoteClass = NoteClass.INFORMATION, margin: float = 0.0) -> Note:
         """Make the text and remember its class."""
         made = super().__new__(cls, text)
-        made.kind = kind
+        made.kind, made.margin = kind, margin
         return made
 
-    def __reduce__(self) -> tuple[type[Note], tuple[str, NoteClass]]:
+    def __reduce__(self) -> tuple[type[Note], tuple[str, NoteClass, float]]:
         """Travel to other processes with the class."""
-        return Note, (str(self), self.kind)
+        return Note, (str(self), self.kind, self.margin)
 
 
-def failing(text: str) -> Note:
-    """Something does not hold: a safety below the required one, tips that jam."""
-    return Note(text, NoteClass.FAILS)
+def failing(text: str, margin: float = 0.0) -> Note:
+    """Something does not hold: a safety below the required one, by its `margin`; tips that jam."""
+    return Note(text, NoteClass.FAILS, margin)
 
 
 def exceeding(text: str) -> Note:
@@ -99,10 +103,11 @@ class _Subject(NamedTuple):
     name: str
     note: str
     rest: str
+    margin: float
 
 
 def ordered(notes: Iterable[str]) -> tuple[Note, ...]:
-    """Notes with repeats merged, the class to act on first; within a class as they were.
+    """Notes with repeats merged, the class to act on first; within a class by margin, else as they were.
 
     Notes that say the same of several gears, pairs or shafts become one, "Gears p1, w1: ..."; where their numbers
     differ, the merged one has those of two, or the range of more.
@@ -114,9 +119,12 @@ def ordered(notes: Iterable[str]) -> tuple[Note, ...]:
         key = (class_of(note), noun, _NUMBER.sub("#", rest) if found else rest)
         if any(one.name == name for one in groups.get(key, ())):  # two numbers of one subject are two notes
             key = (*key[:2], rest)
-        groups.setdefault(key, []).append(_Subject(name, str(note), rest))
-    merged = [Note(_merged(noun, members), kind) for (kind, noun, _), members in groups.items()]
-    return tuple(sorted(merged, key=lambda note: note.kind))
+        groups.setdefault(key, []).append(_Subject(name, str(note), rest, getattr(note, "margin", 0.0)))
+    merged = [
+        Note(_merged(noun, members), kind, min(one.margin for one in members))
+        for (kind, noun, _), members in groups.items()
+    ]
+    return tuple(sorted(merged, key=lambda note: (note.kind, note.margin)))
 
 
 def _merged(noun: str, members: Sequence[_Subject]) -> str:

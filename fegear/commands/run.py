@@ -107,6 +107,7 @@ def _run_case(
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
+    from fegear.output.spoken_values import spoken_values
     from fegear.output.tables import sheet_lines
     from fegear.results.catalogue import STAGES
 
@@ -143,8 +144,11 @@ def _run_case(
     for table in results.tables:
         for line in sheet_lines(table) if table.printed else ():
             voice.say(line)
-    for value in results.values:
+    values, further = spoken_values(results)
+    for value in values:
         voice.say(repr(value))
+    if further:
+        voice.say(f"{further} further value{'s' if further > 1 else ''} in summary.json.")
     for file in files or ():
         voice.say(f"Field {target / str(file)}")
     if with_fields and not files:

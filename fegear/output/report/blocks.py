@@ -14,6 +14,9 @@ from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.tables import cells, table_file
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from fegear.base.notes import Note
     from fegear.engine.figure.figure import Figure
     from fegear.engine.table import Column, Table
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Rows of a table that stand in the page as text; the others are a click away.
 _ROWS = 6
+#: Rows of a brief table, and its digits where nothing is known of an error.
+_BRIEF_ROWS, _BRIEF = 24, 3
 #: Tables of so few rows with more columns than this stand on their side.
 _BESIDE = 8
 #: More columns than this cannot be read on a sheet of paper.
@@ -232,9 +237,16 @@ class DataTable(Block):
     """The beginning of a table, with what it takes to see all of it, to sort it and to download it.
 
     A table of few rows and many columns stands on its side, so that no column is out of sight.
+
+    Parameters
+    ----------
+    table : Table
+    brief : bool
+        Beside an answer: all of its rows, with the digits that a person reads; all digits and errors on request.
     """
 
     table: Table
+    brief: bool = False
 
     @property
     def file(self) -> str:
@@ -257,19 +269,28 @@ class DataTable(Block):
         return not self.on_its_side and len(self.table.columns) > _ON_PAPER
 
     @property
-    def sides(self) -> list[tuple[str, str, str, tuple[str, ...]]]:
-        """Name, unit, meaning and values of each quantity of a table on its side."""
+    def sides(self) -> list[tuple[str, str, str, bool, tuple[tuple[str, str], ...]]]:
+        """Name, unit, meaning, whether it is an error, and values of each quantity of a table on its side."""
         return [(*head, row) for head, row in zip(self.heads, zip(*self.rows, strict=True), strict=True)]
 
     @property
-    def heads(self) -> list[tuple[str, str, str]]:
-        """Name, unit and meaning of each column."""
-        return [(*_name_and_unit(column), column.explained) for column in self.table.columns]
+    def heads(self) -> list[tuple[str, str, str, bool]]:
+        """Name, unit and meaning of each column, and whether it is the error of another one."""
+        names = {f"{column.name}_error" for column in self.table.columns}
+        return [(*_name_and_unit(column), column.explained, column.name in names) for column in self.table.columns]
 
     @property
-    def rows(self) -> list[tuple[str, ...]]:
-        """The first rows."""
-        columns = [[_short(one) for one in cells(column.values[:_ROWS])] for column in self.table.columns]
+    def rows(self) -> list[tuple[tuple[str, str], ...]]:
+        """The first rows: of each cell what a person reads, and all digits; equal where the table is not brief."""
+        count = _BRIEF_ROWS if self.brief else _ROWS
+        full = [[_short(one) for one in cells(column.values[:count])] for column in self.table.columns]
+        if not self.brief:
+            return list(zip(*([(one, one) for one in column] for column in full), strict=True))
+        errors = {column.name.removesuffix("_error"): column.values for column in self.table.columns}
+        columns = [
+            list(zip(_read(column, errors.get(column.name)), shown, strict=False))
+            for column, shown in zip(self.table.columns, full, strict=True)
+        ]
         return list(zip(*columns, strict=True))
 
 
@@ -305,6 +326,22 @@ class Sheet(Block):
     heads: tuple[str, ...]
     groups: tuple[SheetGroup, ...]
     shared: tuple[tuple[str, str, str], ...] = ()
+
+
+def _read(column: Column, errors: NDArray[np.generic] | None) -> list[str]:
+    """Cells of a column with the digits that their errors allow and a person reads."""
+    if column.values.dtype.kind != "f":
+        return [_short(one) for one in cells(column.values)]
+    known = [0.0] * len(column) if errors is None or errors is column.values else errors.tolist()
+    return [_read_cell(value, error) for value, error in zip(column.values.tolist(), known, strict=True)]
+
+
+def _read_cell(value: float, error: float) -> str:
+    if not math.isfinite(value):
+        return ""
+    if not error > 0.0 or not math.isfinite(error):
+        return plain_number(float(f"{value:.{_BRIEF}g}"))
+    return plain_number(float(rounded(value, error, _READ).partition(" ")[0]))
 
 
 def _name_and_unit(column: Column) -> tuple[str, str]:

@@ -77,7 +77,7 @@
     }
     return String(Number(value.toPrecision(6))).replace("-", "−");
   }
-  document.querySelectorAll("div.data:not(.side)").forEach((block) => {
+  document.querySelectorAll("div.data:not(.side, .brief)").forEach((block) => {
     const body = block.querySelector("tbody"), more = block.querySelector(".more");
     const preview = body.rows.length;
     let all = !more, sorted = null;

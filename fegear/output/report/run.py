@@ -82,7 +82,7 @@ def _answer(
     answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str], tables: Sequence[Table]
 ) -> tuple[Block, ...]:
     """The card on top: what the wanted results come to, the figure that shows it, and short tables."""
-    short = [DataTable(table) for table in tables if table.name in answer.tables]
+    short = [DataTable(table, brief=True) for table in tables if table.name in answer.tables]
     figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
     blocks: tuple[Block, ...] = (Notes(answer.sentences, "answer"),) if answer.sentences else ()
     if figure is None:

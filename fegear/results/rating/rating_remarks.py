@@ -62,7 +62,8 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
                 told.append(
                     failing(
                         f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the "
-                        f"minimum {least:g}."
+                        f"minimum {least:g}.",
+                        _load_margin(symbol, value / least),
                     )
                 )
     levels = [] if found is None else [one.rating for one in found.levels if one.rating is not None]
@@ -76,6 +77,11 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
             )
         )
     return tuple(told)
+
+
+def _load_margin(symbol: str, ratio: float) -> float:
+    """Load at the minimum safety over the present one: contact stress follows the root of the load."""
+    return ratio**2 if symbol == "S_H" else ratio
 
 
 def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
