@@ -45,13 +45,14 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="gear, pair, relief, helical, gearbox, train, planetary, ring, rack or study. Default: from the "
-            "numbers of teeth.",
+            help="gear, pair, relief, helical, gearbox, two-stage-gearbox, train, planetary, ring, rack or study. "
+            "Default: from the numbers of teeth; a gearbox of four has two stages.",
             autocompletion=complete_kinds,
         ),
     ] = None,
     teeth: Annotated[
-        list[str] | None, typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear.")
+        list[str] | None,
+        typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four."),
     ] = None,
     module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
@@ -92,7 +93,7 @@ def new(
 
     For example: fegear new drive --teeth 21 53 --profile-shift 0.3 0.1 --module 3mm --torque "260 N m"
     """
-    from fegear.case.drafts.answers import Answers
+    from fegear.case.drafts.answers import Answers, kind_of
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
 
@@ -126,8 +127,7 @@ def new(
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
         answers = _asked()
     else:
-        single = len(told.get("teeth", "").split()) == 1
-        answers = Answers(kind or ("helical" if helix_angle else "gear" if single else "pair"), told)
+        answers = Answers(kind_of(kind, told), told)
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)
     if not no_schema:

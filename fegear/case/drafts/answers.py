@@ -11,12 +11,14 @@ from typing import NamedTuple
 from fegear.base.errors import InputError
 from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
-from fegear.case.drafts.kinds import KINDS
+from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.nearest import nearest
 from fegear.geometry.rack import BasicRack
 
 #: Line load that is assumed where no torque is given [N/m]: what case-hardened gears carry for ever.
 _LINE_LOAD = 200e3
+#: Share of it on the first of two stages: the second one has about as much as one of a single stage.
+_FIRST_STAGE = 0.5
 
 
 #: Face width that is assumed, in modules.
@@ -24,7 +26,7 @@ _FACE = 10.0
 
 
 #: Kinds whose gears are helical.
-HELICAL = ("helical", "gearbox")
+HELICAL = ("helical", "gearbox", TWO_STAGES)
 
 
 #: Answer to a question about what a drawing need not have.
@@ -61,6 +63,9 @@ class Question(NamedTuple):
         """Whether a drawing need not have it: an option gives it, the terminal does not ask."""
         return self.default == _NONE
 
+
+#: How the module is asked for, where that is of one stage only.
+_MODULES = {TWO_STAGES: "Normal module of the first stage"}
 
 _ALL = {
     "pressure_angle": ("Pressure angle", "20 deg", "angle"),
@@ -131,6 +136,21 @@ class Answers:
         return to_si((ends(self[name]) or (self[name],))[-1], question.dimension, _option(name))
 
 
+def kind_of(kind: str | None, given: Mapping[str, str]) -> str:
+    """The kind of case that answers are for: by the numbers of teeth, where none or a gearbox is asked for.
+
+    Parameters
+    ----------
+    kind : str or None
+    given : mapping of str to str
+        Answers by the name of their question.
+    """
+    gears = len(_split(given.get("teeth", "")))
+    if kind in (None, "gearbox") and gears == len(KINDS[TWO_STAGES].gears):
+        return TWO_STAGES
+    return kind or ("helical" if given.get("helix_angle") else "gear" if gears == 1 else "pair")
+
+
 def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
     """Questions of a kind, in order; defaults follow what has been answered.
 
@@ -152,13 +172,15 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             *(
                 ("Teeth of sun and planet", "25 29")
                 if kind == "planetary"
+                else ("Teeth of both pinions and wheels", "21 53 19 61")
+                if kind == TWO_STAGES
                 else ("Teeth of pinion and wheel", "21 53")
                 if several
                 else ("Teeth", "60" if kind == "ring" else "28")
             ),
             "teeth",
         ),
-        Question("module", "Normal module" if kind in HELICAL else "Module", "3 mm", "length"),
+        Question("module", _MODULES.get(kind, "Normal module" if kind in HELICAL else "Module"), "3 mm", "length"),
     ]
     module = _readable(given.get("module", found[1].default), "length")
     face = f"{_FACE * module * 1e3:.3g} mm"
@@ -168,7 +190,8 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
         elif name == "torque":
             width = _readable(given.get("face_width", face), "length")
             radius = 0.5 * module * (plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0)
-            default = f"{float(f'{_LINE_LOAD * width * radius:.2g}'):g} N*m"
+            share = _FIRST_STAGE if kind == TWO_STAGES else 1.0
+            default = f"{float(f'{share * _LINE_LOAD * width * radius:.2g}'):g} N*m"
             ranges = kind == "relief"
             prompt = 'Torque on the pinion, or a range ("120 to 320 N m")' if ranges else "Torque on the pinion"
             found.append(Question(name, prompt, default, "torque", ranges))
@@ -176,6 +199,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             prompt, default, dimension = _ALL[name]
             default = _NONE if name == "helix_angle" and kind not in HELICAL else default
             plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
+            plural = "s of all four gears" if plural and kind == TWO_STAGES else plural
             found.append(Question(name, prompt + plural, default, dimension))
     return found
 

@@ -31,6 +31,9 @@ _LOADED = (*_TOOTH, "torque", "speed")
 
 _RELIEVED = (*_LOADED, "tip_relief", "relief_length")
 
+#: What a gearbox of two stages is called.
+TWO_STAGES = "two-stage-gearbox"
+
 #: Kinds by name.
 KINDS: Mapping[str, Kind] = MappingProxyType({
     "gear": Kind("gear: tooth stiffness and root stress, formulas of the standards", ("gear",), _TOOTH),
@@ -41,6 +44,8 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
     "gearbox": Kind("gearbox stage: helical pair on shafts and bearings, misalignment, load distribution, rating",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED)),
+    "two-stage-gearbox": Kind("gearbox of two helical stages: three shafts, six bearings by designation, rating",
+                              ("pinion_1", "wheel_1", "pinion_2", "wheel_2"), ("helix_angle", *_RELIEVED)),
     "train": Kind("drive train dynamics: motor, gear pair, driven machine; resonances, dynamic factor",
                   ("pinion", "wheel"), _RELIEVED),
     "planetary": Kind("planetary gear set: planet load sharing, phasing, modes, vibration", ("sun", "planet"),

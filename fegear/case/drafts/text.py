@@ -12,7 +12,8 @@ from string import Template
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
-from fegear.case.drafts.kinds import KINDS
+from fegear.case.drafts.kinds import KINDS, TWO_STAGES
+from fegear.case.drafts.two_stages import LOCATING, PlacedShaft, TwoStages, two_stages
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -69,13 +70,37 @@ face_width = {face_width}{face_width_note}
 # material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # default: steel
 """
 _PAIR = """\
-[pair.I]
+[pair.{pair}]
 driver = {first}
 driven = {second}
 {load}
 speed = {speed}{speed_note}
 # centre_distance = "{centre_distance}"     # default: zero backlash
 {range}
+"""
+#: What the rating of a pair asks for besides, assumed.
+_OPERATED = """\
+lubricant = { viscosity_40 = "220 mm^2/s", temperature = "70 degC" }     # assumed: mineral oil ISO VG 220
+operation = { application_factor = 1.0, life = "20000 h" }     # assumed
+"""
+_SHAFT = """\
+[shaft.{name}]{note}
+{axis}sections = [
+    {{ length = "{seat_length}", outer = "{seat}" }},
+    {{ length = "{between}", outer = "{thick}" }},
+    {{ length = "{seat_length}", outer = "{seat}" }},
+]
+gears = [{gears}]
+bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}" }}]
+{coupling}"""
+_BEARINGS = """\
+[bearing.{name}_locating]
+designation = "{locating}"
+life = {{ dynamic_rating = "{ball} kN", radial_factor = {X}, axial_factor = {Y}, limit = {e} }}     # C assumed
+
+[bearing.{name}_floating]
+designation = "{floating}"
+life = {{ dynamic_rating = "{roller} kN", kind = "roller" }}     # C assumed
 """
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
@@ -162,12 +187,13 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         pad=" " * len(file),
         title=toml_string(f"{stem}: {teeth} teeth, module {answers['module']}"),
     )
+    laid_out = two_stages(answers) if answers.kind == TWO_STAGES else None
     values = {
         "head": head,
         "first": kind.gears[0],
         "second": kind.gears[-1],
-        "gears": "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
-        "pair": _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
+        "gears": "" if laid_out else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
+        "pair": "" if laid_out else _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -177,6 +203,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         **(_train(answers) if answers.kind == "train" else {}),
         **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_gearbox(answers) if answers.kind == "gearbox" else {}),
+        **(_two_stages(answers, laid_out) if laid_out else {}),
         **(_study(answers) if answers.kind == "study" else {}),
         **(_rack(answers) if answers.kind == "rack" else {}),
     }
@@ -197,10 +224,15 @@ def _aligned(line: str) -> str:
 
 def _texts(answers: Answers, names: tuple[str, ...]) -> dict[str, str]:
     quoted = {name: toml_string(answers[name]) for name in names}
-    return quoted | {f"{name}_note": _ASSUMED if answers.assumed(name) else "" for name in names}
+    return quoted | {f"{name}_note": _note(answers, name) for name in names}
 
 
-def _gear(answers: Answers, number: int) -> str:
+def _note(answers: Answers, name: str) -> str:
+    return _ASSUMED if answers.assumed(name) else ""
+
+
+def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None) -> str:
+    """A gear; `other` texts stand in place of its own."""
     kind = KINDS[answers.kind]
     texts = _texts(answers, ("module", *(name for name in kind.asks if name not in _OF_PAIR)))
     texts["relief"] = _modified(answers, number, texts)
@@ -217,7 +249,7 @@ def _gear(answers: Answers, number: int) -> str:
     if answers.kind == "gearbox":
         texts |= {"bore_radius": _length(_shaft_radii(answers)[number]), "bore_note": "that of the shaft"}
     if answers.helical:
-        return _HELICAL.format(**texts, hand=("right", "left")[number])
+        return _HELICAL.format(**{**texts, "hand": ("right", "left")[number], **(other or {})})
     texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
     return _SPUR.format(**texts)
 
@@ -258,15 +290,17 @@ def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
     )  # fmt: skip
 
 
-def _pair(answers: Answers) -> str:
+def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
+    """The pair; `other` texts stand in place of its own."""
     first, second = map(json.dumps, KINDS[answers.kind].gears)
     teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
     distance = _length(answers.si("module") * (0.5 * teeth / turn + shifts))
-    return _PAIR.format(
-        first=first, second=second, centre_distance=distance, load=_load(answers), range=_range(answers),
-        **_texts(answers, ("speed",)),
-    )  # fmt: skip
+    own = {
+        "pair": "I", "first": first, "second": second, "centre_distance": distance, "load": _load(answers),
+        "range": _range(answers), **_texts(answers, ("speed",)),
+    }  # fmt: skip
+    return _PAIR.format(**{**own, **(other or {})})
 
 
 def _load(answers: Answers) -> str:
@@ -330,6 +364,64 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
         "distance": _length(answers.si("module") * (0.5 * teeth / turn + shifts)),
         "bearing": _amount(2.0 * _PER_BORE * radii[0], "N/um"),
     }  # fmt: skip
+
+
+def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
+    """Gears, pairs, shafts and bearings of two stages."""
+    names, hands = KINDS[TWO_STAGES].gears, ("right", "left", "left", "right")
+    gears, pairs = [], []
+    for stage, own in enumerate(found.stages):
+        grown = {"module_note": "     # assumed: grows as the cube root of the torque",
+                 "face_width_note": "     # assumed: as many modules as that of the first stage"}  # fmt: skip
+        grown = grown if stage else {"face_width_note": _note(answers, "face_width")}
+        grown["profile_shift_note"] = _note(answers, "profile_shift")
+        for member in range(2):
+            at = 2 * stage + member
+            other = {"name": names[at], "hand": hands[at], "bore_radius": _length(found.holes[at]), **grown}
+            gears.append(_gear(own, member, other))
+        follows = {
+            "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",
+            "speed_note": "     # that of pair I over its ratio",
+        } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
+        first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
+        pairs.append(_pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows}) + _OPERATED)
+    on = ((0,), (1, 2), (3,))
+    shafts = "\n".join(_placed_shaft(found, n, one, on[n]) for n, one in enumerate(found.shafts))
+    bearings = "\n".join(
+        _BEARINGS.format(
+            name=_SHAFTS[n], locating=one.locating.designation, floating=one.floating.designation,
+            ball=f"{one.locating.rating * 1e-3:g}", roller=f"{one.floating.rating * 1e-3:g}",
+            X=LOCATING["radial_factor"], Y=LOCATING["axial_factor"], e=LOCATING["limit"],
+        )
+        for n, one in enumerate(found.shafts)
+    )  # fmt: skip
+    said = (
+        "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
+        "from\n# them (ISO 281): replace C, X, Y and e by those of the catalogue, which also has C_0: catalogue = { static_rating "
+        '= "16 kN" }.\n'
+    )
+    return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": f"{shafts}\n{said}\n{bearings}"}
+
+
+#: Shafts of two stages.
+_SHAFTS = ("input", "middle", "output")
+
+
+def _placed_shaft(found: TwoStages, n: int, one: PlacedShaft, gears: tuple[int, ...]) -> str:
+    name, seat = _SHAFTS[n], 2.0 * found.ends[0]
+    left, right = ("floating", "locating") if one.floating_first else ("locating", "floating")
+    away = sum(found.distances[:n])
+    notes = ("     # distances along it from its left end; places and sizes are assumed", "", "")
+    couplings = ('coupling = "0 mm"     # where the torque enters\n', "", f'coupling = "{_length(found.length)}"\n')
+    return _SHAFT.format(
+        name=name, note=notes[n], axis=f'axis = ["{_length(away)}", "0 mm"]     # centre distance\n' if n else "",
+        seat_length=_length(seat), seat=_length(one.seat), between=_length(found.length - 2.0 * seat),
+        thick=_length(one.thick), left=left, right=right, first=_length(found.ends[0]), last=_length(found.ends[1]),
+        gears=", ".join(
+            f'{{ gear = "{KINDS[TWO_STAGES].gears[at]}", at = "{_length(found.middles[at // 2])}" }}' for at in gears
+        ),
+        coupling=couplings[n],
+    )  # fmt: skip
 
 
 def _shaft_radii(answers: Answers) -> tuple[float, float]:
