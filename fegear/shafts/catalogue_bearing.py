@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 from fegear.base.errors import RangeError
@@ -129,6 +129,10 @@ class CatalogueBearing(PrintedBearing):
         RangeError
             If a rating is not possible within the envelope.
         """
+        return _inside(self)
+
+    def estimated(self) -> RollingBearing:
+        """The inside, estimated anew."""
         made = self._with(_ASSUMED[self.kind][0])
         self._refuse(made)
         return made
@@ -241,6 +245,12 @@ class CatalogueBearing(PrintedBearing):
                 else f"is not possible within the envelope {envelope} (ISO 281 gives about {of_iso * 1e-3:.3g} kN)",
                 "correct one of them",
             )  # fmt: skip
+
+
+@lru_cache(maxsize=256)
+def _inside(bearing: CatalogueBearing) -> RollingBearing:
+    """A case asks for it many times, each time of another object that says the same."""
+    return bearing.estimated()
 
 
 def _solved(rating: Callable[[float], float], wanted: float, most: float) -> float:

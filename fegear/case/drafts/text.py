@@ -397,8 +397,8 @@ def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
     )  # fmt: skip
     said = (
         "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
-        "from\n# them (ISO 281): replace C, X, Y and e by those of the catalogue, which also has C_0: catalogue = { static_rating "
-        '= "16 kN" }.\n'
+        "from\n# them (ISO 281): replace C, X, Y, e by those of the catalogue, which also has C_0: catalogue = { "
+        'static_rating = "16 kN" }.\n'
     )
     return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": f"{shafts}\n{said}\n{bearings}"}
 
