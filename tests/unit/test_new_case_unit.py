@@ -18,10 +18,12 @@ import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case import examples
 from fegear.case.built.design_range import design_range
-from fegear.case.drafts.answers import HELICAL, Answers, questions
-from fegear.case.drafts.kinds import KINDS
+from fegear.case.built.shafts import gearbox_of
+from fegear.case.drafts.answers import HELICAL, Answers, kind_of, questions
+from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
+from fegear.contact.wide.on_shafts import EvenForces, load_gearbox
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
@@ -130,7 +132,10 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
         (("x", "--tip-relief", "20 um", "none"), "must have both amount and length"),
         (("x", "--kind", "pair", "--lead-error", "9 um"), 'is not used for a case of kind "pair"'),
-        (("x", "--kind", "bevel"), "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, train"),
+        (
+            ("x", "--kind", "bevel"),
+            "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, train, two-stage-gearbox",
+        ),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "is in a folder that does not exist"),
@@ -253,7 +258,9 @@ CHEAP = ("--no-plots", "--set", 'pair.I.width="slices"', "--set", "load_distribu
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0
-    assert say("run", "case.toml", "-q", *(CHEAP if kind in HELICAL else ()))[0] == 0
+    # Flanks of two stages are dear: their shafts and rating under even loads.
+    some = ("--results", "shaft-deflection,rating", "--set", "effects.misalignment=false") if kind == TWO_STAGES else ()
+    assert say("run", "case.toml", "-q", *(CHEAP if kind in HELICAL else ()), *some)[0] == 0
     assert (tmp_path / "results" / "case" / "report.html").is_file()
 
 
@@ -414,6 +421,40 @@ def test_shafts_of_a_drafted_gearbox_suit_its_gears():
         assert at[0] == pytest.approx(0.5 * length[0])
         assert seats[0] < at[0] - 12.5 < at[0] + 12.5 < seats[1] < length[0]
         assert sum(seats) == pytest.approx(length[0])
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"teeth": "23 41 17 70", "module": "2 mm", "helix_angle": "12 deg", "profile_shift": "0.2 0.1 0.3 0",
+         "torque": "60 N*m", "speed": "2800 rpm"},
+    ],
+    ids=["assumed", "given"],
+)  # fmt: skip
+def test_bearings_of_two_drafted_stages_last_and_hold_what_fits_them(given):
+    assert kind_of("gearbox", {"teeth": "21 53 19 61"}) == kind_of(None, {"teeth": "21 53 19 61"}) == TWO_STAGES
+    scene = build_scene(tomllib.loads(draft(Answers(TWO_STAGES, given), "case")), "case", Path())
+    case, box = scene.case, gearbox_of(scene)
+    first, second = (scene.pairs[name] for name in ("I", "II"))
+    assert [shaft.axis[0] for shaft in case.shaft.values()] == pytest.approx(
+        [0.0, first.centre_distance, first.centre_distance + second.centre_distance], rel=1e-5
+    )
+    ratio = first.driven.teeth / first.driver.teeth
+    assert case.pair["II"].torque == pytest.approx(ratio * case.pair["I"].torque, rel=1e-5)
+    assert case.pair["II"].speed == pytest.approx(case.pair["I"].speed / ratio, rel=1e-5)
+    assert case.gear["wheel_1"].hand == case.gear["pinion_2"].hand  # axial forces against each other
+
+    # forces of the bearings by the deflected shafts, not by the beam of the draft
+    even = [EvenForces(mesh.even / mesh.load) for mesh in box.meshes]
+    (state,) = load_gearbox(box, even, [1.0])
+    speeds = case.pair["I"].speed / np.array([1.0, ratio, ratio * second.driven.teeth / second.driver.teeth])
+    for shaft, bent, speed in zip(case.shaft.values(), state.bent, speeds, strict=True):
+        for place, force in zip(shaft.bearings, bent.bearing_forces, strict=True):
+            bearing = case.bearing[place.bearing]
+            rolls = bearing.life.build().revolutions(np.hypot(*force[:2]), force[2])
+            assert rolls * 2.0 * np.pi / speed > 20e3 * 3600.0
+            assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
 
 
 def test_bodies_of_a_drafted_train_suit_its_gears():

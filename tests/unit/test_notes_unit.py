@@ -67,6 +67,16 @@ def test_two_numbers_of_one_subject_are_two_notes():
     assert list(ordered(notes)) == ["Pairs I, II: 3 % off.", "Pair I: 5 % off."]
 
 
+def test_of_what_falls_short_the_worst_comes_first_behind_what_does_not_work_at_all():
+    notes = [
+        failing("Pair I: S_H = 0.9 is below.", 0.81), failing("Pair III: S_H 0.6 is below.", 0.36),
+        failing("Tips jam."), failing("Pair II: S_F = 0.7 is low.", 0.5), exceeding("e"),
+    ]  # fmt: skip
+    found = ordered(notes)
+    assert [one.partition(":")[0] for one in found] == ["Tips jam.", "Pair III", "Pair II", "Pair I", "e"]
+    assert pickle.loads(pickle.dumps(found[1])).margin == 0.36  # noqa: S301
+
+
 def test_notes_of_different_classes_are_not_merged():
     assert len(ordered([failing("Gear a: thin."), assuming("Gear b: thin.")])) == 2
 

@@ -104,6 +104,20 @@ def test_safeties_of_both_gears_are_columns_and_half_known_ones_are_left_out():
     assert gear_data._loaded(results, "III") == ()
 
 
+def test_a_brief_table_has_the_digits_that_errors_allow_and_all_of_them_behind_the_switch():
+    columns = (
+        Column("pair", ["I", "II"]), Column("K", np.array([1.23456789, 2.5])), Column("K_error", np.array([0.02, 0.3])),
+        Column("life", np.array([33612.345, np.nan]) * 3600.0, "h"), Column("gap", np.array([12.3456e-6, 0.0]), "um"),
+    )  # fmt: skip
+    brief = DataTable(Table("t", columns), brief=True)
+    assert [[one[0] for one in row] for row in brief.rows] == [
+        ["I", "1.23", "0.02", "33600", "12.3"], ["II", "2.5", "0.3", "", "0"]
+    ]  # fmt: skip
+    assert [one[1] for one in brief.rows[0]] == ["I", "1.23457", "0.02", "33612.3", "12.3456"]
+    assert [head[3] for head in brief.heads] == [False, False, True, False, False]
+    assert [one[0] for one in DataTable(Table("t", columns)).rows[0]] == ["I", "1.23457", "0.02", "33612.3", "12.3456"]
+
+
 def test_the_rows_of_a_table_are_counted_by_its_columns():
     shown = DataTable(table("other"))
     assert shown.count == 2

@@ -12,6 +12,7 @@ from fegear.engine.value import Value
 from fegear.output.report import run as reported
 from fegear.output.report.blocks import Folded, Group, Heading, Switch, Values
 from fegear.output.report.gear_data import gear_sections
+from fegear.output.spoken_values import spoken_values
 
 GEARS = {
     name: {"teeth": z, "module": "3 mm", "face_width": "10 mm", "bore_radius": "10 mm"}
@@ -117,3 +118,18 @@ def test_values_of_tasks_that_only_serve_others_stand_last_in_a_report(ran):
     assert served  # the train and its modes have values, too, and are found before
     assert heads[0] == reported._title(results, Task("tooth-force", "I"))
     assert not any(step.wanted for step in ran.plan.steps if step.task.stage not in ("geometry", "load-sharing"))
+
+
+def test_the_terminal_has_a_screen_of_values_of_what_is_wanted():
+    def ran(*counts):
+        results = values_of(*counts)
+        results.values = [value for outcome in results.outcomes.values() for value in outcome.values]
+        return results
+
+    few = ran(("a", 5, True, None), ("b", 9, False, None))
+    assert spoken_values(few) == (few.values, 0)
+    many = ran(("a", 60, True, None), ("b", 30, False, None), ("c", 3, True, None), ("d", 50, True, None))
+    found, further = spoken_values(many)
+    counts = [sum(value.name.startswith(name) for value in found) for name in "abcd"]
+    assert counts == [13, 0, 3, 24]
+    assert further == 143 - 40

@@ -13,7 +13,7 @@ from string import Template
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
-from fegear.case.drafts.two_stages import LOCATING, PlacedShaft, TwoStages, two_stages
+from fegear.case.drafts.two_stages import LOCATING, PlacedShaft, TwoStages, centre_distance, two_stages
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -293,9 +293,7 @@ def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
 def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
     """The pair; `other` texts stand in place of its own."""
     first, second = map(json.dumps, KINDS[answers.kind].gears)
-    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
-    turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
-    distance = _length(answers.si("module") * (0.5 * teeth / turn + shifts))
+    distance = _length(centre_distance(answers))
     own = {
         "pair": "I", "first": first, "second": second, "centre_distance": distance, "load": _load(answers),
         "range": _range(answers), **_texts(answers, ("speed",)),
@@ -355,13 +353,11 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
     radii, face = _shaft_radii(answers), answers.si("face_width")
     seat = 2.0 * _SEAT * radii[0]
     length = face + 4.0 * seat
-    turn = math.cos(answers.si("helix_angle"))
-    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
     return {
         "shaft_length": _length(length), "middle": _length(0.5 * length), "left": _length(seat),
         "right": _length(length - seat), "input_diameter": _length(2.0 * radii[0]),
         "output_diameter": _length(2.0 * radii[1]),
-        "distance": _length(answers.si("module") * (0.5 * teeth / turn + shifts)),
+        "distance": _length(centre_distance(answers)),
         "bearing": _amount(2.0 * _PER_BORE * radii[0], "N/um"),
     }  # fmt: skip
 

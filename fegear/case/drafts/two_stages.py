@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
+from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN
@@ -166,11 +167,21 @@ def _ratio(stage: Answers) -> float:
     return wheel / pinion
 
 
+def centre_distance(answers: Answers) -> float:
+    """Of two gears without backlash [m] (ISO 21771, 5.4.4): inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) x/z."""
+    turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
+    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
+    normal = math.tan(answers.si("pressure_angle"))
+    angle = math.atan(normal / turn)
+    # Shifts that leave no involute are refused with the case.
+    working = float(pressure_angle_of_inv(max(math.tan(angle) - angle + 2.0 * normal * shifts / teeth, 1e-12)))
+    return 0.5 * answers.si("module") * teeth / turn * math.cos(angle) / math.cos(working)
+
+
 def _radii(stage: Answers) -> tuple[float, float]:
-    """Pitch radii of a mesh without backlash, nearly: reference radii and half the profile shifts [m]."""
-    turn, module = math.cos(stage.si("helix_angle")), stage.si("module")
-    (z, other), shifts = map(int, stage.numbers("teeth")), sum(map(float, stage.numbers("profile_shift")))
-    distance = module * (0.5 * (z + other) / turn + shifts)
+    """Working pitch radii of a mesh without backlash [m]."""
+    z, other = map(int, stage.numbers("teeth"))
+    distance = centre_distance(stage)
     return distance * z / (z + other), distance * other / (z + other)
 
 

@@ -286,7 +286,9 @@ class DataTable(Block):
         full = [[_short(one) for one in cells(column.values[:count])] for column in self.table.columns]
         if not self.brief:
             return list(zip(*([(one, one) for one in column] for column in full), strict=True))
-        errors = {column.name.removesuffix("_error"): column.values for column in self.table.columns}
+        errors = {
+            one.name.removesuffix("_error"): one.values for one in self.table.columns if one.name.endswith("_error")
+        }
         columns = [
             list(zip(_read(column, errors.get(column.name)), shown, strict=False))
             for column, shown in zip(self.table.columns, full, strict=True)
@@ -332,7 +334,7 @@ def _read(column: Column, errors: NDArray[np.generic] | None) -> list[str]:
     """Cells of a column with the digits that their errors allow and a person reads."""
     if column.values.dtype.kind != "f":
         return [_short(one) for one in cells(column.values)]
-    known = [0.0] * len(column) if errors is None or errors is column.values else errors.tolist()
+    known = [0.0] * len(column) if errors is None else errors.tolist()
     return [_read_cell(value, error) for value, error in zip(column.values.tolist(), known, strict=True)]
 
 
