@@ -10,15 +10,15 @@ Newton's method with I - S' F' finds it whether or not an iteration by hand, v <
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from fegear.base.errors import ConvergenceError, InputError
-from fegear.base.keys import content_key
+from fegear.base.keys import Key
 from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.shaft_tilt import LARGEST_TILT
@@ -256,18 +256,13 @@ class LoadedShafts:
 
 def gaps_of_even_loads(gearbox: Gearbox, pair: str) -> ShaftGaps:
     """What shafts open between the flanks of a pair under nominal loads that stay spread evenly over all faces."""
-    return _under_even_loads(_Known(content_key(gearbox), gearbox)).gaps_of(pair)
+    key = Key.of("shafts under even loads", gearbox)
+    if key not in _UNDER_EVEN_LOADS:
+        even = [EvenForces(mesh.even / mesh.load) for mesh in gearbox.meshes]
+        _UNDER_EVEN_LOADS.clear()
+        _UNDER_EVEN_LOADS[key] = LoadedShafts(gearbox, load_gearbox(gearbox, even, [1.0]), (False,) * len(even))
+    return _UNDER_EVEN_LOADS[key].gaps_of(pair)
 
 
-@dataclass(frozen=True)
-class _Known:
-    """A gearbox by its content: all of its pairs ask for the same shafts, while a case is checked and planned."""
-
-    key: str
-    gearbox: Gearbox = field(compare=False)
-
-
-@lru_cache(maxsize=4)
-def _under_even_loads(known: _Known) -> LoadedShafts:
-    even = [EvenForces(mesh.even / mesh.load) for mesh in known.gearbox.meshes]
-    return LoadedShafts(known.gearbox, load_gearbox(known.gearbox, even, [1.0]), (False,) * len(even))
+#: Shafts of the latest gearbox: all of its pairs ask for them while a case is checked and planned.
+_UNDER_EVEN_LOADS: dict[Key, LoadedShafts] = {}
