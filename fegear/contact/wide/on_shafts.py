@@ -257,11 +257,13 @@ class LoadedShafts:
 def gaps_of_even_loads(gearbox: Gearbox, pair: str) -> ShaftGaps:
     """What shafts open between the flanks of a pair under nominal loads that stay spread evenly over all faces."""
     key = Key.of("shafts under even loads", gearbox)
-    if key not in _UNDER_EVEN_LOADS:
+    found = _UNDER_EVEN_LOADS.get(key)
+    if found is None:
         even = [EvenForces(mesh.even / mesh.load) for mesh in gearbox.meshes]
+        found = LoadedShafts(gearbox, load_gearbox(gearbox, even, [1.0]), (False,) * len(even))
         _UNDER_EVEN_LOADS.clear()
-        _UNDER_EVEN_LOADS[key] = LoadedShafts(gearbox, load_gearbox(gearbox, even, [1.0]), (False,) * len(even))
-    return _UNDER_EVEN_LOADS[key].gaps_of(pair)
+        _UNDER_EVEN_LOADS[key] = found
+    return found.gaps_of(pair)
 
 
 #: Shafts of the latest gearbox: all of its pairs ask for them while a case is checked and planned.
