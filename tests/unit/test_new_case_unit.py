@@ -388,13 +388,13 @@ def test_helical_gears_have_relief_and_crowning_unless_the_drawing_has_others_or
     """Line load and pressure at sharp edges stood on fresh reports with errors of 14 and 6 %."""
     for kind in HELICAL:
         for given, tip, crowning in (
-            ({}, "10 um", "3 um"),
+            ({}, "5 um", "1.5 um") if kind == TWO_STAGES else ({}, "10 um", "3 um"),
             ({"torque": "95 N m"}, "5.1 um", "1.5 um"),
             ({"tip_relief": "20 um", "relief_length": "4 mm"}, "20 um", None),
             ({"tip_relief": "none", "relief_length": "none"}, None, None),
         ):
             case = tomllib.loads(draft(Answers(kind, given), "case"))
-            pinion, wheel = case["gear"].values()
+            pinion, wheel = list(case["gear"].values())[:2]
             found = [gear.get("relief", {"tip": {"amount": None}})["tip"]["amount"] for gear in (pinion, wheel)]
             assert found == [tip, tip]
             assert [gear.get("lead", {}).get("crowning") for gear in (pinion, wheel)] == [crowning, None]
