@@ -129,8 +129,8 @@ def test_a_fillet_that_no_rack_makes_has_no_room():
 
 
 def test_a_search_looks_at_the_tool_only_where_a_rack_is_to_make_the_fillet():
-    plain = SimpleNamespace(limits=Limits(), corner=(np.array([0.0, 99.0]), np.array([9.0, 9.0])))
-    asked = SimpleNamespace(limits=Limits(generated=True, smallest_tool_radius=0.3), corner=plain.corner)
+    plain = SimpleNamespace(limits=Limits(), corner=(np.array([0.0, 99.0]), np.array([9.0, 9.0])), other=None)
+    asked = SimpleNamespace(limits=Limits(generated=True, smallest_tool_radius=0.3), corner=plain.corner, other=None)
     for tooth in (with_elliptic_tip(0.6), ellipse(0.02)):
         free, found = FilletBench.room(plain, tooth), FilletBench.room(asked, tooth)
         assert np.array_equal(found[: free.size], free)
