@@ -23,7 +23,7 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "cases-and-runs", "choose-a-tolerance", "commands", "compound-planetary-set", "corner-contact-warning", "cost",
-    "cracked-gear", "double-helical-pair", "dynamic-factor", "export", "fem",
+    "cracked-gear", "design-a-fillet", "double-helical-pair", "dynamic-factor", "export", "fem",
     "gear-with-its-width", "helical", "helical-misalignment", "design",
     "load-over-the-face", "measured-root-strain", "measured-transmission-error", "mesh-as-fmu", "mesh-in-adams",
     "mesh-in-openmodelica", "mesh-in-ross", "mesh-in-simulink", "proofs", "python", "python-formulas",

@@ -176,7 +176,8 @@ def test_a_result_of_a_table_that_is_not_there_says_which():
         case = {"gear": {"a": gear, "b": gear}, "pair": {"I": {"driver": "a", "driven": "b", "load": "1 kN"}}}
         with pytest.raises(InputError) as refused:
             make_plan(build_scene({**case, "results": [name]}, "case", Path()), STAGES)
-        assert refused.value.remedy == f"add [{next(iter(of))}]"
+        table = next(iter(of))
+        assert refused.value.remedy == (f"add {table}" if table.startswith("[") else f"add [{table}]")
     assert tables["measured-transmission-error"] == {"encoders.NAME"}
-    keys = {table.split(".")[0] for of in tables.values() for table in of} - {""}
+    keys = {table.lstrip("[").split(".")[0] for of in tables.values() for table in of} - {""}
     assert keys < set(Case.model_fields)

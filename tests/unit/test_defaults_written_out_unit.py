@@ -136,6 +136,8 @@ MORE = {
         "external": [{"on": "driver", "order": 1, "y": "1 N"}]}}}}),
     "pit": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
         {"pits": [{"diameter": ["49 mm", "50 mm"], "depth": "50 um"}]}]}}}),
+    "hole": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
+        {"hole": {"diameter": "1 mm", "position_radius": "19.5 mm"}}]}}}),
     "catalogue": ("two_stage_shafts", {
         "bearing": {"printed": {"designation": "6206", "catalogue": {"static_rating": "11.2 kN"}}},
         "shaft": {"in": {"bearings": [{"bearing": "ball", "at": "10 mm"}, {"bearing": "printed", "at": "110 mm"}]}}}),

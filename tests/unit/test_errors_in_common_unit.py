@@ -109,12 +109,17 @@ def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
     """K_Fbeta of one gear agreed by chance: 8 times the stated error off."""
     fine = {"driver": RootFactors(1.01, 1.1, 3e8), "driven": RootFactors(1.02, 1.2, 2e8)}
     coarse = {"driver": RootFactors(1.01, 1.15, 3e8), "driven": RootFactors(1.023, 1.21, 2e8)}
-    data = FlankLoadFactorsData(SimpleNamespace(), np.zeros(1), fine, coarse, "", 0.9, 0.0, None, np.ones(1))
+    of_load = SimpleNamespace(face_load_factor=np.array([0.02]))
+    loaded = SimpleNamespace(at=0, error=of_load, stated=SimpleNamespace(face_load_factor=np.ones(1)))
+    data = FlankLoadFactorsData(loaded, np.zeros(1), fine, coarse, "", 0.9, 0.0, None, np.ones(1))
     for member in ("driver", "driven"):
         one = data.members[member]
         assert one.fine is fine[member]
         assert one.off("face") == pytest.approx(0.003)
         assert one.off("transverse") == pytest.approx(0.05)
+    of_load.face_load_factor[:] = 0.2  # a load that is off by a fifth is felt at the root
+    assert data.members["driver"].off("face") == pytest.approx(0.01)
+    assert data.members["driver"].off("transverse") == pytest.approx(0.05)
     none = replace(data, coarse={"driver": None, "driven": None})
     assert none.members["driver"].off("face") is None
     half = replace(data, coarse={"driver": None, "driven": coarse["driven"]})
