@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.fem.plane.imported_mesh import check_triangles, read_sector_mesh
+from fegear.fem.plane.imported_mesh import check_triangles, read_mesh_file, read_sector_mesh
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.table import stiffness_table
 from fegear.geometry.external_tooth import Tooth
@@ -34,6 +34,13 @@ def test_meshes_are_the_ones_their_page_describes():
     page = (MESHES / "README.md").read_text()
     for name, digest in re.findall(r"`([\w.]+\.(?:msh|inp))` \|.*?`([0-9a-f]{64})`", page):
         assert hashlib.sha256((MESHES / name).read_bytes()).hexdigest() == digest
+
+
+def test_nothing_is_printed_where_a_mesh_is_read(capsys):
+    """A plan of a mesh of gmsh began with an empty line: what another format of that ending had to say."""
+    for path in sorted(MESHES.glob("*.msh")):
+        assert len(read_mesh_file(path).points)
+    assert capsys.readouterr().out == ""
 
 
 @pytest.mark.dear("four_square-four_square_test_gear.msh")

@@ -12,6 +12,8 @@ Mesh files of any format that meshio knows (its only door).
 
 from __future__ import annotations
 
+from contextlib import redirect_stdout
+from io import StringIO
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
@@ -396,6 +398,8 @@ def read_mesh_file(path: Path) -> Any:
     import meshio
 
     try:
-        return meshio.read(path)
+        # Of formats that share an ending it tries one after the other, and prints what the first ones say.
+        with redirect_stdout(StringIO()):
+            return meshio.read(path)
     except (Exception, SystemExit) as problem:  # noqa: BLE001  (each of its formats raises its own; unknown ones exit)
         raise ValueError(str(problem) or type(problem).__name__) from None
