@@ -67,7 +67,8 @@ def test_tips_and_centre_distances_in_comments_are_those_without_the_keys():
     text, _ = drafted("pair")
     assert '# tip_diameter = "44.4 mm"' in text  # 2 (20 + 2 (1 + .1))
     assert '# tip_diameter = "64.8 mm"' in text
-    assert '# centre_distance = "50.6 mm"' in text  # 2 (25 + .3)
+    # a cos(alpha) / cos(alpha_w) with inv(alpha_w) = inv(alpha) + 2 tan(alpha) (x_1 + x_2) / (z_1 + z_2)
+    assert '# centre_distance = "50.5759 mm"' in text  # 2 (25 + .3) is 24 um more
     given = {key: value for key, value in GIVEN.items() if key not in {"speed", "torque"}}
     text = draft(Answers("ring", given | {"teeth": "60", "profile_shift": "0.1"}), "x")
     made = tomllib.loads(text)["gear"]
@@ -75,7 +76,7 @@ def test_tips_and_centre_distances_in_comments_are_those_without_the_keys():
     assert ring["cutter"]["teeth"] == 24  # two fifths of the ring's
     assert '# tip_diameter = "115.6 mm"' in text  # 2 (60 - 2 (1 + .1))
     text, case = drafted("helical", helix_angle="20 deg")
-    assert f'# centre_distance = "{2.0 * (25.0 / math.cos(math.radians(20.0)) + 0.3):.6g} mm"' in text
+    assert '# centre_distance = "53.7885 mm"' in text  # the same in the transverse section
     assert [gear["hand"] for gear in case["gear"].values()] == ["right", "left"]
 
 
