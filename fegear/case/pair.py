@@ -164,7 +164,8 @@ class PairPart(Part):
     flank: Literal["drive", "coast"] | None = Field(
         default=None,
         description="Working flanks of asymmetric teeth (`coast_pressure_angle`): `drive`, or `coast` as under "
-        "reversed torque. Default: drive.",
+        "reversed torque. Default: as the other pairs of its gears imply (idlers and planets: opposite flanks of "
+        "driving and driven mates), else `drive`.",
     )
     centre_distance: PositiveLength | None = Field(
         default=None,

@@ -74,6 +74,8 @@ class Scene(Brief):
         A sentence about every number that was made of another dimension.
     within : tuple of str, optional
         Real folders below which the files lie that the case may name; None for anywhere.
+    written : mapping of str to str
+        Names in the case file of gears that have a second one, for their coast flanks.
     """
 
     case: Case
@@ -91,6 +93,7 @@ class Scene(Brief):
     renamed: tuple[str, ...] = ()
     derived: tuple[str, ...] = ()
     within: tuple[str, ...] | None = None
+    written: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def sizes_neglected(self) -> bool:
@@ -249,7 +252,7 @@ def build_scene(
                 f"pair.{key}.driven", f'"{pair.driven}"', "only one of the two gears is helical",
                 "specify the same helix_angle and opposite hands",
             )  # fmt: skip
-    gears = with_working_flanks(case, gears)
+    case, gears, written = with_working_flanks(case, gears)
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     case = _with_effects(case, pairs)
     if any(pair.double_helical is not None for pair in case.pair.values()):
@@ -276,6 +279,7 @@ def build_scene(
         renamed=renamed,
         derived=derived,
         within=within,
+        written=written,
     )
     check_references(
         scene.case,

@@ -63,6 +63,8 @@ class FlankSpec:
         Profile modifications and deviations of single teeth likewise.
     gear : str
         Name of the gear, for messages.
+    written : str
+        The same in the case file, where it has another one there.
     key : str
         Key of the relief among those of the gear, for messages.
     measured : bool
@@ -78,6 +80,7 @@ class FlankSpec:
     odd: tuple[tuple[int, OddFlank], ...] = ()
     profiles: tuple[tuple[int, ToothProfile], ...] = ()
     gear: str = field(default="", compare=False)
+    written: str = field(default="", compare=False)
     key: str = field(default="relief", compare=False)
     measured: bool = field(default=False, compare=False)
     wrong: Mapping[str, InputError] = field(default_factory=dict, compare=False)
@@ -89,6 +92,11 @@ class FlankSpec:
         return (self.relief is not None and self.relief.wants_delta) or any(own)
 
     @property
+    def bare(self) -> FlankSpec:
+        """The flanks of the same gear with nothing on them."""
+        return FlankSpec(gear=self.gear, written=self.written)
+
+    @property
     def over_face(self) -> bool:
         """Whether anything is modified over the face."""
         return bool(self.face) or self.bias is not None
@@ -96,7 +104,8 @@ class FlankSpec:
     @property
     def prefix(self) -> str:
         """Of keys in messages."""
-        return f"gear.{self.gear}" if self.gear else ""
+        name = self.written or self.gear
+        return f"gear.{name}" if name else ""
 
     def profile(self, pair: GearPair, member: Member, delta: float = math.nan) -> Relief:
         """The relief for one gear of a pair; `delta` is Welbourn's [m].
@@ -248,7 +257,7 @@ class PairSpec(ToothEffects, RootEffects, FaceEffects):
         """The same of perfect flanks and teeth, under no load but the one that a contact's width is taken at."""
         return replace(
             self, relief=False, spacing_errors=False, misalignment=False, loads=(),
-            driver=FlankSpec(gear=self.driver.gear), driven=FlankSpec(gear=self.driven.gear),
+            driver=self.driver.bare, driven=self.driven.bare,
             nominal=self.nominal if self.hertz == "linear" else math.nan,
         )  # fmt: skip
 

@@ -150,7 +150,7 @@ def export_gears(
 
 def _chosen(scene: Scene, names: Sequence[str]) -> list[str]:
     """The gears that are asked for."""
-    every = list(scene.gears)
+    every = [name for name in scene.gears if name not in scene.written]  # both flanks of a gear are in one file
     if not every:
         raise InputError("gear", "(not given)", "is required for export", "add [gear.NAME]")
     for name in names:

@@ -123,7 +123,7 @@ const fegearSets = (() => {
           context.fillStyle = context.strokeStyle = ink;
           if (mesh.end > mesh.start) {
             for (let k = -6; k <= 6; k += 1) {
-              const x = (q - Math.floor(q) - mesh.delay[n] + k) * d.base_pitch;
+              const x = (q - Math.floor(q) - mesh.delay[n] + k) * mesh.base_pitch;
               if (x < mesh.start || x > mesh.end) continue;
               context.beginPath();
               context.arc(px + x * ax, py + x * ay, max(2.2 / zoom, 0.08 * d.module), 0, 2 * PI);

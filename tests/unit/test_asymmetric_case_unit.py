@@ -29,6 +29,12 @@ TIP = {"tip": {"amount": "20 um", "length": "1 mm"}}
 RELIEF = {"relief": True, "hertz": "load-dependent"}
 #: Results that take asymmetric teeth.
 KNOWN = {"geometry", "stiffness", "root-stress", "load-sharing", "transmission-error", "root-stress-history"}
+#: The same of trains and of planetary sets.
+IN_TRAINS = {
+    "gear-train", "natural-modes", "campbell", "torque-ripple", "dynamic-increments", "mesh-force-spectrum",
+    "tooth-force", "dynamic-root-stress", "planet-set", "planet-load-sharing", "planet-root-stress", "planet-modes",
+    "planet-vibration",
+}  # fmt: skip
 
 
 def case(flank=None, results=("geometry",), pair=(), effects=(), **gear):
@@ -128,12 +134,17 @@ def test_what_asymmetric_teeth_cannot_have_is_said(document, said):
     assert said in refused(document)
 
 
-def test_a_gear_that_would_be_loaded_on_both_flanks_is_refused():
-    idler = case()
+def test_flanks_on_which_no_two_mates_can_load_a_gear_are_refused():
+    idler = case("drive")
     idler["gear"]["c"] = {**idler["gear"]["w"], "teeth": 30}
-    idler["pair"]["J"] = {"driver": "w", "driven": "c", "load": "4 kN"}
-    assert "is an idler with asymmetric teeth (see pair I)" in refused(idler)
-    split = case()
+    idler["pair"]["J"] = {"driver": "w", "driven": "c", "load": "4 kN", "flank": "drive"}
+    assert 'pair.J.flank = "drive": contradicts pair I, which loads the drive flank of idler w' in refused(idler)
+    assert 'set flank = "coast", or remove it' in refused(idler)
+    del idler["pair"]["J"]["flank"]
+    assert set(built(idler).gears) == {"p", "w", "c", "w-coast"}
+    idler["gear"]["w-coast"] = idler["gear"]["c"]
+    assert "gear.w-coast = (given): is the name of the coast flank of gear w; rename it" in refused(idler)
+    split = case("drive")
     split["gear"]["c"] = {**split["gear"]["w"], "teeth": 30}
     split["pair"]["J"] = {"driver": "p", "driven": "c", "load": "4 kN", "flank": "coast"}
     assert 'pair.J.flank = "coast": contradicts the drive flank of gear p in pair I' in refused(split)
@@ -148,8 +159,10 @@ def test_a_gear_that_would_be_loaded_on_both_flanks_is_refused():
 @pytest.mark.parametrize("result", RESULTS)
 def test_every_result_takes_asymmetric_teeth_or_says_that_it_does_not(result):
     flags = {entry.asymmetric for entry in STAGES.entries if result in entry.results}
-    if result in KNOWN:
+    if result in KNOWN | IN_TRAINS:
         assert True in flags
+        if result in IN_TRAINS:
+            return
         assert planned(case(results=[result])).steps
     else:
         assert flags == {False}

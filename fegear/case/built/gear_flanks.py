@@ -43,6 +43,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
     part, effects = scene.case.gear[gear], scene.case.effects
     seen = scene.gears[gear].from_the_back if back else scene.gears[gear]
     given, key = part.relief_of(seen.tooth.working_flank), relief_key(seen)
+    written = scene.written.get(gear, gear)
     relief: ReliefSpec | None = None
     spacing, wrong, measured = np.empty(0), {}, False
     if given is not None:
@@ -58,7 +59,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
                 relief, measured = ReliefSpec(tables=(found.relief,)), True
         if relief is not None and not measured:
             tables = given.table if given is not None else ()
-            relief = replace(relief, tables=_tables(scene, seen, tables, f"gear.{gear}.{key}.table"))
+            relief = replace(relief, tables=_tables(scene, seen, tables, f"gear.{written}.{key}.table"))
     except InputError as error:
         if effects.relief:
             raise
@@ -69,7 +70,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
         if effects.spacing_errors:
             raise
         wrong[SPACING_ERRORS.name] = error
-    return FlankSpec(relief, spacing, gear=gear, key=key, measured=measured, wrong=wrong)
+    return FlankSpec(relief, spacing, gear=gear, written=written, key=key, measured=measured, wrong=wrong)
 
 
 def _ends(given: ReliefPart) -> ReliefSpec:
@@ -143,7 +144,7 @@ def _rolls(gear: Gear, radii: Array, key: str) -> Array:
 
 def _spacing_errors(scene: Scene, gear: str) -> Array:
     """Spacing error of each tooth of a gear [m]; empty for none."""
-    part, key = scene.case.gear[gear].spacing_errors, f"gear.{gear}.spacing_errors"
+    part, key = scene.case.gear[gear].spacing_errors, f"gear.{scene.written.get(gear, gear)}.spacing_errors"
     if part is None:
         return np.empty(0)
     if part.values is not None:

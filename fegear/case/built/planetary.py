@@ -22,12 +22,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
-    from fegear.case.planetary import PlanetaryPart, SetBodyPart
+    from fegear.case.planetary import Mesh, PlanetaryPart, SetBodyPart
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.geometry.gear import Gear
     from fegear.geometry.internal_interference import InternalCheck
+    from fegear.geometry.pair import GearPair
 
 #: Speed of sets of which nobody gave one [rad/s]: ratios, torques and phases do not depend on it.
 _ANY_SPEED = 1.0
@@ -80,20 +81,18 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
         If it cannot be assembled; the key is the one of the case file.
     """
     part = planetary_part(scene, name)
-    sun, planet, pair = scene.gears[part.sun], scene.gears[part.planet], scene.pairs[set_pair(name, "sun")]
+    sun, planet, pair = scene.gears[part.sun], planet_at(scene, name, "sun"), scene.pairs[set_pair(name, "sun")]
     for one in (set_pair(name, mesh) for mesh in MESHES):
         if sun.helix_angle and scene.pairs.get(one, pair).axial_offset:
             raise InputError(
                 f"pair.{one}.axial_offset", "(given)", "shifts the phase of one mesh of a helical planetary set",
                 "remove it: gears of a planetary set are centred axially",
             )  # fmt: skip
-    tooth, teeth = planet.symmetric_tooth, set_teeth(scene.case, part)
-    at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
-    half = float(tooth.half_thickness_angle(at_pitch)) + float(inv(pair.working_pressure_angle))
+    teeth = set_teeth(scene.case, part)
     try:
         found = PlanetarySet(
             sun.teeth, planet.teeth, teeth.ring, pair.base_pitch, pair.centre_distance,
-            np.array(angles_of(part)), half, planet.tip_radius,
+            np.array(angles_of(part)), _base_half_angle(planet, pair), planet.tip_radius, *_at_ring(scene, name),
         )  # fmt: skip
     except InputError as error:
         raise at(f"planetary.{name}", error, {"ring": "ring_teeth"} if part.ring is None else {}) from None
@@ -111,6 +110,32 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
         found, run, phases, model, teeth.sun_torque(part), given, part.speed is not None,
         sun.twist * sun.base_radius, name,
     )  # fmt: skip
+
+
+def planet_at(scene: Scene, name: str, mesh: Mesh) -> Gear:
+    """The planet of a set seen from the flank that sun or ring loads; asymmetric teeth have two."""
+    part = planetary_part(scene, name)
+    pair = scene.case.pair.get(set_pair(name, mesh))
+    if pair is None:
+        return planet_at(scene, name, "sun").from_the_back
+    central = part.sun if mesh == "sun" else part.ring
+    gears = [gear for gear in (pair.driver, pair.driven) if scene.written.get(gear, gear) != central]
+    return scene.gears[gears[0] if gears else part.planet]
+
+
+def _base_half_angle(planet: Gear, pair: GearPair) -> float:
+    """Angle from the middle of a planet's tooth to its flank on the base circle [rad]."""
+    if planet.asymmetric:
+        return planet.tooth.base_half_angle
+    at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
+    half = float(planet.symmetric_tooth.half_thickness_angle(at_pitch))
+    return half + float(inv(pair.working_pressure_angle))
+
+
+def _at_ring(scene: Scene, name: str) -> tuple[float, float]:
+    """Base pitch [m] and base half angle of asymmetric teeth of a planet at the ring [rad]; nan of equal flanks."""
+    planet = planet_at(scene, name, "ring")
+    return (planet.base_pitch, planet.tooth.base_half_angle) if planet.asymmetric else (math.nan, math.nan)
 
 
 def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:

@@ -13,6 +13,7 @@ from fegear.case.built.torque_ripple import torque_ripples
 from fegear.case.halves import double_gears
 from fegear.dynamics.motion.motion_spec import MotionSpec
 from fegear.dynamics.train.friction_law import FrictionLaw
+from fegear.dynamics.train.gear_train import a_drives
 from fegear.dynamics.train.matrices import static_forces
 from fegear.dynamics.train.train import Body, Damper, Torque, shaft_stiffness
 from fegear.dynamics.train.train_spec import MeshSpec, ShaftSpec, TrainSpec, build_train
@@ -36,7 +37,9 @@ def train_part(scene: Scene) -> TrainPart:
 def check_train(scene: Scene) -> None:
     """Refuse trains that cannot turn, before anything is computed."""
     part = train_part(scene)
-    forces = static_forces(build_train(train_inputs(scene).spec))
+    train = build_train(train_inputs(scene).spec)
+    forces = static_forces(train)
+    _check_flanks(scene, part, a_drives(train))
     for name, force in zip(part.mesh, forces, strict=True):
         pair = part.loaded_pair_of(name)
         of_one, halves = scene.case.pair[pair].normal_load(scene.pairs[pair]), scene.case.pair[pair].halves
@@ -47,6 +50,24 @@ def check_train(scene: Scene) -> None:
                 f"differs from the mean force of {force:.8g} N that train.torque puts on mesh {name}",
                 "make the load and the torques agree",
             )  # fmt: skip
+
+
+def _check_flanks(scene: Scene, part: TrainPart, drives: tuple[bool, ...]) -> None:
+    """Refuse idlers with asymmetric teeth whose pairs name driver and driven against the power of one mesh only."""
+    known: dict[str, tuple[str, bool]] = {}
+    for mesh, as_named in zip(part.mesh, drives, strict=True):
+        pair = scene.case.pair[part.loaded_pair_of(mesh)]
+        for gear in (pair.driver, pair.driven):
+            if not scene.gears[gear].asymmetric:
+                continue
+            name = scene.written.get(gear, gear)
+            first, before = known.setdefault(name, (mesh, as_named))
+            if before != as_named:
+                raise InputError(
+                    f"train.mesh.{mesh}.driver", f'"{part.mesh[mesh].driver}"',
+                    f"is driven where mesh {first} runs as named: gear {name} would be loaded on the wrong flank",
+                    f"exchange driver and driven of mesh {mesh} and of its pair",
+                )  # fmt: skip
 
 
 @dataclass(frozen=True)

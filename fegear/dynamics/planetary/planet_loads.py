@@ -33,7 +33,7 @@ class PlanetLoads:
     ----------
     cycle : SetCycle
     mesh_force : ndarray, shape (2, planets, M)
-        At sun (0) and ring (1) [N]. Without inertia and friction both are alike.
+        At sun (0) and ring (1) [N]. Without inertia and friction both are alike where flanks are equal.
     pin_force : ndarray, shape (2, planets, M)
         On each planet by its pin, radially outward and counter-clockwise [N].
     member_force : ndarray, shape (members, 2, M)
@@ -67,8 +67,13 @@ class PlanetLoads:
 
     @property
     def mean_force(self) -> float:
-        """Force in every mesh where all planets carry alike [N]."""
+        """Force in every mesh with the sun where all planets carry alike [N]."""
         return self.cycle.mean_force
+
+    @property
+    def on_one_lever(self) -> Array:
+        """Mesh forces that the ring's meshes would have at the base radius of the sun's [N], shape of `mesh_force`."""
+        return self.mesh_force * np.array([1.0, self.cycle.model.found.ring_lever])[:, None, None]
 
     @cached_property
     @shows("", "planet load / equal share, mean over the mesh cycle")
@@ -86,7 +91,7 @@ class PlanetLoads:
     @shows("", "maximum planet load / equal share, at any mesh position")
     def largest_share(self) -> float:
         """Its largest value over the cycle."""
-        return float(self.mesh_force.max()) / self.mean_force
+        return float(self.on_one_lever.max()) / self.mean_force
 
     @cached_property
     @shows("N", "maximum mesh force over the mesh cycle")
@@ -167,7 +172,7 @@ class PlanetLoads:
     @property
     def largest_share_error(self) -> float:
         """Of `largest_share`."""
-        return float(self.peak_error(lambda one: one.mesh_force).max()) / self.mean_force
+        return float(self.peak_error(lambda one: one.on_one_lever).max()) / self.mean_force
 
     @property
     def te_mean_error(self) -> float:
@@ -243,7 +248,8 @@ def _off(cycle: SetCycle, force: Array) -> Array:
     own = np.arange(force.shape[1])
     share = (force - level[own, at]) / (level[own, at + 1] - level[own, at])
     bent = 4.0 * share * (1.0 - share) * np.take_along_axis(cycle.bent, at[..., None], 2)[..., 0]
-    return np.concatenate([cycle.off * (force / cycle.mean_force), bent[None]])
+    lever = np.repeat([1.0, cycle.model.found.ring_lever], cycle.model.count)
+    return np.concatenate([cycle.off * (force * lever / cycle.mean_force), bent[None]])
 
 
 def _put_together(cycle: SetCycle, q: Array, force: Array) -> PlanetLoads:

@@ -37,7 +37,7 @@ class PlanetarySet:
     sun_teeth, planet_teeth, ring_teeth : int
         Positive, the ring's too.
     base_pitch : float
-        Common transverse base pitch [m].
+        Transverse base pitch [m]: of all meshes, or of the sun's where flanks differ.
     centre_distance : float
         From the axis of the set to that of a planet [m].
     angles : ndarray, shape (planets,)
@@ -46,6 +46,10 @@ class PlanetarySet:
         Half the angle of a planet's tooth at its base circle [rad].
     planet_tip_radius : float
         [m]; zero where neighbours are not checked.
+    ring_base_pitch, planet_ring_half_angle : float
+        Base pitch of the ring's meshes [m] and the angle of a planet's flank there from the middle of its tooth, at its
+        base circle [rad], of asymmetric teeth: a planet meets sun and ring on different flanks. By default as at the
+        sun.
 
     Raises
     ------
@@ -62,9 +66,14 @@ class PlanetarySet:
     angles: Array
     planet_base_half_angle: float
     planet_tip_radius: float = 0.0
+    ring_base_pitch: float = math.nan
+    planet_ring_half_angle: float = math.nan
 
     def __post_init__(self) -> None:
-        """Refuse sets that cannot be assembled."""
+        """Fill in what is as at the sun, and refuse sets that cannot be assembled."""
+        for key, usual in (("ring_base_pitch", "base_pitch"), ("planet_ring_half_angle", "planet_base_half_angle")):
+            if math.isnan(getattr(self, key)):
+                object.__setattr__(self, key, getattr(self, usual))
         angles = np.array(self.angles, dtype=float)
         angles.setflags(write=False)
         object.__setattr__(self, "angles", angles)
@@ -85,8 +94,9 @@ class PlanetarySet:
 
     def _check_distance(self) -> None:
         sun, planet, ring = (self.base_radius(name) for name in ("sun", "planet", "ring"))
-        least = max(sun + planet, ring - planet)
-        if ring <= planet:
+        inside = self.base_radius("planet", "ring")
+        least = max(sun + planet, ring - inside)
+        if ring <= inside:
             raise GeometryError("ring", self.ring_teeth, f"must have more teeth than the planet's {self.planet_teeth}")
         if self.centre_distance <= least:
             raise GeometryError(
@@ -100,10 +110,19 @@ class PlanetarySet:
         """Number of planets."""
         return int(self.angles.size)
 
-    def base_radius(self, body: Literal["sun", "planet", "ring"]) -> float:
-        """Base radius [m]."""
+    def base_radius(self, body: Literal["sun", "planet", "ring"], mesh: Literal["sun", "ring"] = "sun") -> float:
+        """Base radius [m]; of a planet that of the flanks which meet sun or ring."""
         teeth: int = getattr(self, f"{body}_teeth")
-        return teeth * self.base_pitch / (2.0 * math.pi)
+        pitch = self.ring_base_pitch if "ring" in (body, mesh) else self.base_pitch
+        return teeth * pitch / (2.0 * math.pi)
+
+    @property
+    def ring_lever(self) -> float:
+        """Base radius of a planet's flanks at the ring over that of those at the sun; 1 of equal flanks.
+
+        The force in a ring's mesh is that in the sun's mesh divided by it.
+        """
+        return self.ring_base_pitch / self.base_pitch
 
     def lever(self, member: Central) -> float:
         """Radius by which a rotation of the member counts as a length [m]: base radius, or the centre distance."""
@@ -119,11 +138,16 @@ class PlanetarySet:
     @shows("deg", "working pressure angle, planet-ring")
     def ring_angle(self) -> float:
         """alpha_w of the ring's mesh [rad]."""
-        return math.acos((self.base_radius("ring") - self.base_radius("planet")) / self.centre_distance)
+        return math.acos((self.base_radius("ring") - self.base_radius("planet", "ring")) / self.centre_distance)
 
     def half_tooth_angle(self, mesh: Literal["sun", "ring"]) -> float:
-        """tau: half the angle of a planet's tooth at its working pitch radius of a mesh [rad]."""
-        return self.planet_base_half_angle - float(inv(self.sun_angle if mesh == "sun" else self.ring_angle))
+        """tau: half the angle of a planet's tooth at its working pitch radius of a mesh [rad].
+
+        Of asymmetric teeth from the middle of the tooth to the flank that is loaded in the mesh.
+        """
+        if mesh == "sun":
+            return self.planet_base_half_angle - float(inv(self.sun_angle))
+        return self.planet_ring_half_angle - float(inv(self.ring_angle))
 
     @cached_property
     def neighbours(self) -> Array:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
@@ -102,13 +102,14 @@ class SetCycle:
 
     @property
     def mean_force(self) -> float:
-        """Force in every mesh where all planets carry alike [N]."""
+        """Force in every mesh with the sun where all planets carry alike [N]; of equal flanks with the ring, too."""
         return mean_force(self.model, self.sun_torque)
 
 
-def mean_force(model: SetModel, sun_torque: float) -> float:
-    """Force in every mesh where all planets carry alike [N]."""
-    return sun_torque / (model.found.base_radius("sun") * model.count)
+def mean_force(model: SetModel, sun_torque: float, mesh: Literal["sun", "ring"] = "sun") -> float:
+    """Force in every mesh with sun or ring where all planets carry alike [N]."""
+    force = sun_torque / (model.found.base_radius("sun") * model.count)
+    return force / model.found.ring_lever if mesh == "ring" else force
 
 
 def set_cycle(
@@ -252,8 +253,13 @@ class MeshedSet:
 
     @property
     def mean_force(self) -> float:
-        """Force in every mesh where all planets carry alike [N]."""
+        """Force in every mesh with the sun where all planets carry alike [N]; of equal flanks with the ring, too."""
         return mean_force(self.model, self.sun_torque)
+
+    @property
+    def mean_forces(self) -> tuple[float, float]:
+        """The same in the meshes with sun and ring [N]."""
+        return self.mean_force, mean_force(self.model, self.sun_torque, "ring")
 
     @cached_property
     def delays(self) -> Array:

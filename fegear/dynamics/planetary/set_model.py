@@ -1,7 +1,8 @@
 """Bodies of a planetary set and the springs between them, in a frame that turns with the carrier.
 
 The model of Lin and Parker (1999): every body moves in two directions across the axis and turns; a turn counts as the
-length u = r theta at the base circle, that of the carrier at the circle of the pins. Planets move radially (zeta) and
+length u = r theta at the base circle (of planets with asymmetric teeth at that of the flanks which meet the sun), that
+of the carrier at the circle of the pins. Planets move radially (zeta) and
 tangentially (eta). Gyroscopic forces of the carrier's rotation are neglected.
 """
 
@@ -145,7 +146,7 @@ class SetModel:
             rows[0, n, 0:3] = -math.sin(psi - sun), math.cos(psi - sun), 1.0
             rows[0, n, p : p + 3] = -math.sin(sun), -math.cos(sun), 1.0
             rows[1, n, 3:6] = -math.sin(psi + ring), math.cos(psi + ring), 1.0
-            rows[1, n, p : p + 3] = math.sin(ring), -math.cos(ring), -1.0
+            rows[1, n, p : p + 3] = math.sin(ring), -math.cos(ring), -self.found.ring_lever
         rows.setflags(write=False)
         return rows
 
@@ -252,6 +253,6 @@ class SetModel:
         """Forces of the outer torques on all coordinates [N], shape (size,), for a torque on the sun [N m]."""
         load = np.zeros(self.size)
         force = sun_torque / self.found.lever("sun")
-        load[2] = load[5] = force
-        load[8] = -force * (math.cos(self.found.sun_angle) + math.cos(self.found.ring_angle))
+        load[2], load[5] = force, force / self.found.ring_lever
+        load[8] = -force * (math.cos(self.found.sun_angle) + math.cos(self.found.ring_angle) / self.found.ring_lever)
         return load

@@ -65,7 +65,7 @@ class SetMotion:
     def static(self) -> Array:
         """Mean mesh forces of planets that carry alike [N], shape (2 planets,)."""
         meshed = self.linear.meshed
-        return np.full(2 * meshed.model.count, meshed.mean_force)
+        return np.repeat(meshed.mean_forces, meshed.model.count)
 
     def at_speed(self, speed: float) -> SetMotion:
         """The same at another angular frequency of the mesh [rad/s]."""

@@ -132,8 +132,8 @@ def linear_set(
     if not 0.0 <= damping_ratio < 1.0:
         raise RangeError("damping_ratio", damping_ratio, "must be at least 0 and below 1")
     stiffness, fluctuation = [], []
-    for one in meshed.teeth:
-        compliance, over = one.linearised(meshed.mean_force)
+    for one, force in zip(meshed.teeth, meshed.mean_forces, strict=True):
+        compliance, over = one.linearised(force)
         stiffness.append(1.0 / compliance)
         few = over.coarser(_FITTED)
         fluctuation.append(few.plus(-few.mean))
@@ -161,10 +161,12 @@ class ForcedResponse:
     sizes : ndarray, shape (speeds, size)
         Root of the sum of squares of all harmonics of each coordinate, 0-peak [m].
     mean_force : float
-        In every mesh [N].
+        In every mesh with the sun [N].
     mesh_frequency : ndarray, shape (speeds,)
     others : tuple of ForcedResponse
         The same with the teeth off by one of their errors each, and by what numbers leave.
+    ring_lever : float
+        Mean force in the sun's meshes over that in the ring's (`PlanetarySet.ring_lever`).
     """
 
     coordinate: Complex
@@ -174,6 +176,7 @@ class ForcedResponse:
     mean_force: float
     mesh_frequency: Array = shown("Hz", "mesh frequency")
     others: tuple[ForcedResponse, ...] = ()
+    ring_lever: float = 1.0
 
     def shift(self, answer: Callable[[ForcedResponse], Array]) -> Array:
         """Estimated error of an answer: its changes by the errors of the teeth and of the numbers."""
@@ -207,7 +210,8 @@ class ForcedResponse:
     @shows("", "minimum / mean mesh force; negative: loss of contact (not modelled)")
     def least_share(self) -> Array:
         """Shape (speeds,)."""
-        return np.asarray(1.0 + self.extremes[:, 1].min(axis=(1, 2)) / self.mean_force)
+        smallest = self.extremes[:, 1].min(axis=2) * [1.0, self.ring_lever]
+        return np.asarray(1.0 + smallest.min(axis=1) / self.mean_force)
 
     def amplitude(self, member: Central, axis: int) -> Array:
         """Root of the sum of squares of a coordinate's harmonics [m], 0-peak, shape (speeds,).
@@ -268,7 +272,13 @@ def _response(linear: LinearSet, frequency: Array) -> tuple[ForcedResponse, Arra
     coordinate, dynamic = (part.sum(axis=0) for part in _harmonics(linear, frequency, linear.harmonics))
     shape = (frequency.size, 2, 2, count)
     found_response = ForcedResponse(
-        coordinate, dynamic, extremes.reshape(shape), sizes, linear.meshed.mean_force, frequency
+        coordinate,
+        dynamic,
+        extremes.reshape(shape),
+        sizes,
+        linear.meshed.mean_force,
+        frequency,
+        ring_lever=linear.meshed.model.found.ring_lever,
     )
     return found_response, place.reshape(shape)
 

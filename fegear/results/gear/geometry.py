@@ -179,6 +179,8 @@ def assumed_bodies(scene: Scene) -> tuple[str, ...]:
     """Sentences on gears whose mass is that of an assumed bore or face width."""
     found = []
     for name, part in scene.case.gear.items():
+        if name in scene.written:  # the same gear seen from its other flank
+            continue
         gear, lacking = scene.gears[name], []
         if not part.gives_rim:
             key = "outer_radius" if part.internal else "bore_radius"

@@ -97,10 +97,8 @@ def check_set(scene: Scene, name: str) -> None:
 
 
 def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
-    load = mean_force(asked.model, asked.sun_torque)
-
     def teeth(mesh: Mesh) -> MeshTeeth:
-        given = asked.given[mesh]
+        given, load = asked.given[mesh], mean_force(asked.model, asked.sun_torque, mesh)
         if given is not None:
             return SlotSprings(given_teeth(given))
         name = set_pair(asked.name, mesh)
@@ -142,10 +140,8 @@ def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
     from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
-    force = mean_force(asked.model, asked.sun_torque)
-
     def teeth(mesh: Mesh) -> MeshExcitation:
-        given = asked.given[mesh]
+        given, force = asked.given[mesh], mean_force(asked.model, asked.sun_torque, mesh)
         if given is not None:
             return given_teeth(given)
         name = set_pair(asked.name, mesh)

@@ -52,8 +52,8 @@ class PlanetStressInputs:
     between : float
         Angle that a planet turns in the carrier from a tooth's contact at the pitch point of the sun's mesh to that of
         the ring's [rad].
-    planet_radius : float
-        Its base radius [m].
+    planet_radius : mapping of mesh to float
+        Its base radius [m], of the flanks that meet sun and ring.
     sun_drives : bool
         Whether the sun drives the planets in the motion relative to the carrier.
     name : str
@@ -62,7 +62,7 @@ class PlanetStressInputs:
     """
 
     between: float
-    planet_radius: float
+    planet_radius: dict[Mesh, float]
     sun_drives: bool
     name: str
     gears: dict[str, str] = field(compare=False)
@@ -104,7 +104,8 @@ def _inputs(scene: Scene, name: str) -> PlanetStressInputs:
     thick = found.half_tooth_angle("sun") + found.half_tooth_angle("ring")
     gears = {"sun": part.sun, "planet": part.planet, "ring": part.ring or ""}
     between = math.pi - thick if drives else math.pi + thick
-    return PlanetStressInputs(between, found.base_radius("planet"), drives, name, gears)
+    radius = {mesh: found.base_radius("planet", mesh) for mesh in MESHES}
+    return PlanetStressInputs(between, radius, drives, name, gears)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -174,7 +175,7 @@ def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> Plan
     for mesh in MESHES:
         found[mesh], *_ = bent(mesh, mesh)
     ways = [one.x for one in placed if one is not None]
-    angle = np.concatenate(ways) / asked.planet_radius
+    angle = np.concatenate([x / asked.planet_radius[mesh] for mesh, x in zip(MESHES, ways, strict=True)])
     angle += np.repeat([0.0, asked.between], [one.size for one in ways])
     mesh_of = tuple(mesh for mesh, one in zip(MESHES, ways, strict=True) for _ in one)
     stress = np.array([np.concatenate(by_sun), np.concatenate(by_ring[::-1])])  # the ring pulls the second one

@@ -85,7 +85,8 @@ def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearS
 
     meshed = meshed_set(upstream, inputs.name)
     sun, ring = (
-        _exactness(upstream, set_pair(inputs.name, mesh), meshed.mean_force, SHOWN_HARMONICS) for mesh in MESHES
+        _exactness(upstream, set_pair(inputs.name, mesh), force, SHOWN_HARMONICS)
+        for mesh, force in zip(MESHES, meshed.mean_forces, strict=True)
     )
     return linear_set(meshed, inputs.damping_ratio, exactness=(sun, ring))
 

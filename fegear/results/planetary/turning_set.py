@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
-from fegear.case.built.planetary import planetary_part, set_inputs
+from fegear.case.built.planetary import planet_at, planetary_part, set_inputs
 from fegear.case.planetary import set_pair
 from fegear.geometry.outline import tooth_outline
 
@@ -70,6 +70,8 @@ class TurningMesh(ReadOnlyArrays):
         Of each planet's mesh [base pitches]: a tooth pair stands at x = (q - delay + k) p_b.
     start, end : float
         Of the path of contact [m]; both zero where the mating gear is not of the case.
+    base_pitch : float
+        p_b [m].
     """
 
     radius: float
@@ -78,6 +80,7 @@ class TurningMesh(ReadOnlyArrays):
     delay: Array
     start: float
     end: float
+    base_pitch: float
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,7 @@ class TurningSet(ReadOnlyArrays):
         By "sun" and "ring".
     angles : ndarray, shape (planets,)
         Of the planets on the carrier.
-    centre_distance, base_pitch, module : float
+    centre_distance, module : float
         [m].
     carrier : float
     per_cycle : float
@@ -105,7 +108,6 @@ class TurningSet(ReadOnlyArrays):
     meshes: dict[str, TurningMesh]
     angles: Array
     centre_distance: float
-    base_pitch: float
     module: float
     carrier: float
     per_cycle: float
@@ -161,7 +163,7 @@ def turning_set(scene: Scene, name: str) -> TurningSet:
     """
     part, asked = planetary_part(scene, name), set_inputs(scene, name)
     found, phases = asked.found, asked.phases
-    sun, planet = scene.gears[part.sun], scene.gears[part.planet]
+    sun, planet = scene.gears[part.sun], planet_at(scene, name, "sun")
     ring = None if part.ring is None else scene.gears[part.ring]
     way = math.copysign(1.0, asked.run.sun_turns)  # of the sun against the carrier
     push = way if asked.run.sun_drives else -way  # of the sun on the planets
@@ -178,27 +180,29 @@ def turning_set(scene: Scene, name: str) -> TurningSet:
     none = np.empty((2, 0))
     return TurningSet(
         {
-            "sun": TurningGear(sun.teeth, _tooth(sun), np.array([of_sun]), turn["sun"], sun.bore_radius),
-            "planet": TurningGear(planet.teeth, _tooth(planet), planets, -turn["planet"], planet.bore_radius),
+            "sun": TurningGear(sun.teeth, _tooth(sun, push), np.array([of_sun]), turn["sun"], sun.bore_radius),
+            "planet": TurningGear(planet.teeth, _tooth(planet, push), planets, -turn["planet"], planet.bore_radius),
             "ring": TurningGear(
-                found.ring_teeth, none if ring is None else _tooth(ring), np.array([of_ring]), -turn["ring"],
+                found.ring_teeth, none if ring is None else _tooth(ring, push), np.array([of_ring]), -turn["ring"],
                 found.base_radius("ring") / math.cos(found.ring_angle) if ring is None else ring.bore_radius,
             ),
         },
         {"sun": _mesh(scene, asked, "sun", push), "ring": _mesh(scene, asked, "ring", push)},
-        found.angles, distance, found.base_pitch, planet.module, carrier,
+        found.angles, distance, planet.module, carrier,
         speeds[asked.run.input] + carrier, asked.run.input, asked.run.fixed,
     )  # fmt: skip
 
 
 def _half(found: PlanetarySet, gear: Gear, mesh: Mesh) -> float:
-    """Half the angle of a gear's tooth at its working pitch circle of a mesh."""
+    """Angle from the middle of a gear's tooth to its loaded flank at its working pitch circle of a mesh."""
     angle = found.sun_angle if mesh == "sun" else found.ring_angle
-    return float(gear.symmetric_tooth.half_thickness_angle(gear.base_radius / math.cos(angle) / gear.module))
+    return float(gear.tooth.flank_angle(gear.base_radius / math.cos(angle) / gear.module))
 
 
-def _tooth(gear: Gear) -> Array:
-    return tooth_outline(gear.tooth, _CHORD) * gear.module
+def _tooth(gear: Gear, push: float) -> Array:
+    """A tooth, with its loaded flank toward where it is pushed."""
+    found = tooth_outline(gear.tooth, _CHORD) * gear.module
+    return found[:, ::-1] * np.array([[-1.0], [1.0]]) if gear.asymmetric and push > 0.0 else found
 
 
 def _mesh(scene: Scene, asked: SetInputs, mesh: Mesh, push: float) -> TurningMesh:
@@ -217,4 +221,5 @@ def _mesh(scene: Scene, asked: SetInputs, mesh: Mesh, push: float) -> TurningMes
         asked.phases.delays[row],
         0.0 if pair is None else pair.x_start,
         0.0 if pair is None else pair.x_end,
+        found.base_pitch if mesh == "sun" else found.ring_base_pitch,
     )
