@@ -16,8 +16,8 @@ from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
 from fegear.dynamics.train.charts import FourInertia, chart_point, linear_tip_relief
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
 
 R, PITCH, FORCE = 0.04177, 9.373e-3, 8890.0

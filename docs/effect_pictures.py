@@ -1,12 +1,13 @@
 """Make what docs/effects.md shows: one picture for each effect, and the tables of stages and kernels.
 
-Run as ``python docs/effect_pictures.py``; the pictures go to docs/images/effects, the tables between their marks in
-docs/effects.md.
+Run as ``python docs/effect_pictures.py [--tables] [EFFECT ...]``; the pictures go to docs/images/effects, the tables
+between their marks in docs/effects.md. With ``--tables`` nothing is computed; with names, their pictures only.
 """
 
 from __future__ import annotations
 
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -47,11 +48,14 @@ def replaced(text: str, mark: str, new: str) -> str:
     return f"{before}{start}\n{new}\n{end}{rest.split(end)[1]}"
 
 
-def main() -> None:
-    """Run the studies and write."""
+def main(only: tuple[str, ...] | None = None) -> None:
+    """Run the studies of all effects, or of some, and write."""
     images = DOCS / "images" / "effects"
     images.mkdir(parents=True, exist_ok=True)
-    for name, overrides, effects in studies():
+    for name, overrides, drawn in studies():
+        effects = drawn if only is None else tuple(effect for effect in drawn if effect in only)
+        if not effects:
+            continue
         scene, switched, fixed = effect_study(CASES / f"{name}.toml", overrides, effects)
         if fixed:
             raise SystemExit(f"{name}: {fixed}")
@@ -67,4 +71,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    named = tuple(sys.argv[1:])
+    if unknown := sorted({*named} - {*EFFECTS, "--tables"}):
+        raise SystemExit(f"{', '.join(unknown)}: unknown effect; known here: {', '.join(sorted(EFFECTS))}")
+    main(named or None)

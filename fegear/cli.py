@@ -16,8 +16,8 @@ import fegear
 from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
 from fegear.base.interrupts import between_imports, heed_ctrl_c
 from fegear.base.streams import give_up
-from fegear.commands.common import INTERRUPTED, leave
 from fegear.commands.help_texts import Command, Group, context_settings
+from fegear.commands.terminal import INTERRUPTED, leave
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,10 +10,10 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.fillet import NO_UNDERCUT
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.generated_fillet import NO_UNDERCUT
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask

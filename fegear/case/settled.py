@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fegear.case.gear import GearPart
     from fegear.case.gear_material import MaterialPart
     from fegear.case.model import Case
-    from fegear.geometry.thickness import ToothNumbers
+    from fegear.geometry.shift_of_thickness import ToothNumbers
 
 T = TypeVar("T")
 #: Thickness that two readings of one tooth may differ by [m]: less than any gauge sees.

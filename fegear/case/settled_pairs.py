@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, NoReturn
 
 from fegear.base.errors import FegearError, GeometryError, InputError
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import Quiet, Voice
+from fegear.commands.arguments import Quiet
+from fegear.commands.terminal import Voice
 
 
 def apply(

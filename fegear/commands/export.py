@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, Overrides, Quiet, Voice, leave, out_option
+from fegear.commands.arguments import AsJson, CaseFile, Overrides, Quiet, out_option
+from fegear.commands.terminal import INTERRUPTED, Voice, leave
 from fegear.output.formats import FORMATS
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 import typer.core
 
-from fegear.commands.common import INTERRUPTED, leave
+from fegear.commands.terminal import INTERRUPTED, leave
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

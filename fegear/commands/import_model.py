@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import Quiet, Voice
+from fegear.commands.arguments import Quiet
+from fegear.commands.terminal import Voice
 from fegear.exchange.importers import IMPORTERS
 
 #: Kinds of models of fegear itself.

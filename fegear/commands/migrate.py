@@ -9,7 +9,8 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import CaseFile, Quiet, Voice
+from fegear.commands.arguments import CaseFile, Quiet
+from fegear.commands.terminal import Voice
 
 #: The list of wanted results in a case file.
 _RESULTS = re.compile(r"^(results[ \t]*=[ \t]*\[)(.*?)(\])", re.DOTALL | re.MULTILINE)

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import Quiet, Voice, leave
+from fegear.commands.arguments import Quiet
 from fegear.commands.help_texts import two_columns
 from fegear.commands.schema import SCHEMA_FILE, write_schema
+from fegear.commands.terminal import Voice, leave
 
 if TYPE_CHECKING:
     from collections.abc import Callable

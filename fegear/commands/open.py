@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import leave
+from fegear.commands.terminal import leave
 
 
 def open(  # noqa: A001 - it is the name of the command

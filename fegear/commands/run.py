@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fegear.base.errors import InputError
-from fegear.commands.common import (
-    INTERRUPTED,
+from fegear.commands.arguments import (
     AsJson,
     CaseFile,
     NoPlots,
@@ -22,11 +21,10 @@ from fegear.commands.common import (
     Plots,
     Quiet,
     Scheduler,
-    Voice,
     Wanted,
     changes,
-    leave,
 )
+from fegear.commands.terminal import INTERRUPTED, Voice, leave
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import AsJson, Voice, out_option
+from fegear.commands.arguments import AsJson, out_option
 from fegear.commands.help_texts import two_columns
+from fegear.commands.terminal import Voice
 
 if TYPE_CHECKING:
     from fegear.engine.catalogue import Entry

@@ -6,18 +6,9 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import (
-    AsJson,
-    CaseFile,
-    NoPlots,
-    Out,
-    Overrides,
-    Quiet,
-    Scheduler,
-    Voice,
-    changes,
-)
+from fegear.commands.arguments import AsJson, CaseFile, NoPlots, Out, Overrides, Quiet, Scheduler, changes
 from fegear.commands.run import run_case
+from fegear.commands.terminal import Voice
 
 
 def size(

@@ -23,21 +23,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.commands.common import (
-    INTERRUPTED,
+from fegear.commands.arguments import (
     AsJson,
     CaseFile,
     NoPlots,
     Overrides,
     Quiet,
     Scheduler,
-    Voice,
     Wanted,
     changes,
     complete_effects,
-    leave,
     out_option,
 )
+from fegear.commands.terminal import INTERRUPTED, Voice, leave
 
 if TYPE_CHECKING:
     from fegear.studies.comparison.compare import Side

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, AsJson, Quiet, Voice, leave
+from fegear.commands.arguments import AsJson, Quiet
+from fegear.commands.terminal import INTERRUPTED, Voice, leave
 
 if TYPE_CHECKING:
     from fegear.verify.row import Outcome

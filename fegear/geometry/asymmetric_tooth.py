@@ -24,7 +24,7 @@ from fegear.base.errors import GeometryError
 from fegear.geometry.asymmetric_rack import AsymmetricRack, RackHalf
 from fegear.geometry.curves import Trochoid
 from fegear.geometry.external_tooth import THINNEST_NECK
-from fegear.geometry.fillet import RackFlankLine, check_trochoid, meeting
+from fegear.geometry.generated_fillet import RackFlankLine, check_trochoid, meeting
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_side import FLANKS, Flank, check_given
 from fegear.geometry.rack import transverse_angle

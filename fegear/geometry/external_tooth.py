@@ -10,12 +10,18 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Trochoid
-from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, check_trochoid, meeting, protuberance_fillet
+from fegear.geometry.generated_fillet import (
+    ProtuberanceFillet,
+    RackFlankLine,
+    check_trochoid,
+    meeting,
+    protuberance_fillet,
+)
 from fegear.geometry.involute import roll_of_polar_angle
 from fegear.geometry.involute_side import check_given
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import BasicRack, transverse_angle
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
 THINNEST_NECK = 0.02

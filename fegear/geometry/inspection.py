@@ -6,7 +6,7 @@ import math
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.gear import Gear
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 
 def span(gear: Gear, teeth: int) -> float:

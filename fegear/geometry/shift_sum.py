@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.involute import inv, pressure_angle_of_inv
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 #: Steps of a search over shares, and how far a share may be from equal ones.
 _STEPS, _FARTHEST = 20, 1.5

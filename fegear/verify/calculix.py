@@ -397,9 +397,9 @@ def _tilt_gap(pair: Any, lines: Any, over_face: float) -> Array:
 @cache
 def _pressed(position: str, tilt: float) -> tuple[Any, Any]:
     """Lines and contact under 900 N, the driver tilted by so many um over the face."""
-    from fegear.contact.wide.complementarity import solve_contact
     from fegear.contact.wide.compliance import flank_compliance
     from fegear.contact.wide.lines import contact_lines
+    from fegear.contact.wide.load_sharing import solve_contact
     from fegear.contact.wide.tip_edges import usual_gap
 
     pair, gears = _flanks()

@@ -17,7 +17,7 @@ from fegear.case.text_file import named_path
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, Watcher, run_plan
-from fegear.output.terminal import watcher
+from fegear.output.progress_bar import watcher
 from fegear.results.catalogue import STAGES
 from fegear.workbench.given import cache_of, table, taken, texts, working_folder
 from fegear.workbench.results import Results

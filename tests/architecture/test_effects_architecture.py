@@ -60,7 +60,10 @@ def sources() -> dict[Path, str]:
 def test_an_effect_s_name_is_written_in_its_row_only():
     told = {str(path): found for path, text in sources().items() if path not in {ROWS, *OTHERS}
             if any(name in text for name in EFFECTS) and (found := written(text))}  # fmt: skip
-    assert told == {}
+    assert told == {}, (
+        "at these lines take the row of fegear.base.effects (RELIEF.name), or a list made of the rows (PLANE_EFFECTS); "
+        "where a key of a gear has the name of a new effect, call the effect otherwise"
+    )
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ DOORS = {
     "pint": ["fegear.base.units"],
     "pydantic": ["fegear.case", "fegear.case.*"],
     "typer": ["fegear.cli", "fegear.commands.*"],
-    "rich": ["fegear.output.terminal"],
+    "rich": ["fegear.output.progress_bar"],
     "dask": ["fegear.engine.cluster"],
     "distributed": ["fegear.engine.cluster"],
     "numba": ["fegear.dynamics.*", "fegear.contact.*"],
@@ -73,7 +73,7 @@ DOORS = {
     "jinja2": ["fegear.output.report.page"],
     "ezdxf": ["fegear.output.*"],
     "pandas": ["fegear.engine.table"],
-    "IPython": ["fegear.output.terminal", "fegear.workbench.plots"],  # there where a notebook runs
+    "IPython": ["fegear.output.progress_bar", "fegear.workbench.plots"],  # there where a notebook runs
     "nicegui": ["fegear.window.*"],
     "tomlkit": ["fegear.case.changed_text"],
     "xarray": ["fegear.workbench.results"],  # a reader of what a run leaves behind
@@ -208,7 +208,7 @@ def test_importing_fegear_is_light_and_quick():
 
 def test_the_command_line_starts_without_the_heavy_libraries():
     seen = f"print(*[name for name in {HEAVY!r} if name in sys.modules])"
-    probe = f"import sys, fegear.cli, fegear.output.terminal; {seen}"
+    probe = f"import sys, fegear.cli, fegear.output.progress_bar; {seen}"
     run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert run.stdout.split() == []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from itertools import pairwise
 from pathlib import Path
 
@@ -61,9 +61,14 @@ def test_the_page_says_what_a_room_may_import():
 
 
 def test_the_map_finds_its_files():
-    rows = re.findall(r"^\| (Where .+\?) \| `fegear/([a-z0-9_/.]+)` \|$", MAP, re.MULTILINE)
-    assert len(rows) >= 20
-    assert [place for _, place in rows if not (HOUSE / place).exists()] == []
+    rows = re.findall(r"^\| (.+\?) \| (.+) \|$", MAP, re.MULTILINE)
+    places = [re.findall(r"`fegear/([a-z0-9_/.]+)`", answer) for _, answer in rows]
+    assert len(rows) >= 60
+    assert [question for (question, _), named in zip(rows, places, strict=True) if not named] == []
+    assert [place for named in places for place in named if not (HOUSE / place).exists()] == []
+    first = Counter(named[0] for named in places)
+    twice = [place for place, times in first.items() if times > 1]
+    assert twice == [], "two questions of CONTRIBUTING.md have one answer: make them one"
 
 
 def test_no_file_name_stands_twice_in_a_room_but_for_mirrored_models():

@@ -138,10 +138,11 @@ def test_counting_ends_with_its_block_and_inner_counts_keep_their_own():
 
 def test_the_page_of_effects_says_what_the_code_does():
     page = (ROOT / "docs" / "effects.md").read_text("utf-8")
-    assert stage_table(read_scene(path) for path in sorted(CASES.glob("*.toml"))) in page
-    assert kernel_table() in page
+    again = "docs/effects.md: python docs/effect_pictures.py --tables writes its tables"
+    assert stage_table(read_scene(path) for path in sorted(CASES.glob("*.toml"))) in page, again
+    assert kernel_table() in page, again
     for effect in SCENES:
-        assert f"images/effects/{effect}.png" in page
+        assert f"images/effects/{effect}.png" in page, "its picture belongs into the grid of docs/effects.md"
         assert (ROOT / "docs" / "images" / "effects" / f"{effect}.png").is_file()
     assert {effect for stage in STAGES for effect in stage.effects} == set(EFFECTS)
 

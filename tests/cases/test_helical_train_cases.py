@@ -10,10 +10,10 @@ from solids import of_gear
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
-from fegear.contact.wide.complementarity import hat_averages
+from fegear.contact.wide.load_sharing import hat_averages
 from fegear.contact.wide.mesh_matrix import tilt_lever
 from fegear.contact.wide.transmission_error import series_over_pitch
-from fegear.dynamics.train.spectra import mesh_force_spectrum
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

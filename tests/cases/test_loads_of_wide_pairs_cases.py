@@ -10,7 +10,6 @@ from solved_once import CACHE
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
 from fegear.contact.fourier import fourier_series, panels
-from fegear.contact.wide.complementarity import hat_averages
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.load_factors import (
     even_along_the_lines,
@@ -19,6 +18,7 @@ from fegear.contact.wide.load_factors import (
     straight_gap,
     transverse_load_factor,
 )
+from fegear.contact.wide.load_sharing import hat_averages
 from fegear.contact.wide.pair_history import separation
 from fegear.contact.wide.roll_points import roll_points
 from fegear.contact.wide.root_stress import rooted_lines

@@ -14,8 +14,8 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored, twist_between
 from fegear.contact.double_helical.load_double import load_double
 from fegear.contact.pair_spec import FlankSpec, PairSpec
-from fegear.contact.wide.complementarity import tangent_compliance
 from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.load_sharing import tangent_compliance
 from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide_spec import Misalignment, WideSpec
 from fegear.fem.solid.influence import SolidInfluence

@@ -10,8 +10,8 @@ import pytest
 from scipy.interpolate import BSpline
 
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.gear import Gear
+from fegear.geometry.generated_fillet import ProtuberanceFillet
 from fegear.geometry.outline import gear_outline, tooth_outline
 from fegear.geometry.rack import BasicRack
 from fegear.output.dxf import CHORD_TOLERANCE, write_dxf

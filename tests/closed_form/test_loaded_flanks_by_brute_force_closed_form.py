@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, nnls
 
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.solid.influence import contact_line, solid_influence
 from fegear.fem.solid.settings import solid_settings

@@ -14,7 +14,7 @@ from fegear.case.reading import build_scene
 from fegear.case.settled import settled_gear
 from fegear.formulas.din3967 import thickness_limits
 from fegear.geometry.gear_data import GearData
-from fegear.geometry.thickness import ToothNumbers
+from fegear.geometry.shift_of_thickness import ToothNumbers
 
 SIZES = ("spur", "helical", "ring", "helical ring")
 

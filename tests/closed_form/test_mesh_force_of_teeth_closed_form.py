@@ -10,8 +10,8 @@ from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.dynamics.train.single_tooth import mesh_force
-from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

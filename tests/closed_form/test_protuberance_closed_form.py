@@ -14,7 +14,7 @@ from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.formulas.iso6336 import part3_root_stress as iso
 from fegear.formulas.root_section import section_at_tangent
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.fillet import ProtuberanceFillet
+from fegear.geometry.generated_fillet import ProtuberanceFillet
 from fegear.geometry.rack import BasicRack
 
 DEG = math.pi / 180.0

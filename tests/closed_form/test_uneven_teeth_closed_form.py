@@ -15,9 +15,9 @@ from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.mesh_excitation import mesh_excitation, tooth_pair_at
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.dynamics.train.modes import modes
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.tooth_force import dynamic_error
 from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train
 from fegear.geometry.external_tooth import Tooth

@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import base_twist, contact_lines
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.rigid_flanks import beside_the_lines, touching_gaps, unloaded_error
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid

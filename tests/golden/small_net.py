@@ -1,4 +1,4 @@
-"""The small net: what cheap runs give, all results among them, compared with what is kept in ``small_net.json``.
+"""The small net: what cheap runs give, nearly every result among them, compared with what ``small_net.json`` keeps.
 
     python tests/golden/small_net.py [RUN ...] [--accept]
 
@@ -16,6 +16,7 @@ import dataclasses
 import json
 import re
 import sys
+import tomllib
 from collections import Counter
 from pathlib import Path
 
@@ -259,14 +260,25 @@ def numbers_of(note):
     return re.findall(r"(?<![\w.])-?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?(?![\w])", plain)
 
 
+def path_of(case):
+    """The file of a case: of the folder ``small`` beside this file, or of ``cases/``."""
+    folder = Path(__file__).parent if "/" in case else ROOT / "cases"
+    return folder / f"{case}.toml"
+
+
+def wanted(name):
+    """Results that a run asks for."""
+    case, changes = RUNS[name]
+    return changes.get("results") or tomllib.loads(path_of(case).read_text("utf-8"))["results"]
+
+
 def computed(name, cache=None):
     """Run a case in this process."""
     import fegear
     from fegear.base.solution_cache import SolutionCache
 
     case, changes = RUNS[name]
-    folder = Path(__file__).parent if "/" in case else ROOT / "cases"
-    return fegear.run(folder / f"{case}.toml", changes, progress=False, cache=cache or SolutionCache())
+    return fegear.run(path_of(case), changes, progress=False, cache=cache or SolutionCache())
 
 
 def kept():

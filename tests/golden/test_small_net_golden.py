@@ -16,6 +16,7 @@ from fegear.engine.run import Silence
 from fegear.output.figures import described
 from fegear.output.report.blocks import Group
 from fegear.output.report.run import run_page
+from fegear.results.catalogue import RESULTS
 
 _SPEC = importlib.util.spec_from_file_location("small_net", Path(__file__).with_name("small_net.py"))
 small_net = importlib.util.module_from_spec(_SPEC)
@@ -238,6 +239,31 @@ def check_first_screen(found):
     if any(outcome.values for outcome in outcomes):
         first = groups[0].blocks[1].values[0]
         assert any(value.name == first.name for outcome in outcomes for value in outcome.values)
+
+
+#: Results that no run of the net has, and the tests that compute them.
+ELSEWHERE = {
+    "crack-path": "cases/test_odd_teeth_cases.py",
+    "dynamic-strain": "closed_form/test_dynamic_strain_closed_form.py",
+    "fillet-design": "cases/test_fillet_design_cases.py",
+    "gauge": "closed_form/test_dynamic_strain_closed_form.py",
+    "gearbox": "cases/test_gearbox_overview_cases.py",
+    "lead-correction": "cases/test_lead_correction_cases.py",
+    "measured-transmission-error": "unit/test_measured_error_unit.py",
+    "rack-geometry": "unit/test_racks_unit.py",
+    "rack-stiffness": "unit/test_racks_unit.py",
+    "rack-transmission-error": "unit/test_racks_unit.py",
+    "sizing": "cases/test_sizing_cases.py",
+    "vibration-revolution": "cases/test_odd_teeth_cases.py",
+}
+
+
+def test_every_result_has_a_run_in_the_net_or_a_test_elsewhere():
+    wanted = {result for name in small_net.RUNS for result in small_net.wanted(name)}
+    how = "give each a run in RUNS of small_net.py and accept it, or name the test that computes it in ELSEWHERE"
+    assert {*RESULTS} - wanted == {*ELSEWHERE}, how
+    tests = Path(__file__).resolve().parents[1]
+    assert [name for name, test in ELSEWHERE.items() if f'"{name}"' not in (tests / test).read_text("utf-8")] == []
 
 
 #: Takes 20 s; the same search with other options is tried at every change.

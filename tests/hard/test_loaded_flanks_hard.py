@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_thin_slices

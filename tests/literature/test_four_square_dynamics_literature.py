@@ -17,8 +17,8 @@ from fegear.dynamics.motion.motion import propagate
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.dynamics.train.periodic import Periodic, combine
-from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.tooth_force import dynamic_error, tooth_force
 from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train
 

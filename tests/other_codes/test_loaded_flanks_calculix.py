@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from fegear.contact.wide.along_lines import load_below
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import base_twist, contact_lines
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.root_stress import rooted_lines
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.fem.solid.settings import solid_settings

@@ -260,7 +260,7 @@ def test_the_program_loads_the_command_that_is_called_and_for_its_version_none()
         "import sys; from fegear.cli import program; program(sys.argv[1:]);"
         "print(*sorted(name for name in sys.modules if name.startswith('fegear.commands.')))"
     )
-    common = {"fegear.commands.common", "fegear.commands.help_texts"}
+    common = {"fegear.commands.arguments", "fegear.commands.terminal", "fegear.commands.help_texts"}
 
     def loaded(*words):
         return set(subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)

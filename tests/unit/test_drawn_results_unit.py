@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fegear.dynamics.train.charts import SpeedChart
+from fegear.dynamics.train.mesh_force_spectrum import MeshForceSpectrum
 from fegear.dynamics.train.modes import Campbell, Modes
-from fegear.dynamics.train.spectra import MeshForceSpectrum
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Mark, Points, Stems

@@ -91,7 +91,7 @@ def test_a_slip_in_the_start_is_refused_and_every_effect_has_its_facts():
 
 def test_which_effects_teeth_gaps_motions_and_widths_have():
     """A spacing error is felt at any width, a misalignment only by a face; an odd tooth only over a revolution."""
-    assert set(AT_REST) == TEETH
+    assert set(AT_REST) == TEETH, "a new effect of teeth belongs into TEETH and into the case that it is described by"
     assert set(GAPS) == {"relief", "spacing_errors", "misalignment"}
     assert set(MOTION_EFFECTS) == {"contact_loss", "friction", "parametric", "torque_ripple"}
     assert set(WIDE_EFFECTS) == TEETH | {"relief", "spacing_errors", "misalignment"}

@@ -8,7 +8,7 @@ import pytest
 
 import fegear.cli
 from fegear.base.errors import InputError
-from fegear.commands.common import INTERRUPTED
+from fegear.commands.terminal import INTERRUPTED
 
 CASE = """results = ["stiffness"]
 [gear.a]

@@ -13,14 +13,14 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
-from fegear.contact.wide import complementarity, compliance
+from fegear.contact.wide import compliance, load_sharing
 from fegear.contact.wide import over_pitch as over_pitch_module
 from fegear.contact.wide.averages import GAUSS, averages
-from fegear.contact.wide.complementarity import hat_averages, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines, contact_lines
+from fegear.contact.wide.load_sharing import hat_averages, solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
 from fegear.contact.wide.rigid_flanks import unloaded_error
@@ -584,7 +584,7 @@ def test_problems_in_parts_are_the_same_to_the_last_bit_and_tell_how_far_they_ar
     flanks, compliances = known
     told, loads = [], LOAD * np.array([0.2, 1.0, 3.0])
     whole = flanks.solve(loads, MISALIGNED, compliances)
-    monkeypatch.setattr(complementarity, "_ENTRIES", 5 * compliances.lines.x.shape[1] ** 2)
+    monkeypatch.setattr(load_sharing, "_ENTRIES", 5 * compliances.lines.x.shape[1] ** 2)
     parts = replace(flanks, progress=told.append).solve(loads, MISALIGNED, compliances)
     for name in ("force", "approach", "stiffness", "residual"):
         np.testing.assert_array_equal(getattr(parts.contact, name), getattr(whole.contact, name))

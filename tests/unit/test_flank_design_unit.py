@@ -12,8 +12,8 @@ from fegear.base.errors import RangeError
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages, solve_contact
 from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.load_sharing import growth_by_gaps, hat_averages, solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks import families, valleys
 from fegear.design.flanks.families import best_of_family, quick_values

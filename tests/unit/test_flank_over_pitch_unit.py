@@ -12,9 +12,9 @@ from scipy.special import ellipe, ellipk
 
 from fegear.base.errors import ConvergenceError
 from fegear.base.solution_cache import SolutionCache
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.contact.wide.over_pitch import likely_peaks, over_pitch

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.base.effects import PLANE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.pair_spec import pair_spec
@@ -88,7 +89,7 @@ def test_three_lines_give_what_a_run_of_the_case_gives():
     assert np.concatenate([found.te_mean, found.te_peak_to_peak]) == pytest.approx(error_of(SPEC), rel=1e-13)
 
 
-#: Fields of a plane pair, each with another value than `SPEC` has.
+#: Fields of a plane pair, each with another value than `SPEC` has; `test_every_field_of_a_spec_is_among_them`.
 OTHERS = {
     "pair": replace(PAIR, centre_distance=PAIR.centre_distance + 50e-6),
     "loads": (1000.0, 2500.0, 3000.0),
@@ -102,6 +103,16 @@ OTHERS = {
     "relief": False,
     "spacing_errors": False,
 }
+
+
+#: Fields that plane teeth do not have, or that need solved gears.
+NOT_PLANE = {"width", "wide", "misalignment", "neighbour_coupling"}
+
+
+def test_every_field_of_a_spec_is_among_them():
+    """A field that no maker reads would have gone unnoticed."""
+    missing = {one.name for one in fields(PairSpec) if one.compare} - {*OTHERS, *NOT_PLANE}
+    assert missing == set(), "give each another value in OTHERS: it has to change the transmission error"
 
 
 def test_every_field_acts_from_a_shared_cache_as_alone():
@@ -139,9 +150,10 @@ def test_solved_gears_sources_and_formulas_are_given_alike():
 def test_what_is_neglected_is_asked_of_the_answer():
     off = replace(SPEC, corner_contact=False, relief=False, hertz="none")
     found = load(off).neglects(("transmission error",), [3000.0])
-    assert set(found.changes) == {"corner_contact", "relief", "hertz"}
+    usual = {name for name in PLANE_EFFECTS if not SPEC.is_on(name) and name != "neighbour_coupling"}
+    assert set(found.changes) == {"corner_contact", "relief", "hertz", *usual}
     assert all(change.share > 1e-3 for (change,) in found.changes.values())
-    assert not load(SPEC).neglects(("transmission error",), [3000.0]).changes
+    assert set(load(SPEC).neglects(("transmission error",), [3000.0]).changes) == usual
 
 
 def test_the_nominal_load_is_one_of_the_loads():

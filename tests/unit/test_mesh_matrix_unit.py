@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.wide.complementarity import hat_averages, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.load_sharing import hat_averages, solve_contact
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.mesh_matrix import (
     even_moments,

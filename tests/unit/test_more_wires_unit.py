@@ -90,7 +90,7 @@ def test_misalignment_scatters_over_more_than_one_place():
 
 def test_spots_of_several_loads_are_put_together_with_the_most_steps(monkeypatch):
     from fegear.base.errors import ConvergenceError
-    from fegear.contact.wide.complementarity import Contact
+    from fegear.contact.wide.load_sharing import Contact
 
     def solve(known, gap, load, *more, **_):
         raise ConvergenceError("never together")

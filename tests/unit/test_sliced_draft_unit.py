@@ -7,8 +7,8 @@ import re
 import pytest
 
 from fegear.case.reading import build_scene, parse_document
-from fegear.commands.common import Voice
 from fegear.commands.run import _say_draft
+from fegear.commands.terminal import Voice
 from fegear.engine.plan import make_plan
 from fegear.engine.plan_in_words import forecast_seconds
 from fegear.results.catalogue import STAGES

@@ -9,11 +9,11 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.meshing import Meshing
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
 from fegear.contact.wide.rigid_flanks import touching_gaps

@@ -438,7 +438,7 @@ def test_flanks_are_loaded_as_calculix_had_them(solved, monkeypatch):
     )
     monkeypatch.setattr("fegear.contact.wide.tip_edges.usual_gap", lambda of, load: ("gap", load))
     monkeypatch.setattr("fegear.contact.wide.compliance.flank_compliance", lambda *given: ("compliance", *given[1:]))
-    monkeypatch.setattr("fegear.contact.wide.complementarity.solve_contact", lambda *given: given)
+    monkeypatch.setattr("fegear.contact.wide.load_sharing.solve_contact", lambda *given: given)
     monkeypatch.setattr(calculix, "_tilt_gap", lambda of, lines, over_face: (lines, over_face))
     for position, share in (("two whole lines", 0.25), ("a line that ends at the tip", 0.02)):
         lines, (compliance, gap, load) = calculix._pressed(position, 7.0)

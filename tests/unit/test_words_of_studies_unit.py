@@ -13,7 +13,7 @@ from fegear.engine.named import Named
 from fegear.engine.processes import Failure
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
-from fegear.output import terminal
+from fegear.output import progress_bar
 from fegear.output.effects import effects_page, effects_table, kernel_changes, sentence, stated_errors
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import Bars, Facts, Folded, Grid, Paragraph, Plot
@@ -27,7 +27,7 @@ from fegear.studies.swept import Swept
 # ---- the terminal ----------------------------------------------------------------------------------------------------
 def test_a_log_has_a_line_for_each_finished_stage():
     stream = io.StringIO()
-    with terminal.watcher(stream) as watcher:
+    with progress_bar.watcher(stream) as watcher:
         watcher.begin("Gear a", 2, 5)
         watcher.advance(0.4)
         assert stream.getvalue() == ""
@@ -43,7 +43,7 @@ def test_a_bar_is_filled_as_far_as_a_stage_is():
         add_task=lambda words, total: told.append((words, total)) or "task",
         update=lambda task, completed: told.append((task, completed)),
     )
-    bar = terminal.Bar(progress)
+    bar = progress_bar.Bar(progress)
     bar.advance(0.5)
     bar.begin("Gear [a]", 1, 3)
     bar.advance(0.25)
@@ -57,8 +57,8 @@ def test_a_notebook_s_line_changes_a_few_times_a_second_and_sums_up(monkeypatch)
     monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace())
     monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=lambda *given, **how: handle))
     clock = iter([10.0, 10.0, 10.1, 10.25, 10.25])
-    monkeypatch.setattr(terminal.time, "monotonic", lambda: next(clock))
-    with terminal.watcher(io.StringIO(), notebook=True) as line:
+    monkeypatch.setattr(progress_bar.time, "monotonic", lambda: next(clock))
+    with progress_bar.watcher(io.StringIO(), notebook=True) as line:
         line.begin("Gear a", 1, 2)
         for fraction in (0.1, 0.2, 0.35):
             line.advance(fraction)

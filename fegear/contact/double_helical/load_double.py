@@ -14,8 +14,8 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.contact.double_helical.balance import balance
 from fegear.contact.double_helical.double_error import LONGER, double_error
 from fegear.contact.double_helical.loaded_double import LoadedDoublePair
-from fegear.contact.wide.complementarity import Contact, averaged_gaps
 from fegear.contact.wide.lines import base_twist
+from fegear.contact.wide.load_sharing import Contact, averaged_gaps
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.contact.wide.maker import load_flanks
 from fegear.contact.wide.roll_points import line_breaks, roll_points

@@ -18,10 +18,10 @@ from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.fourier import Panels
 from fegear.contact.wide.along_lines import averaged_along, load_below, swept_mean
-from fegear.contact.wide.complementarity import Contact
 from fegear.contact.wide.compliance import FlankCompliance, Hertz, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import BESIDE_EDGE, ContactLines, base_twist, contact_lines, long_line
+from fegear.contact.wide.load_sharing import Contact
 from fegear.contact.wide.roll_points import roll_points
 from fegear.contact.wide.spots import solve_spots
 from fegear.contact.wide.tip_edges import edge_reach

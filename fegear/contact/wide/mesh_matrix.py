@@ -27,8 +27,8 @@ import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.contact.fourier import Panels
-from fegear.contact.wide.complementarity import hat_averages, tangent_compliance
 from fegear.contact.wide.lines import ContactLines, base_twist
+from fegear.contact.wide.load_sharing import hat_averages, tangent_compliance
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.geometry.pair import GearPair
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.keys import Key
-from fegear.contact.wide.complementarity import growth_by_gaps, hat_averages
+from fegear.contact.wide.load_sharing import growth_by_gaps, hat_averages
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.shaft_tilt import LARGEST_TILT
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.contact.plane.pair_history import PairHistory
-from fegear.contact.wide.complementarity import averaged_gaps, deflection
+from fegear.contact.wide.load_sharing import averaged_gaps, deflection
 from fegear.contact.wide.loaded import LoadedFlanks
 
 

@@ -1,6 +1,6 @@
 """Contacts that are spots: crowned flanks that touch over a length of the same order as their width.
 
-A contact's width follows the line load averaged over about that width (`fegear.contact.wide.complementarity`). What is
+A contact's width follows the line load averaged over about that width (`fegear.contact.wide.load_sharing`). What is
 taken for it is the width under the mean load of the line; a load that stands on a small part of its line makes a
 contact that is several times as wide. Averaged over too little, its line load has no least energy on short panels, and
 no set of stations is found. Then averages follow the width that the contact has.
@@ -18,8 +18,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError
-from fegear.contact.wide.complementarity import Contact, solve_contact
 from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.load_sharing import Contact, solve_contact
 
 #: Steps after which contacts are taken for spots.
 _PATIENCE = 60

@@ -10,8 +10,8 @@ from scipy.interpolate import BarycentricInterpolator
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.contact.error_over_pitch import TransmissionErrorShift, no_less_than_beside
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
-from fegear.contact.wide.complementarity import secant_compliance
 from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.load_sharing import secant_compliance
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.contact.wide.mesh_matrix import stiffness_of
 from fegear.contact.wide.over_pitch import every_second

@@ -14,13 +14,13 @@ import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
-from fegear.contact.wide.complementarity import (
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.lines import ContactLines
+from fegear.contact.wide.load_sharing import (
     deflection,
     hat_averages,
     tangent_compliance,
 )
-from fegear.contact.wide.compliance import FlankCompliance
-from fegear.contact.wide.lines import ContactLines
 
 #: Problems solved at a time, times the square of their size; steps after which one station changes at a time, in all.
 _BATCH, _MANY_AT_ONCE, _MOST_STEPS = 4_000_000, 12, 400

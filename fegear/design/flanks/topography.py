@@ -27,9 +27,9 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import RangeError
-from fegear.contact.wide.complementarity import deflection
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.lines import ContactLines, base_twist, contact_lines
+from fegear.contact.wide.load_sharing import deflection
 from fegear.design.loading import LoadingFunction
 from fegear.geometry.flank_modification import Topography
 from fegear.geometry.pair import GearPair, Member

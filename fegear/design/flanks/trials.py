@@ -10,12 +10,12 @@ import numpy as np
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.shown import shows
 from fegear.contact.wide.along_lines import swept_mean
-from fegear.contact.wide.complementarity import (
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.load_sharing import (
     growth_by_gaps,
     hat_averages,
     solve_contact,
 )
-from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.design.flanks.forms import FormsAt, GroundRelief
 from fegear.design.flanks.scatter import NOMINAL, Scatter

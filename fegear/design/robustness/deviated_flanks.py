@@ -8,9 +8,9 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.contact.fourier import Panels
-from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.contact.wide.root_stress import RootInfluence
 from fegear.design.robustness.deviated_pair import HARMONICS

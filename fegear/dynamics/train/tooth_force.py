@@ -21,8 +21,8 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
 from fegear.dynamics.train.gear_train import GearTrain
 from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
 from fegear.dynamics.train.periodic import Periodic
-from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.dynamics.train.torque_response import ripple_increment
 from fegear.dynamics.train.torque_ripple import TorqueRipple
 from fegear.dynamics.train.train import Train

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.dynamics.train.gear_train import GearTrain
-    from fegear.dynamics.train.spectra import MeshForceSpectrum
+    from fegear.dynamics.train.mesh_force_spectrum import MeshForceSpectrum
     from fegear.dynamics.train.tooth_force import Pull
     from fegear.dynamics.train.torque_response import RippleSpectrum
 

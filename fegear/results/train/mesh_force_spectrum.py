@@ -48,7 +48,7 @@ class SpectrumInputs:
 
 def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> SpectrumData:
     from fegear.dynamics.train.mark_lines import has_series, series_error
-    from fegear.dynamics.train.spectra import mesh_force_spectrum
+    from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
     from fegear.dynamics.train.tooth_force import largest_pull
     from fegear.dynamics.train.torque_response import ripple_spectrum
 

@@ -79,7 +79,7 @@ PLACES = {
     "fegear.contact.plane.pair_compliance": {"PairCompliance.matrices": _field("compliance")},
     "fegear.contact.wide.compliance": {"flank_compliance": _field("matrix")},
     "fegear.contact.plane.load_sharing": {"share_load": _loads(2)},
-    "fegear.contact.wide.complementarity": {"solve_contact": _loads(2)},
+    "fegear.contact.wide.load_sharing": {"solve_contact": _loads(2)},
     "fegear.dynamics.motion.motion": {"starting_state": _results},
 }
 
