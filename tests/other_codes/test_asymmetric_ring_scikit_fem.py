@@ -29,7 +29,7 @@ GEARS = {
     "28/18": (19, (28.0, 18.0), (0.2, 0.3), 0.1),
     "35/20": (23, (35.0, 20.0), (0.15, 0.2), 0.0),
 }
-#: A ring gear: c_0 of its flat flank agrees within 0.35e-3, all else within 3e-5.
+#: A ring gear.
 RING = AsymmetricInternalTooth(
     30, PinionCutter(14, profile_shift=0.1, tip_radius=0.1), math.radians(26.0), math.radians(18.0), 0.15, -0.2,
     tip_radius=14.6,
@@ -95,18 +95,21 @@ def test_either_flank_of_the_whole_gear_by_scikit_fem_alone(name):
     teeth, angles, tips, shift = GEARS[name]
     rack = AsymmetricRack(*(RackFlank(math.radians(a), r) for a, r in zip(angles, tips, strict=True)))
     tooth = AsymmetricTooth(teeth, rack, shift)
-    compare(tooth, 0.6 * tooth.root_radius, 2e-4)
+    compare(tooth, 0.6 * tooth.root_radius)
 
 
 @pytest.mark.long
 def test_either_flank_of_a_whole_ring_gear_by_scikit_fem_alone():
-    compare(RING, RING.root_radius + 3.0, 4e-4)
+    compare(RING, RING.root_radius + 3.0)
 
 
-def compare(tooth, bore, compliance):
-    """Both flanks of a tooth in the ring against the whole gear, compliances within a share of c_0."""
+def compare(tooth, bore, compliance=2e-4):
+    """Both flanks of a tooth in the ring against the whole gear, compliances within a share of c_0.
+
+    Edges of the coast flank are shorter than the pressure is wide: of 0.12 modules they are 3.5e-4 off in c_0 of a ring.
+    """
     settings = settings_at(-1)
-    alone = whole_gear(tooth, bore, replace(settings.refined(0.7), back_edge_length=0.12))
+    alone = whole_gear(tooth, bore, replace(settings.refined(0.7), back_edge_length=0.06))
     for flank, (radius, wanted) in alone.items():
         ring = influence_of_shape(tooth.side(flank), bore, NU, "strain", settings, 1)
         found = {
