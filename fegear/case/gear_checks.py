@@ -24,7 +24,6 @@ _EXTERNAL_ONLY = {
 
 #: Keys that are for gears with equal flanks only, and what to do with them.
 _SYMMETRIC_ONLY = {
-    "helix_angle": "remove it: asymmetric teeth are available for spur gears only",
     "fillet": "remove it: fillets are those of the rack",
     "transverse_pressure_angle": "remove it",
     "tooth_mesh": "remove it: its mesh is generated",

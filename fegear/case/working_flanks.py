@@ -167,11 +167,6 @@ def _check_symmetric(case: Case, name: str) -> None:
 def _check_plane(case: Case, name: str, gear: str) -> None:
     """Refuse what is for equal flanks only in a pair of an asymmetric gear."""
     part = case.pair[name]
-    if part.width not in (None, "plane"):
-        raise InputError(
-            f"pair.{name}.width", f'"{part.width}"', f"is not available for the asymmetric teeth of gear {gear}",
-            'set width = "plane", or remove it',
-        )  # fmt: skip
     if part.compliance.source not in _SOURCES:
         raise InputError(
             f"pair.{name}.compliance.source", f'"{part.compliance.source}"',

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fegear.fem.solid.uneven_teeth import UnevenTeeth
     from fegear.geometry.gear import Gear
     from fegear.geometry.gear_body import WebHoles
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
 
 #: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
 #: elements of order 4 are taken, as fine as a case asks for.
@@ -238,10 +238,10 @@ def _uneven(part: GearBodyPart) -> tuple[str, str]:
     return key, f"{getattr(part, key) * 1e3:.6g} mm"
 
 
-def _in_modules(gear: Gear) -> tuple[InvoluteTooth, float, float, float]:
+def _in_modules(gear: Gear) -> tuple[InvoluteSide, float, float, float]:
     """Tooth, twist, width and Poisson's ratio of a gear of module 1, what its solid is made of."""
     tau, width = gear.flank_twist * gear.module, gear.face_width / gear.module
-    return gear.symmetric_tooth, tau, width, gear.material.poisson_ratio
+    return gear.tooth, tau, width, gear.material.poisson_ratio
 
 
 @contextmanager

@@ -11,11 +11,13 @@ module of the ends of the face, and a share that would be spread evenly over les
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.contact.wide.lines import ContactLines, long_line
 
@@ -118,8 +120,11 @@ def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
     Raises
     ------
     RangeError
-        If the pair lies outside the range of the standard's mesh stiffness.
+        If the pair lies outside the range of the standard's mesh stiffness: of asymmetric teeth it has none.
     """
+    if pair.asymmetric:
+        angle = math.degrees(pair.from_the_back.driver.normal_pressure_angle)
+        raise RangeError("non-working flanks", f"{angle:.6g} deg", "are not in ISO 6336-1 (equal flanks only)")
     from fegear.formulas.iso6336.part1_face_load import face_load_factor
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 

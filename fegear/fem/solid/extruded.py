@@ -18,7 +18,7 @@ from fegear.fem.plane.body import zones
 from fegear.fem.plane.gear_section import Section
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 #: How near to a circle a point lies on it, as a share of its radius.
 _NEAR = 1e-9
@@ -215,7 +215,7 @@ def graded_stations(face_width: float, through: Sequence[float], finest: float, 
 
 def pressed_band(
     mesh: SolidMesh,
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     radius: float,
     half_width: float,
     hat: tuple[float, float, float],
@@ -227,7 +227,7 @@ def pressed_band(
     ----------
     mesh : SolidMesh
         With stations at the hat's ends and its top.
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         The transverse section.
     radius, half_width : float
         The middle of the band up the flank, and the half-width of its semi-elliptic pressure along the flank

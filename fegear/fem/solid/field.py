@@ -23,7 +23,7 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import flank_nodes, section_flank, section_mesh
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 #: Places along the face this near to each other, as a share of its width, are one.
 _NEAR = 1e-6
@@ -72,7 +72,7 @@ class SolidField:
 
 
 def solid_field(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,

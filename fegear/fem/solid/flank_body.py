@@ -15,7 +15,7 @@ from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.teeth import AlikeTeeth, Teeth
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 if TYPE_CHECKING:
     from fegear.fem.plane.influence import Side
@@ -82,7 +82,7 @@ class FlankBody(Teeth, Protocol):
 class TwistedFlank(AlikeTeeth):
     """What the flank of a gear with a width is by its shape alone; lengths in modules."""
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     tau: float
     width: float
     poisson_ratio: float

@@ -32,7 +32,7 @@ from fegear.fem.solid.solution import SolidSolution
 from fegear.fem.solid.tooth_over_holes import as_if_all_were
 from fegear.fem.solid.uneven_teeth import UnevenTeeth
 from fegear.geometry.gear_body import GearBody, WebHoles
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rim_support import RimSupport
 
 #: What a solution consists of, for those that keep it.
@@ -251,7 +251,7 @@ def sample_lines(solution: SolidSolution) -> Iterator[tuple[Array, Array, Mask]]
 
 
 def solid_influence(
-    section: InvoluteTooth,
+    section: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -269,7 +269,7 @@ def solid_influence(
 
     Parameters
     ----------
-    section : InvoluteTooth
+    section : InvoluteSide
         The transverse section, its lengths in modules of that section.
     tau : float
         Twist tan(beta) / r with r the radius at which the helix angle is beta [rad/module], positive for a right

@@ -14,7 +14,7 @@ from fegear.base.printed import percent
 from fegear.fem.plane.settings import MeshSettings
 
 if TYPE_CHECKING:
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
 
 
 #: A section as coarse as its order allows: some 200 triangles.
@@ -188,7 +188,7 @@ _SHORTEST_HELD = 0.02
 
 
 def check_solid(
-    section: InvoluteTooth,
+    section: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,

@@ -33,7 +33,7 @@ from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slice_laws import LAWS, SliceLaws, Spread
 from fegear.fem.solid.solution import SolidSolution, solve_solid
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rim_support import RimSupport
 
 #: Functions along the face of the plane section, all but the constant of which stay at rest; and its width.
@@ -75,7 +75,7 @@ def flank_shapes(flank: LoadedFlank, compliance: Array) -> FlankShapes:
 
 
 def solve_slices(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -165,7 +165,7 @@ def solver_of(settings: SolidSettings) -> Callable[..., SolidSolution]:
 
 
 def plane_section(
-    tooth: InvoluteTooth, poisson_ratio: float, bore_radius: float, settings: SolidSettings, reach: int
+    tooth: InvoluteSide, poisson_ratio: float, bore_radius: float, settings: SolidSettings, reach: int
 ) -> SolidSolution:
     """Plane strain, by the solid's own elements without twist and axial displacement."""
     few = replace(settings, least_degree=_PLANE_DEGREE, waves_per_module=1e-3)
@@ -208,7 +208,7 @@ class ThinSlices(TwistedFlank):
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         The transverse section.
     tau : float
         Twist [rad/module].
@@ -224,7 +224,7 @@ class ThinSlices(TwistedFlank):
     seconds : mapping of str to float
     """
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     tau: float
     width: float
     poisson_ratio: float
@@ -310,7 +310,7 @@ class ThinLines:
 
 
 def solve_thin_slices(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,

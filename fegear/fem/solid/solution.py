@@ -36,7 +36,7 @@ from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.uneven_teeth import UnevenTeeth, teeth_apart
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rim_support import RimSupport
 
 #: How far below the edge of a pressed band root tension begins [modules].
@@ -50,7 +50,7 @@ class SolidSolution(SolidFlank):
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         The transverse section.
     tau : float
         Twist [rad/module], positive for a right hand.
@@ -85,7 +85,7 @@ class SolidSolution(SolidFlank):
         What each tooth owes to the holes of its web; compliance and displacement are the mean over all teeth.
     """
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     tau: float
     width: float
     bore_radius: float
@@ -224,7 +224,7 @@ class SolidSolution(SolidFlank):
 
 @tallied("tooth shapes")
 def solve_solid(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     tau: float,
     width: float,
     poisson_ratio: float,
@@ -244,7 +244,7 @@ def solve_solid(
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
         The transverse section.
     tau : float
         Twist tan(beta) / r [rad/module], positive for a right hand (z along the axis, out of the drawing).
@@ -295,7 +295,7 @@ def solve_solid(
 
 
 def _solve(
-    tooth: InvoluteTooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
+    tooth: InvoluteSide, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
     held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
     plane_strain: bool, support: RimSupport | None, compared: Bands | None,
 ) -> SolidSolution:  # fmt: skip
@@ -407,7 +407,7 @@ def _solve(
 
 
 def _half_height(
-    tooth: InvoluteTooth, flank: LoadedFlank, face: FaceFunctions, settings: SolidSettings, tau: float
+    tooth: InvoluteSide, flank: LoadedFlank, face: FaceFunctions, settings: SolidSettings, tau: float
 ) -> Bands:
     """A band of a module's length at half height in the middle of the face."""
     arc = 0.5 * (flank.flank_start + flank.flank_end)
@@ -417,7 +417,7 @@ def _half_height(
     return bands(radius, 0.0, min(0.5, 0.5 * face.width), width, slope=slope)
 
 
-def _check_support(support: RimSupport, tooth: InvoluteTooth, *, alone: bool) -> None:
+def _check_support(support: RimSupport, tooth: InvoluteSide, *, alone: bool) -> None:
     if not (tooth.internal and alone):
         raise RangeError(
             "rim_support.kind", f'"{support.kind}"',
@@ -437,7 +437,7 @@ def _mirrored(section: Section, face: FaceFunctions | JoinedFunctions) -> Mask:
 
 
 def section_mesh(
-    tooth: InvoluteTooth,
+    tooth: InvoluteSide,
     bore_radius: float,
     settings: MeshSettings,
     body: GearBody | None,
@@ -463,7 +463,7 @@ def flank_nodes(section: Section) -> Index:
     return np.concatenate([line[0, :1], line[1:].T.ravel()])
 
 
-def section_flank(mesh: SectorMesh, section: Section, tooth: InvoluteTooth) -> LoadedFlank:
+def section_flank(mesh: SectorMesh, section: Section, tooth: InvoluteSide) -> LoadedFlank:
     """The loaded flank of a section; nothing presses on fillet or tip rounding."""
     return loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
 
