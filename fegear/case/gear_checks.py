@@ -27,7 +27,7 @@ _SYMMETRIC_ONLY = {
     "fillet": "remove it: fillets are those of the rack",
     "transverse_pressure_angle": "remove it",
     "tooth_mesh": "remove it: its mesh is generated",
-    "body": "remove it: asymmetric teeth are available for plane (2D) gears only",
+    "body": "remove it: gears with asymmetric teeth are solid discs",
     "rim_support": "remove it: asymmetric teeth are fixed all round the bore",
     "odd_tooth": "remove it",
     "lead": "remove it",

@@ -266,7 +266,8 @@ def build_scene(
             misaligned=case.effects.misalignment,
         )
         for key, pair in case.pair.items()
-        if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical
+        if case.gear[pair.driver].is_helical
+        and case.gear[pair.driven].is_helical
         and not (pairs[key].internal or pairs[key].asymmetric)
     }
     scene = Scene(

@@ -67,6 +67,8 @@ class Plan(Brief):
 
 def _straight(scene: Scene) -> str:
     """What a case of helical gears or of 3D pairs only should know of results that are about plane spur gears."""
+    if scene.pairs and all(pair.asymmetric for pair in scene.pairs.values()):
+        return " (possibly available for teeth with equal flanks only; those of this case are asymmetric)"
     if scene.gears and not scene.spur_gears:
         return " (possibly available for spur gears only; the gears of this case are helical)"
     wide = [name for name in scene.spur_pairs if name in scene.wide_pairs]

@@ -169,11 +169,11 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         "fegear.output.solid_mesh_files:written_inp",
         "*_solid.inp",
         "CalculiX, Abaqus: the 3D gear: hexahedra and wedges of second order (C3D20, C3D15), bore fixed, 1 kN on a "
-        "pressed band in the middle of the face of tooth 0",
+        "pressed band in the middle of the face of tooth 0", asymmetric=True,
     ),
     "solid-vtu": Format(
         "solid mesh", "3D mesh of the gear, ParaView", "fegear.output.solid_mesh_files:written_vtu",
-        "*_solid.vtu", "ParaView: the same mesh and its nodal forces",
+        "*_solid.vtu", "ParaView: the same mesh and its nodal forces", asymmetric=True,
     ),
     "fmu": Format(
         "case", "each loaded pair as a force element, FMI 3.0", "fegear.output.fmu:written_fmu", "mesh_PAIR.fmu",

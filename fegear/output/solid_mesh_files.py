@@ -97,7 +97,7 @@ def pressed_gear(
     section = (
         gear_section(dict.fromkeys(range(gear.teeth), mesh))
         if mesh
-        else uneven_section(gear.symmetric_tooth, gear.bore_radius / one, _COARSENESS, body=body)
+        else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS, body=body)
     )
     through = [x for hat in hats for x in hat] + list(() if body is None else body.along(2.0 * half).ends)
     stations = graded_stations(2.0 * half, through, _FIRST_LAYER, _GROWTH, _LAYER)
@@ -110,7 +110,7 @@ def pressed_gear(
     width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
     bands = {
         f"radius {place * _MM:.6g} mm, half-width {width * one * _MM:.6g} mm, "
-        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.symmetric_tooth, place / one, width, hat)
+        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.tooth, place / one, width, hat)
         for hat in hats
     }
     return PressedGear(solid, bands)

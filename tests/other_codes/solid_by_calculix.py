@@ -19,7 +19,7 @@ from fegear.fem.solid.extruded import extruded, pressed_band
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.rack import BasicRack
 from fegear.output.solid_mesh_files import write_solid_inp
 
@@ -31,7 +31,7 @@ TOOTH = Tooth(TEETH, BasicRack(1.0, 1.25, 0.25), SHIFT)
 class Shape(NamedTuple):
     """A gear: its tooth, where it is held and where bands press [modules]; teeth of a row with free sides, or 0."""
 
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     bore: float
     radius: float
     row: int = 0

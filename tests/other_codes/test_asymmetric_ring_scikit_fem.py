@@ -106,7 +106,7 @@ def test_either_flank_of_a_whole_ring_gear_by_scikit_fem_alone():
 def compare(tooth, bore, compliance=2e-4):
     """Both flanks of a tooth in the ring against the whole gear, compliances within a share of c_0.
 
-    Edges of the coast flank are shorter than the pressure is wide: of 0.12 modules they are 3.5e-4 off in c_0 of a ring.
+    Edges of the coast flank are shorter than the pressure is wide: of 0.12 modules they leave c_0 of a ring 3.5e-4 off.
     """
     settings = settings_at(-1)
     alone = whole_gear(tooth, bore, replace(settings.refined(0.7), back_edge_length=0.06))

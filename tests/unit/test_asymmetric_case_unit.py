@@ -28,7 +28,10 @@ GEAR = {
 TIP = {"tip": {"amount": "20 um", "length": "1 mm"}}
 RELIEF = {"relief": True, "hertz": "load-dependent"}
 #: Results that take asymmetric teeth.
-KNOWN = {"geometry", "stiffness", "root-stress", "load-sharing", "transmission-error", "root-stress-history"}
+KNOWN = {
+    "geometry", "stiffness", "root-stress", "load-sharing", "transmission-error", "root-stress-history",
+    "load-distribution",
+}  # fmt: skip
 #: The same of trains and of planetary sets.
 IN_TRAINS = {
     "gear-train", "natural-modes", "campbell", "torque-ripple", "dynamic-increments", "mesh-force-spectrum",
@@ -120,8 +123,7 @@ def test_a_full_fillet_is_the_widest_of_both_angles():
         (case(lead={"crowning": "5 um"}), "gear.p.lead"),
         (case(coast_pressure_angle=None, rack={"tip_radius": 0.1}, coast_relief=TIP), "requires asymmetric teeth"),
         (case(odd_tooth=[{"tooth": 0, "crack": {"depth": "1 mm"}}]), "gear.p.odd_tooth"),
-        (case(module=None, normal_module="3 mm", helix_angle="20 deg", hand="left"), "spur gears only"),
-        (case(pair={"width": "solid"}), 'pair.I.width = "solid"'),
+        (case(body={"rim_thickness": "6 mm", "web_thickness": "8 mm"}), "gears with asymmetric teeth are solid discs"),
         (case(pair={"compliance": {"source": "cornell"}}), "pair.I.compliance.source"),
         (case(pair={"root_stress": {"source": "iso-6336-3"}}), "pair.I.root_stress.source"),
         (case(pair={"circumferential_backlash": "0.1 mm"}), "set thickness_allowance"),

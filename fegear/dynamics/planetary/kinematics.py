@@ -159,7 +159,8 @@ def axial_forces(found: PlanetarySet, run: Running, base_twist: float) -> AxialF
         tan(beta_b) of the sun, positive for a right hand.
     """
     on_sun = base_twist * run.torque["sun"] / found.base_radius("sun")
-    arm = found.base_radius("planet") * (1.0 / math.cos(found.sun_angle) + 1.0 / math.cos(found.ring_angle))
+    at_sun = found.base_radius("planet", "sun") / math.cos(found.sun_angle)
+    arm = at_sun + found.base_radius("planet", "ring") / math.cos(found.ring_angle)
     return AxialForces(on_sun, -on_sun / found.count * arm)
 
 

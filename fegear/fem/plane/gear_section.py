@@ -16,7 +16,7 @@ from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_meshing import mesh_inside
 from fegear.fem.plane.whole_gear import SIDES
 from fegear.geometry.gear_body import GearBody
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.outline import turned
 
 #: Two triangles become a quadrilateral whose corners are at least so square: the sine of its most oblique angle.
@@ -119,14 +119,14 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
 
 
 def uneven_section(
-    tooth: InvoluteTooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None,
+    tooth: InvoluteSide, bore_radius: float, coarseness: float = 1.0, others: float | None = None,
     body: GearBody | None = None, row: int = 0,
 ) -> Section:  # fmt: skip
     """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     bore_radius : float
         [modules].
     coarseness : float

@@ -277,7 +277,7 @@ def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure
     layers = min(max(8, round(_LAYERS * influence.width)), _MOST_LAYERS)
     fine = influence.fine
     field = solid_field(
-        gear.symmetric_tooth, fine.tau, influence.width, fine.poisson_ratio, fine.bore_radius, influence.settings, band,
+        gear.tooth, fine.tau, influence.width, fine.poisson_ratio, fine.bore_radius, influence.settings, band,
         np.linspace(-0.5, 0.5, layers + 1) * influence.width, body=fine.body,
     )  # fmt: skip
     # Deflection x E x module over force; stress x module^2 over force.

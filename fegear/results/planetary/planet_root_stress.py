@@ -59,6 +59,8 @@ class PlanetStressInputs:
     name : str
     gears : mapping of str to str
         Names of sun, planet and ring.
+    solved : mapping of mesh to mapping of member to str
+        Names of the gears of each mesh as they are solved: asymmetric planets are for either flank.
     """
 
     between: float
@@ -66,6 +68,7 @@ class PlanetStressInputs:
     sun_drives: bool
     name: str
     gears: dict[str, str] = field(compare=False)
+    solved: dict[Mesh, dict[Member, str]] = field(compare=False)
 
     def member(self, mesh: Mesh, *, planet: bool) -> Member:
         """Whether the planet, or its mate, is the driver of a mesh."""
@@ -105,7 +108,8 @@ def _inputs(scene: Scene, name: str) -> PlanetStressInputs:
     gears = {"sun": part.sun, "planet": part.planet, "ring": part.ring or ""}
     between = math.pi - thick if drives else math.pi + thick
     radius = {mesh: found.base_radius("planet", mesh) for mesh in MESHES}
-    return PlanetStressInputs(between, radius, drives, name, gears)
+    solved = {mesh: gears_of(scene, set_pair(name, mesh)) for mesh in MESHES if set_pair(name, mesh) in scene.pairs}
+    return PlanetStressInputs(between, radius, drives, name, gears, solved)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -143,7 +147,7 @@ def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> Plan
         member, teeth = asked.member(mesh, planet=planet), pairs[mesh]
         if z is None:
             return fillet_trace(cast("LoadedPair", teeth).engagement, member, teeth.nominal)
-        solved = solid_solution_of(upstream, asked.gears["planet" if planet else mesh])
+        solved = solid_solution_of(upstream, asked.solved[mesh][member])
         return fillet_trace_at(cast("LoadedWidePair", teeth), member, solved.fine, z)
 
     def bent(pulled: Mesh, pressed: Mesh) -> tuple[AlternatingStress, Traces, list[Array]]:
