@@ -33,6 +33,7 @@ from fegear.geometry.curves import Involute, PinionTipFillet
 from fegear.geometry.internal_tooth import PinionCutter, leaving_margin
 from fegear.geometry.involute import inv
 from fegear.geometry.involute_side import FLANKS, Flank, check_given
+from fegear.geometry.rack import transverse_angle
 from fegear.geometry.two_flanks import OneOfTwoFlanks, TwoFlanks
 
 #: As of `InternalTooth`: fewest teeth more than the cutter has, and places at which a fillet is looked at.
@@ -43,7 +44,7 @@ _FARTHEST = 4.0
 
 @dataclass(frozen=True)
 class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
-    """A spur tooth of an internal gear with a flank for driving and another one for coasting.
+    """A tooth of an internal gear, spur or helical, with a flank for driving and another one for coasting.
 
     Parameters
     ----------
@@ -52,11 +53,13 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     cutter : PinionCutter
         Its `tip_radius` is that of the rounding beside its drive flank.
     drive_angle, coast_angle : float
-        Pressure angles of gear and cutter [rad].
+        Pressure angles of gear and cutter, in the normal section [rad].
     coast_tip_radius : float
         Rounding of the cutter's tip beside its coast flank [modules].
     profile_shift, thickness_allowance, tip_radius, tip_rounding, tip_chamfer : float
         As of `InternalTooth` [modules].
+    helix_angle : float
+        beta on the reference cylinder [rad].
 
     Raises
     ------
@@ -79,8 +82,6 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     def __post_init__(self) -> None:
         """Fill in the tip radius and the cutter's addendum, and refuse teeth that cannot exist."""
         check_given(self)
-        if self.helix_angle != 0.0:
-            raise GeometryError("helix_angle", self.helix_angle, "is available for equal flanks only", "remove it")
         cutter = self.cutter
         if self.teeth - cutter.teeth < _FEWEST_MORE:
             raise GeometryError(
@@ -96,7 +97,7 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
             object.__setattr__(self, "tip_radius", self.pitch_radius - self.profile_shift - 1.0)
         distance = self.generating_distance
         if not math.isnan(cutter.root_radius):
-            addendum = cutter.root_radius - distance - 0.5 * cutter.teeth - cutter.profile_shift
+            addendum = cutter.root_radius - distance - self.cutter_pitch - cutter.profile_shift
             object.__setattr__(self, "cutter", replace(cutter, addendum=addendum, root_radius=math.nan))
         self._check_cutter()
         for flank in FLANKS:
@@ -126,8 +127,21 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     # ---- generation ------------------------------------------------------------------------------------------------
     @property
     def pitch_radius(self) -> float:
-        """r = z / 2 [modules]."""
-        return 0.5 * self.teeth
+        """r = z / (2 cos(beta)) [modules]."""
+        return self.teeth / 2 / math.cos(self.helix_angle)
+
+    @property
+    def cutter_pitch(self) -> float:
+        """r_0, reference radius of the cutter [modules]."""
+        return self.cutter.teeth / 2 / math.cos(self.helix_angle)
+
+    def section_angle(self, flank: Flank) -> float:
+        """alpha_t, pressure angle of a flank in the section across the axis [rad]."""
+        return transverse_angle(self.angle(flank), self.helix_angle)
+
+    def cutter_base(self, flank: Flank) -> float:
+        """Base radius of the cutter's flank [modules]."""
+        return self.cutter_pitch * math.cos(self.section_angle(flank))
 
     @cached_property
     def generating_distance(self) -> float:
@@ -140,17 +154,17 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
         """
         from scipy.optimize import brentq
 
-        more = 0.5 * (self.teeth - self.cutter.teeth)
-        bases = [more * math.cos(angle) for angle in (self.drive_angle, self.coast_angle)]
+        more, angles = 0.5 * (self.teeth - self.cutter.teeth), [self.section_angle(flank) for flank in FLANKS]
+        bases = [(self.pitch_radius - self.cutter_pitch) * math.cos(angle) for angle in angles]
         play = (self.generating_shift + self.cutter.profile_shift) * self._tangents / more
-        wanted = float(inv(self.drive_angle)) + float(inv(self.coast_angle)) - play
+        wanted = sum(float(inv(angle)) for angle in angles) - play
 
         def off(distance: float) -> float:
             return sum(float(inv(math.acos(min(base / distance, 1.0)))) for base in bases) - wanted
 
         least = max(bases) * (1.0 + 1e-9)
         if off(least) > 0.0:
-            most = (float(inv(self.drive_angle)) + float(inv(self.coast_angle)) - off(least) - wanted) * more
+            most = (sum(float(inv(angle)) for angle in angles) - off(least) - wanted) * more
             most = most / self._tangents - self.cutter.profile_shift
             raise GeometryError(
                 "profile_shift", self.profile_shift, "gives no working pressure angle of gear and cutter",
@@ -170,7 +184,7 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     @property
     def cutter_tip(self) -> float:
         """Tip radius of the cutter [modules]."""
-        return 0.5 * self.cutter.teeth + self.cutter.profile_shift + self.cutter.addendum
+        return self.cutter_pitch + self.cutter.profile_shift + self.cutter.addendum
 
     @property
     def root_radius(self) -> float:
@@ -184,8 +198,8 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
         flank's pressure angle [rad]; of a share of the rounding.
         """
         angle, radius, cutter = self.angle(flank), share * self.rounding(flank), self.cutter
-        base = 0.5 * cutter.teeth * math.cos(angle)
-        half = (math.pi / 2 + 2.0 * cutter.profile_shift * math.tan(angle)) / cutter.teeth + float(inv(angle))
+        base, thickness = self.cutter_base(flank), math.pi / 2 + 2.0 * cutter.profile_shift * math.tan(angle)
+        half = thickness / cutter.teeth + float(inv(self.section_angle(flank)))
         centre = self.cutter_tip - radius
         inner = math.sqrt(max(centre - base, 0.0) * (centre + base))
         normal = half - (radius + inner) / base
@@ -203,7 +217,7 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
     # ---- checks ----------------------------------------------------------------------------------------------------
     def _check_cutter(self) -> None:
         for flank in FLANKS:
-            base = 0.5 * self.cutter.teeth * math.cos(self.angle(flank))
+            base = self.cutter_base(flank)
             if self.cutter_tip - self.rounding(flank) <= base:
                 raise GeometryError(
                     "cutter.addendum", f"{self.cutter.addendum:.6g}",
@@ -254,8 +268,7 @@ class AsymmetricInternalTooth(TwoFlanks["AsymmetricInternalSide"]):
         if size and not sum(side.tip_half_angle for side in both) > 0.0:
             raise GeometryError(key, f"{size:.6g}", "is too large for the tip", "use a smaller one")
         for side in both:
-            base0 = 0.5 * self.cutter.teeth * math.cos(side.normal_pressure_angle)
-            own = (self.cutter.teeth, self.cutter_tip, base0)
+            own = (self.cutter.teeth, self.cutter_tip, self.cutter_base(side.flank))
             if leaving_margin(own, (self.teeth, tip, side.base_radius), self.generating_distance) < 0.0:
                 raise GeometryError(
                     "cutter.teeth", self.cutter.teeth, "are too many: the cutter trims the gear tips (tip "
@@ -277,8 +290,8 @@ class AsymmetricInternalSide(OneOfTwoFlanks[AsymmetricInternalTooth]):
 
     @property
     def pressure_angle(self) -> float:
-        """As in the normal section [rad]."""
-        return self.tooth.angle(self.flank)
+        """alpha_t of this flank [rad]."""
+        return self.tooth.section_angle(self.flank)
 
     @property
     def root_radius(self) -> float:
@@ -288,7 +301,7 @@ class AsymmetricInternalSide(OneOfTwoFlanks[AsymmetricInternalTooth]):
     @cached_property
     def generating_angle(self) -> float:
         """alpha_w0 of this flank, working pressure angle of the generation [rad]."""
-        more = 0.5 * (self.teeth - self.tooth.cutter.teeth) * math.cos(self.pressure_angle)
+        more = (self.pitch_radius - self.tooth.cutter_pitch) * math.cos(self.pressure_angle)
         return math.acos(min(more / self.tooth.generating_distance, 1.0))
 
     @cached_property
@@ -298,9 +311,9 @@ class AsymmetricInternalSide(OneOfTwoFlanks[AsymmetricInternalTooth]):
         Angles are from the middle of the cutter's tip land.
         """
         length, normal, centre = self.tooth.cutter_rounding(self.flank)
-        beside, angle = self.tooth.cutter_land - centre, self.pressure_angle
-        cutter = self.tooth.cutter
-        half = (math.pi / 2 + 2.0 * cutter.profile_shift * math.tan(angle)) / cutter.teeth + float(inv(angle))
+        beside, cutter = self.tooth.cutter_land - centre, self.tooth.cutter
+        thickness = math.pi / 2 + 2.0 * cutter.profile_shift * math.tan(self.normal_pressure_angle)
+        half = thickness / cutter.teeth + float(inv(self.pressure_angle))
         return length, normal + beside, half + beside
 
     @cached_property
@@ -371,7 +384,7 @@ class AsymmetricInternalSide(OneOfTwoFlanks[AsymmetricInternalTooth]):
 
     def cutter_half(self, count: int) -> Array:
         """Half of it, of the flank that cuts this side, on the right [modules], (2, 2 count + 1)."""
-        tooth, base = self.tooth, 0.5 * self.tooth.cutter.teeth * math.cos(self.pressure_angle)
+        tooth, base = self.tooth, self.tooth.cutter_base(self.flank)
         length, normal, half = self._cutter
         rho = tooth.rounding(self.flank)
         b = np.linspace(0.5 * math.pi + normal, max(tooth.cutter_land, 0.0), count)
