@@ -144,7 +144,7 @@ def _largest(seen: Seen) -> Iterator[str]:
     i = int(first_of_largest(t.root_tension))
     size, off, at = t.root_tension[i] * 1e-3, t.errors["root_tension"][i] * 1e-3, np.rad2deg(t.root_tension_angle[i])
     yield (
-        f"Gear {seen.name}: root stress at most {rounded(size, off)} MPa mm/N, with the load at radius "
+        f"Gear {seen.name}: root tension is largest, {rounded(size, off)} MPa mm/N, with the load at radius "
         f"{figures(t.radius[i] * 1e3)} mm."
     )
     yield (

@@ -265,7 +265,8 @@ _SHEET = Sheet(
         "Gear {name}, load on the pitch circle: compliance {v[c_self_at_pitch]} of the loaded tooth, "
         "{v[c_next_at_pitch]} of the next one.",
         _at_a_load,
-        "Gear {name}: root stress at most {v[largest_root_tension]} on the tension side.",
+        "Gear {name}: root stress at most {v[largest_root_tension]} (tension) and {v[largest_root_compression]} "
+        "(compression).",
         figure="compliance_{name}",
     ),
     settings=lambda seen: solution_settings(seen.data.influence),
