@@ -20,8 +20,8 @@ DOCS = Path(__file__).resolve().parent
 LARGEST_GROUP = 8
 #: Groups whose first page is their table of contents, and what it says before it.
 _CONTENTS = {
-    "How to": "One page for each question. Each shows what to type, what comes out, and how accurate it is.",
-    "Theory": "The equations that fegear solves, where they come from, and what each was compared with.",
+    "How to": "One page for each task, with input, results and accuracy.",
+    "Theory": "Equations, sources and verification.",
 }
 
 

@@ -189,8 +189,8 @@ def page(source: Source) -> str:
 def on_config(config):
     """Put the pages into the menu, among the proofs."""
     pages = [{source.title.partition(":")[0]: f"sources/{name}.md"} for name, source in sources().items()]
-    (proofs,) = (group["Proofs"] for group in config.nav if "Proofs" in group)
-    proofs.append({"What five papers print": ["sources/index.md", *pages]})
+    (proofs,) = (group["Verification"] for group in config.nav if "Verification" in group)
+    proofs.append({"Results of five papers": ["sources/index.md", *pages]})
     return config
 
 

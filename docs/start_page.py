@@ -64,7 +64,7 @@ def _numbers() -> str:
         f"[{share}](numerics.md)": f"stated error of the mean transmission error of this pair, {stated}",
         f"[{seconds}](gallery/{_CASE}.md)": "from nothing to load sharing, transmission error and root stress of this "
         "pair, when this site was built",
-        "[0.06 %](loaded-teeth.md#checked-against)": "largest difference of the load from two whole gears pressed "
+        "[0.06 %](loaded-teeth.md#verification)": "largest difference of the load from two whole gears pressed "
         "together in CalculiX; root stress 0.3 %",
     }
     return "\n".join(f"-   **{number}**\n\n    {about}\n" for number, about in cards.items())
