@@ -9,11 +9,14 @@ import pytest
 from scipy.linalg import eigh
 
 import fegear
+from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.dynamics.planetary.planet_set import PlanetarySet
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
 from fegear.dynamics.planetary.set_modes import set_modes
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
 
 CACHE = SolutionCache()
 
@@ -222,3 +225,57 @@ def test_equal_flanks_given_twice_are_the_set_as_ever():
     assert np.array_equal(usual.mesh_rows, twice.mesh_rows)
     assert np.array_equal(usual.torque_load(50.0), twice.torque_load(50.0))
     assert np.array_equal(usual.masses, twice.masses)
+
+
+@pytest.mark.dear
+def test_an_idler_is_bent_as_a_planet_of_the_same_meshes():
+    """The pairs of a set as pairs of no set: one idler between an external and a ring gear."""
+    document = planets()
+    document["planetary"]["P"] |= {"pin_errors": {}}
+    of_set, pairs = values(document), build_scene(document, "case", Path()).case.pair
+    alone = {**document, "results": ["idler-root-stress"]}
+    del alone["planetary"]
+    alone["pair"] = {
+        key: {
+            "driver": driver, "driven": driven, "torque": f"{pairs[f'P_{mesh}'].torque!r} N*m",
+            "centre_distance": f"{pairs['P_ring'].centre_distance!r} m",
+        }
+        for key, mesh, driver, driven in (("S", "sun", "sun", "planet"), ("R", "ring", "planet", "ring"))
+    }  # fmt: skip
+    found = values(alone)
+    for side, mesh in (("driven", "sun"), ("driving", "ring")):
+        for quantity in ("stress_range", "stress_mean", "stress_ratio"):
+            wanted = of_set[f"P.planet_{mesh}_side.{quantity}"]
+            assert found[f"planet.{side}_side.{quantity}"] == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.dear
+def test_an_idler_between_equal_mates_is_bent_alike_to_either_side():
+    """By whichever mate it is driven; symmetrical teeth, whose contacts pass a mesh that drives the other way round."""
+    document = idler(["idler-root-stress"])
+    for one in document["gear"].values():
+        del one["coast_pressure_angle"]
+        one |= {"pressure_angle": "20 deg", "rack": {"tip_radius": 0.25}}
+    document["gear"]["w"] = document["gear"]["p"]
+    found = values(document)
+    for quantity in ("stress_range", "stress_mean", "stress_ratio"):
+        driven, driving = (found[f"i.{side}_side.{quantity}"] for side in ("driven", "driving"))
+        assert driven == pytest.approx(driving, rel=2e-3, abs=0.1)
+    assert -1.6 < found["i.driven_side.stress_ratio"] < -1.0
+
+
+def test_what_is_no_idler_is_said():
+    lone = idler(["idler-root-stress"], {"I": idler()["pair"]["I"]})
+    with pytest.raises(InputError, match=r"add \[pair\.NAME\] in which a gear drives that is driven in another"):
+        make_plan(build_scene(lone, "case", Path()), STAGES)
+    wide = idler(["idler-root-stress"])
+    wide["pair"]["J"]["width"] = "solid"
+    with pytest.raises(InputError, match=r'pair\.J\.width = "solid"'):
+        make_plan(build_scene(wide, "case", Path()), STAGES)
+    formula = idler(["idler-root-stress"])
+    for one in formula["gear"].values():
+        del one["coast_pressure_angle"]
+        one |= {"pressure_angle": "20 deg", "rack": {"tip_radius": 0.25}}
+    formula["pair"]["I"]["root_stress"] = {"source": ["iso-6336-3", "fe"]}
+    with pytest.raises(InputError, match=r'put "fe" first'):
+        make_plan(build_scene(formula, "case", Path()), STAGES)

@@ -35,8 +35,8 @@ KNOWN = {
 #: The same of trains and of planetary sets.
 IN_TRAINS = {
     "gear-train", "natural-modes", "campbell", "torque-ripple", "dynamic-increments", "mesh-force-spectrum",
-    "tooth-force", "dynamic-root-stress", "planet-set", "planet-load-sharing", "planet-root-stress", "planet-modes",
-    "planet-vibration",
+    "tooth-force", "dynamic-root-stress", "idler-root-stress", "planet-set", "planet-load-sharing",
+    "planet-root-stress", "planet-modes", "planet-vibration",
 }  # fmt: skip
 
 

@@ -7,7 +7,7 @@ one mate loads is pulled there, and pressed while the other mate loads the other
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -24,6 +24,7 @@ from fegear.fem.plane.influence import Side
 from fegear.geometry.pair import Member
 
 if TYPE_CHECKING:
+    from fegear.contact.plane.tooth_stress import ToothStress
     from fegear.fem.plane.root_stress import FilletCurve
 
 #: Roll positions over the base pitch, and places along a fillet at which its extremes are looked for.
@@ -179,6 +180,32 @@ def alternating_stress(pulled: FilletTrace, pressed: FilletTrace | None) -> tupl
     lowest = min(0.0, float(pull.min()), float(press.min(initial=0.0)))
     highest = max(float(pull.max()), float(press.max(initial=-math.inf)))
     return AlternatingStress(place, highest, lowest), pull, press
+
+
+def with_errors(
+    found: AlternatingStress, pull: ToothStress, press: ToothStress, loads: tuple[int, int]
+) -> AlternatingStress:
+    """The same with its errors: those of each mesh's largest stress, and of the place.
+
+    Parameters
+    ----------
+    found : AlternatingStress
+    pull, press : ToothStress
+        Of the meshes that pull and press the fillet.
+    loads : (int, int)
+        Numbers of the load of either.
+    """
+    i, j = loads
+    most, least = pull.largest_tension[i], press.largest_compression
+    missed = abs(found.highest / most - 1.0)
+    shares = [
+        math.nan if error is None or size is None else abs(error / size) + missed
+        for error, size in ((pull.error(i), most), (press.compression_off(j), None if least is None else least[j]))
+    ]
+    # nowhere is the stress lower than the most negative of all places
+    under = 0.0 if least is None else max(float(least[j]) - found.lowest, 0.0)
+    high, low = float(shares[0] * abs(found.highest)), float(shares[1] * abs(found.lowest)) + under
+    return replace(found, highest_error=high, lowest_error=low)
 
 
 def _vertex(at: Array, values: Array) -> float:

@@ -6,7 +6,7 @@ Range, mean and the ratio R of lowest to highest stress at one place of the fill
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cache
 from typing import cast
 
@@ -33,6 +33,7 @@ from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.geometry.pair import Member
 from fegear.results import forecasts
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
+from fegear.results.pair.idler_root_stress import check_along_fillet
 from fegear.results.pair.loaded_teeth import gears_of
 from fegear.results.pair.root_stress_history import RootStressData
 from fegear.results.planetary.planet_set import planetary_sets
@@ -120,11 +121,7 @@ def _check(scene: Scene, name: str) -> None:
             f"planetary.{name}.ring", "(not given)", "is required for alternating bending of the planet",
             "define the ring as a gear with internal = true and set ring",
         )  # fmt: skip
-    for pair in (set_pair(name, mesh) for mesh in MESHES):
-        first = scene.case.pair[pair].root_stress.source[0]
-        if first != "fe":
-            raise InputError(f"pair.{pair}.root_stress.source", f'"{first}"', "gives no stress along the fillet",
-                             'put "fe" first')  # fmt: skip
+    check_along_fillet(scene, [set_pair(name, mesh) for mesh in MESHES])
 
 
 def needs_planet_stress(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -135,7 +132,7 @@ def needs_planet_stress(scene: Scene, name: str) -> tuple[Task, ...]:
 
 
 def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> PlanetStress:
-    from fegear.contact.plane.both_flanks import alternating_stress, fillet_trace
+    from fegear.contact.plane.both_flanks import alternating_stress, fillet_trace, with_errors
     from fegear.contact.wide.both_flanks import fillet_trace_at
 
     data = {mesh: cast("RootStressData", upstream[Task("root-stress-history", set_pair(asked.name, mesh))])
@@ -161,17 +158,8 @@ def _compute(asked: PlanetStressInputs, upstream: Upstream, _work: Work) -> Plan
             next(iter(data[mesh].found.stress[asked.member(mesh, planet=planet)].values()))
             for mesh in (pulled, pressed)
         )
-        most, least = pull.largest_tension[i], press.largest_compression
         found, *history = alternating_stress(*traces)
-        missed = abs(found.highest / most - 1.0)
-        shares = [
-            math.nan if error is None or size is None else abs(error / size) + missed
-            for error, size in ((pull.error(i), most), (press.compression_off(i), None if least is None else least[i]))
-        ]
-        # nowhere is the stress lower than the most negative of all places
-        under = 0.0 if least is None else max(float(least[i]) - found.lowest, 0.0)
-        high, low = float(shares[0] * abs(found.highest)), float(shares[1] * abs(found.lowest)) + under
-        return replace(found, highest_error=high, lowest_error=low), traces, history
+        return with_errors(found, pull, press, (i, i)), traces, history
 
     of_sun, placed, by_sun = bent("sun", "ring")
     of_ring, _, by_ring = bent("ring", "sun")
