@@ -1,0 +1,54 @@
+"""Errors of a shipped atlas: random gears of its family, interpolated and solved with the same mesh settings.
+
+`python benchmarks/atlas_errors.py RACK COUNT [SEED]`: two in five gears of the region without undercut and with many
+teeth, a quarter of that with few, 15 % undercut, a fifth with 150 teeth and more; one of seven on an end of its region.
+Prints largest and 90 % errors, how often they exceed 2e-4, and how the estimated errors cover them.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+
+from fegear.atlas.shipped import shipped_atlas
+from fegear.atlas.tables import row_of
+from fegear.fem.plane.solution import solve_gear
+
+SHARES, ON_AN_END, WANTED = (0.4, 0.25, 0.15, 0.2), 0.15, 2e-4
+
+
+def errors(rack: str, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """True and estimated errors of random gears, shapes (count, quantities)."""
+    atlas, rng, found = shipped_atlas(rack), np.random.default_rng(seed), []
+    while len(found) < count:
+        domain = atlas.domains[int(rng.choice(len(atlas.domains), p=SHARES))]
+        at = rng.uniform(-1.0, 1.0, 4)
+        if rng.random() < ON_AN_END:
+            at[rng.integers(4)] = rng.choice([-1.0, 1.0])
+        gear = atlas.family.gear(domain.place(atlas.family, at))
+        if not atlas.holds(gear):
+            continue
+        row = row_of(solve_gear(gear, atlas.settings, reach=atlas.reach, estimate_error=False))
+        known = atlas.gear(gear)
+        estimated = [known.errors[name] for name in atlas.layout.quantities]
+        found.append((atlas.layout.differences(row, known.row - row), estimated))
+    true, stated = np.array(found).transpose(1, 0, 2)
+    return true, stated
+
+
+def main(rack: str, count: int, seed: int) -> None:
+    """Draw, solve and print."""
+    begun, names = time.process_time(), shipped_atlas(rack).layout.quantities
+    true, stated = errors(rack, count, seed)
+    print(f"rack {rack}, {count} gears, seed {seed}: {time.process_time() - begun:.0f} s of CPU time")
+    print("quantity          maximum    90 %    above 2e-4    estimated/true: median, minimum")
+    for name, off, said in zip(names, true.T, stated.T, strict=True):
+        ratio = said / off
+        print(f"{name:15s}{off.max():10.1e}{np.quantile(off, 0.9):10.1e}{(off > WANTED).mean():11.2%}"
+              f"{np.median(ratio):16.1f}{ratio.min():10.2f}")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 1)
