@@ -118,7 +118,7 @@ def _column(
     scale = unit_size(unit or given, dimension, f"{key}, column {head.name}") if dimension else 1.0
     if given and unit_size(given, dimension, key) != scale:
         raise InputError(
-            key, f'"{path.name}"', f"has [{head.unit}] in the head of column {head.name}, the case says {given}",
+            key, f'"{path.name}"', f"has [{head.unit}] in the head of column {head.name}, the case has {given}",
             "remove one of them",
         )  # fmt: skip
     entries = np.array(

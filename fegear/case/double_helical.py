@@ -51,12 +51,12 @@ class DoubleHelicalPart(_PlacedKeys):  # type: ignore[misc]  # frozen by pydanti
     )
     second_driver: str | None = Field(
         default=None,
-        description="Gear of the driver at end II, with flank modifications of its own. Default: mirror image of "
+        description="Gear of the driver at end II, for different flank modifications. Default: mirror image of "
         "`driver`.",
     )
     second_driven: str | None = Field(
         default=None,
-        description="Gear of the driven member at end II, with flank modifications of its own. Default: mirror image "
+        description="Gear of the driven member at end II, for different flank modifications. Default: mirror image "
         "of `driven`.",
     )
 

@@ -28,7 +28,7 @@ class EncodersPart(Part):
         description="Traces, one for each torque."
     )
     shaft: Literal["driver", "driven"] = Field(
-        default="driver", description="Shaft whose rotation the angle column counts."
+        default="driver", description="Shaft whose rotation is in the angle column."
     )
     te_at: Literal["line-of-action", "driver", "driven"] = Field(
         default="line-of-action",
@@ -45,10 +45,12 @@ class EncodersPart(Part):
                            "none: `um`, `arcsec`, `urad`.")  # fmt: skip
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     te_column: str = Field(default="te", description="Name of the column of the transmission error.")
-    reverse: bool = Field(default=False, description="The measured angle counts against the rotation of the shaft.")
+    reverse: bool = Field(
+        default=False, description="The measured angle is counted against the direction of rotation of the shaft."
+    )
     fit: list[Literal["offset", "scale", "shift"]] = Field(
         default_factory=list,
-        description="What is fitted by least squares: `offset` (zero of the encoders), `scale` and `shift` (zero of "
+        description="Parameters fitted by least squares: `offset` (zero of the encoders), `scale` and `shift` (zero of "
         "the angle, within one tooth pitch). Default: nothing.",
     )
     load_tolerance: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(

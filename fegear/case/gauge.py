@@ -26,10 +26,12 @@ class MeasuredStrainPart(Part):
     strain_column: str = Field(default="strain", description="Name of the strain column.")
     fit: list[Literal["offset", "scale", "shift"]] = Field(
         default_factory=list,
-        description="What is fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load) and "
-        "`shift` (zero of the angle). Default: nothing.",
+        description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load) "
+        "and `shift` (zero of the angle). Default: nothing.",
     )
-    reverse: bool = Field(default=False, description="The measured angle counts against the rotation of the gear.")
+    reverse: bool = Field(
+        default=False, description="The measured angle is counted against the direction of rotation of the gear."
+    )
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -82,7 +84,7 @@ class GaugePart(Part):
         default=0.0, description="Angle between the direction of measurement and the profile, -90 to 90 deg."
     )
     placement_tolerance: LengthOrZero = Field(
-        default=1e-4, description="Uncertainty (±) of the place along the fillet. Default: 0.1 mm."
+        default=1e-4, description="Uncertainty (±) of the position along the fillet. Default: 0.1 mm."
     )
     load_tolerance: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
         default=0.01, description="Relative uncertainty (±) of load and gauge factor together."

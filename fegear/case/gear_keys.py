@@ -155,8 +155,8 @@ class GearKeys(TeethPart):
     )
     flank_treatment: FlankTreatment | None = Field(
         default=None,
-        description="what was done to the flanks: X_W of scuffing (default: that of `through-hardened`, 1) and W_W of "
-        "micropitting (default: by the gear's `strength`, else 1)",
+        description="Surface treatment of the flanks: X_W of scuffing (default: that of `through-hardened`, 1) and W_W "
+        "of micropitting (default: by the gear's `strength`, else 1)",
     )
     tolerance_class: ToleranceClass | None = Field(
         default=None,

@@ -58,7 +58,7 @@ class RackPart(_RackKeys):
 
     coast_tip_radius: Number | None = Field(
         default=None,
-        description="Tip radius of the basic rack beside the coast flank of asymmetric teeth [modules]. Default: "
+        description="Tip radius of the basic rack on the coast side of asymmetric teeth [modules]. Default: "
         "`tip_radius`.",
     )
 
@@ -121,8 +121,7 @@ class CutterPart(Part):
     tip_radius: Number = Field(default=0.2, description="Tip radius of the cutter [modules].")
     coast_tip_radius: Number | None = Field(
         default=None,
-        description="Tip radius of the cutter beside the coast flank of asymmetric teeth [modules]. Default: "
-        "`tip_radius`.",
+        description="Tip radius of the cutter on the coast side of asymmetric teeth [modules]. Default: `tip_radius`.",
     )
 
     @model_validator(mode="after")

@@ -68,7 +68,7 @@ def check_double_helical(case: Case, gears: Mapping[str, Gear]) -> None:
         if on_shaft is not None:
             raise InputError(
                 f"{prefix}.double_helical", "(given)", f"is not available for gears on shafts (gear {on_shaft})",
-                "remove the shafts, or describe both halves as pairs of their own",
+                "remove the shafts, or describe both halves as separate pairs",
             )  # fmt: skip
         _check_places(case, name, part)
 
@@ -78,7 +78,7 @@ def _check_in_train(case: Case, key: str, part: PairPart) -> None:
     double = part.double_helical
     if double is None:
         return
-    equal = "requires equal halves that share evenly (a train has no axial motion)"
+    equal = "requires equal halves with equal load sharing (a train has no axial motion)"
     tilted = part.misalignment is not None and bool(part.misalignment.given) and case.effects.misalignment
     for wrong, what, value, remedy in (
         (not double.even, "floating", double.floating or "(limited)", "let a member float freely"),

@@ -178,7 +178,7 @@ class PairPart(Part):
     )
     normal_backlash: LengthOrZero | None = Field(
         default=None,
-        description="Backlash normal to the flanks, made by equal `thickness_allowance` of the gears that give none.",
+        description="Backlash normal to the flanks, by equal `thickness_allowance` of gears without a specified one.",
     )
     circumferential_backlash: LengthOrZero | None = Field(
         default=None,
@@ -200,7 +200,7 @@ class PairPart(Part):
     )
     torques: Table[TorquesPart] | None = Field(
         default=None,
-        description="Torques on the driver at which the pair runs, in place of `loads`: a list or an evenly spaced "
+        description="Torques on the driver at which the pair runs, in place of `loads`: a list or an equally spaced "
         "range. Relief is designed for all of them (`design.over`).",
     )
     weights: Annotated[list[Annotated[Number, Field(ge=0.0)]], Field(min_length=1)] | None = Field(

@@ -170,9 +170,9 @@ def _modulus(material: MaterialPart) -> str:
     """With which modulus a plastic is computed, and what it is for."""
     said = f"E = {material.modulus * 1e-9:.4g} GPa"
     if material.creep_modulus is not None:
-        return f"{said} (creep_modulus) for lasting loads; vibration depends on the short-term modulus"
+        return f"{said} (creep_modulus) for long-term loads; vibration depends on the short-term modulus"
     if material.modulus_over_temperature is not None:
-        return f"{said} at {material.temperature:g} degC (modulus_over_temperature), for loads that do not last"
+        return f"{said} at {material.temperature:g} degC (modulus_over_temperature), for short-term loads"
     return ""
 
 

@@ -133,12 +133,12 @@ class TolerancesPart(Part):
 
     face_width: PositiveLength | None = Field(
         default=None,
-        description="Tolerance of the face width: numbers of helical variants by FE also count at b - t and b + t.",
+        description="Tolerance t of the face width: FE values of helical variants include b - t and b + t.",
     )
     parallelism: PositiveLength | None = Field(
         default=None,
-        description="Deviation of the shafts from parallel over the face width (out of plane): numbers of helical "
-        "variants by FE also count with it in both directions.",
+        description="Deviation of the shafts from parallel over the face width (out of plane): FE values of "
+        "helical variants include it in both directions.",
     )
 
     @property
@@ -192,7 +192,7 @@ class SizingPart(Part):
     iso_6336: Table[IsoPart] = Field(default_factory=IsoPart, description="Options of ISO 6336, as of a pair.")
     torques: Table[TorquesPart] | None = Field(
         default=None,
-        description="Torques at which the transmission error counts (its maximum over them). Default: the nominal.",
+        description="Torques for the transmission error (its maximum is used). Default: nominal torque.",
     )
     normal_modules: Lengths | None = Field(
         default=None, description="Normal modules to choose from. Default: `module_series`, 1 to 20 mm."
@@ -223,12 +223,12 @@ class SizingPart(Part):
         default=0.38, description="Tip radius of the basic racks rho_fP in modules."
     )
     shorten_tips: bool = Field(
-        default=True, description="Shorten the tips of both gears by what keeps the clearance of the basic racks."
+        default=True, description="Shorten the tips of both gears to keep the clearance of the basic racks."
     )
     limits: Table[LimitsPart] = Field(default_factory=LimitsPart, description="Limits that every variant must keep.")
     criteria: Annotated[list[Criterion], Field(min_length=1)] = Field(
         default_factory=_usual_criteria,
-        description="What variants are compared by, the most important first. `transmission-error`, "
+        description="Criteria for the comparison of variants, the most important first. `transmission-error`, "
         "`relieved-transmission-error` and `root-stress` (of unmodified flanks, nominal torque) are by FE.",
     )
     estimated: Annotated[int, Field(ge=0, le=30_000_000)] = Field(
@@ -258,7 +258,7 @@ class SizingPart(Part):
     )
     tolerances: Table[TolerancesPart] = Field(
         default_factory=TolerancesPart,
-        description="Deviations of helical variants at which transmission error and root stress by FE also count "
+        description="Deviations of helical variants included in transmission error and root stress by FE "
         "(their maximum). Default: none.",
     )
     present: Table[PresentPart] | None = Field(

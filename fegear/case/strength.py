@@ -146,7 +146,7 @@ class StrengthPart(Part):
     """
 
     material: MaterialName = Field(
-        description="Material type to ISO 6336-5; or the name of a steel, see `steel`, whose usual type is taken."
+        description="Material type to ISO 6336-5; or the name of a steel (see `steel`) for its usual type."
     )
     steel: str | None = Field(
         default=None,

@@ -138,8 +138,8 @@ def export_gears(
     for name in _of(wanted, "case") if chosen else ():
         write(name, chosen, SolutionCache())
     if not written and "relief" not in wanted:
-        rule = f"wrote nothing: {remarks[0].rstrip('.')}" if remarks else "wrote nothing and said nothing"
-        raise InputError("--format", f'"{formats}"', rule, "ask for another format")
+        rule = f"wrote nothing: {remarks[0].rstrip('.')}" if remarks else "wrote no file and no message"
+        raise InputError("--format", f'"{formats}"', rule, "choose another format")
     if not written:
         raise InputError(
             f"gear.{chosen[0]}.relief", "(not given)", "has nothing to write: no gear has a relief of known amount",
@@ -235,5 +235,5 @@ def _left_out(scene: Scene, gear: str, wanted: Mapping[str, Format], written: Se
         given = " and ".join(part.over_face)
         remarks.append(f"Gear {gear}: flanks the same all along the face, without {given} of the case.")
     if part.spacing_errors is not None:
-        remarks.append(f"Gear {gear}: teeth evenly spaced, without the spacing errors of the case.")
+        remarks.append(f"Gear {gear}: uniform pitch, without the pitch deviations of the case.")
     return remarks

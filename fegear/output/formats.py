@@ -161,7 +161,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
     ),
     "inp": Format(
         "plane mesh", "mesh of the gear, Abaqus and CalculiX", "fegear.output.plane_mesh_files:written_inp", "*.inp",
-        "CalculiX, Abaqus: a deck that runs as it is: six-node plane elements, bore fixed, the contact pressure of "
+        "CalculiX, Abaqus: complete input deck: six-node plane elements, bore fixed, contact pressure of "
         "1 N/mm on tooth 0", asymmetric=True,
     ),
     "solid-inp": Format(
@@ -169,7 +169,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         "fegear.output.solid_mesh_files:written_inp",
         "*_solid.inp",
         "CalculiX, Abaqus: the 3D gear: hexahedra and wedges of second order (C3D20, C3D15), bore fixed, 1 kN on a "
-        "pressed band in the middle of the face of tooth 0", asymmetric=True,
+        "band at mid-face of tooth 0", asymmetric=True,
     ),
     "solid-vtu": Format(
         "solid mesh", "3D mesh of the gear, ParaView", "fegear.output.solid_mesh_files:written_vtu",

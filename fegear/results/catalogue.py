@@ -120,7 +120,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               effects=_PLANE_STRESS, internal=True, table="gauge.NAME"),
         Entry("measured-transmission-error", "pair.measured_transmission_error.MEASURED_TRANSMISSION_ERROR",
               "Measured transmission error", ("measured-transmission-error",),
-              "traces of encoders beside the computed curve; order spectrum, mesh harmonics against torque, verdict",
+              "encoder traces compared with the computed curve; order spectrum, mesh harmonics over torque, verdict",
               effects=PAIR_EFFECTS, internal=True, table="encoders.NAME"),
         Entry("fillet-design", "pair.fillet_design.FILLET_DESIGN", "Fillet with minimum root stress",
               ("fillet-design",),

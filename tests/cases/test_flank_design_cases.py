@@ -89,7 +89,7 @@ def test_its_answer_says_what_to_grind_what_theory_leaves_and_what_the_robust_on
     grind, exact, robust = outcome.answer.sentences
     assert grind.startswith("Pair I: grind ")
     assert grind.endswith("µm at 52.16 N m, peak to peak.")
-    assert exact.startswith("Pair I: the exact topography leaves ")
+    assert exact.startswith("Pair I: the exact topography reduces the transmission error from ")
     assert exact.endswith("µm at 52.16 N m.")
     left = value(outcome, "robust.te_mean_over_scatter").value
     assert robust.startswith(f"Pair I: the robust modification has the minimum mean over the scatter: {left:.2g} µm")

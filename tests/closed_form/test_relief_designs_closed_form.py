@@ -130,7 +130,7 @@ def test_a_chart_marks_optimum_present_reliefs_and_the_worst_of_all_loads():
     assert marked.present_lengths == pytest.approx([0.8])
     assert marked.near_amounts[0] == marked.near_amounts[-1]
     labels = [one.label for one in ReliefChartData(loaded, chart, None, chart, 5e-6).loads]
-    assert labels == ["2000 N (nominal)", "1000 N", "all loads, worst in proportion"]
+    assert labels == ["2000 N (nominal)", "1000 N", "all loads, maximum relative to load"]
 
 
 def test_a_map_has_the_band_between_the_ends_of_its_range():

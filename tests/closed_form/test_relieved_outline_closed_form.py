@@ -178,7 +178,7 @@ def test_meshes_with_their_remark_are_read_by_other_programs(tmp_path):
 
 
 def test_a_helical_gear_is_drawn_across_its_axis_and_has_no_plane_mesh(tmp_path):
-    """A helical case wrote nothing and said nothing."""
+    """A helical case wrote no file and no message."""
     both = 'title = "H"\nresults = ["tooth-contact"]\n' + HELICAL.format("a", "left") + HELICAL.format("b", "right")
     scene = scene_of(tmp_path, both + '[pair.I]\ndriver = "a"\ndriven = "b"\n')
     with pytest.raises(InputError, match=r"--gear = a, b: must be spur gears for inp, msh \(plane meshes\); use dxf"):

@@ -26,7 +26,7 @@ def test_a_chart_is_shown_at_each_load_the_nominal_one_first_and_no_best_length_
     data.__dict__["marked"] = "marked"  # no finer chart here
     found = data.loads
     assert [one.label for one in found] == [
-        "200 N (nominal)", "100 N", "300 N", "all loads, worst in proportion",
+        "200 N (nominal)", "100 N", "300 N", "all loads, maximum relative to load",
     ]  # fmt: skip
     assert {one.marked for one in found} == {"marked"}
     np.testing.assert_array_equal(found[3].effective_error, np.full((2, 3), 1.0))

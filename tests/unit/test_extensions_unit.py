@@ -210,7 +210,7 @@ def test_what_goes_wrong_in_a_result_of_another_distribution_is_a_sentence(folde
 
 WRONG_FORMATS = {
     "out": "is not a file in the folder of the export",
-    "fails": "division by zero", "answerless": "cannot unpack", "idle": "wrote nothing and said nothing",
+    "fails": "division by zero", "answerless": "cannot unpack", "idle": "wrote no file and no message",
     "words": "must answer a list of paths and one of sentences",
 }  # fmt: skip
 

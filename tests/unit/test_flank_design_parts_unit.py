@@ -273,19 +273,19 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
     exact = replace(design.exact, label=EXACT, judged=SimpleNamespace(peak_to_peak=SimpleNamespace(value=0.04e-6)))
     design = replace(design, states=(design.states[0], exact, *design.states[2:]))
     assert sentences(sheet._exact, design, [120.0]) == [
-        "Pair I: the exact topography leaves 0.04 of 0.9 µm at 120 N m."
+        "Pair I: the exact topography reduces the transmission error from 0.9 to 0.04 µm at 120 N m."
     ]
     over = {UNRELIEVED: [0.353e-6, 0.9e-6], EXACT: [0.386e-6, 0.04e-6]}
     assert sentences(sheet._exact, design, [45.0, 120.0], over) == [
         (
-            "Pair I: the exact topography leaves 0.04 of 0.9 µm at 120 N m, but 0.386 µm at 45 N m, more than without "
-            "relief (0.353 µm)."
+            "Pair I: the exact topography reduces the transmission error from 0.9 to 0.04 µm at 120 N m; at "
+            "45 N m it is 0.386 µm, more than without relief (0.353 µm)."
         )
     ]
     assert sentences(sheet._grind, design, [120.0]) == [
         "Pair I: grind nothing: transmission error 0.9 -> 0.4 µm at 120 N m, peak to peak.",
         (
-            "Pair I: profile-and-lead (4 modifications) leaves only 0.25 % less than profile (2), within the estimated "
+            "Pair I: profile-and-lead (4 modifications) is only 0.25 % better than profile (2), within the estimated "
             "error."
         ),
     ]

@@ -56,9 +56,10 @@ def test_the_run_says_with_which_modulus_it_computed():
         for how in ({"creep_modulus": "1.1 GPa"}, {"modulus_over_temperature": CURVE, "temperature": "60 degC"})
     ]
     assert (
-        "Gear b: E = 1.1 GPa (creep_modulus) for lasting loads; vibration depends on the short-term modulus." in said[0]
+        "Gear b: E = 1.1 GPa (creep_modulus) for long-term loads; vibration depends on the short-term modulus."
+        in said[0]
     )
-    assert "Gear b: E = 1.5 GPa at 60 degC (modulus_over_temperature), for loads that do not last." in said[1]
+    assert "Gear b: E = 1.5 GPa at 60 degC (modulus_over_temperature), for short-term loads." in said[1]
 
 
 def test_compliances_are_inverse_to_the_modulus():

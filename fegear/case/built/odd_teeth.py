@@ -257,7 +257,7 @@ def check_odd_gear(scene: Scene, name: str) -> None:
     if drives is not None and driven == drives:
         raise InputError(
             key, "(given)", f"is ambiguous: gear {name} is driver and driven gear of pair {drives}",
-            "describe the mating gear as a gear of its own",
+            "describe the mating gear as a separate gear",
         )  # fmt: skip
     if drives is not None and driven is not None and not _is_planet(scene, name):
         raise InputError(
@@ -296,7 +296,7 @@ def check_left_contact(scene: Scene, pair: str) -> None:
     if gone and not scene.case.effects.corner_contact and meshed.contact_ratio < 2.0:
         raise InputError(
             "effects.corner_contact", "false",
-            f"leaves no tooth pair in contact beside a missing tooth (contact ratio {meshed.contact_ratio:.3f})",
+            f"leaves no tooth pair in contact at a missing tooth (contact ratio {meshed.contact_ratio:.3f})",
             "set effects.corner_contact = true",
         )  # fmt: skip
 

@@ -44,9 +44,9 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
         if part.odd_tooth:
             notes.append(
                 neglecting(
-                    f"Gear {gear}: odd_tooth counts in results over a revolution, of the train and of the gear only "
-                    "(mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness, planet-revolution, FMU); here "
-                    "all teeth are identical."
+                    f"Gear {gear}: odd_tooth is included in results over a revolution, of the train and of the gear "
+                    "only (mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness, planet-revolution, FMU); "
+                    "here all teeth are identical."
                     if effects.odd_teeth
                     else f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth)."
                 )

@@ -237,7 +237,7 @@ def always_above_the_arc(name: str, teeth: int) -> str:
     """That every tooth is taken for the one in the middle of a free arc."""
     return neglecting(
         f"Gear {name}: bore free below {teeth} {'tooth' if teeth == 1 else 'teeth'}. Each loaded tooth is computed as "
-        "the one in the middle of the free arc; teeth beside it are stiffer."
+        "the one in the middle of the free arc; the other teeth are stiffer."
     )
 
 

@@ -232,7 +232,7 @@ def check(question: Question, gears: int, text: str) -> None:
         if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in _split(text)):
             raise InputError(key, f'"{text}"', "must be whole numbers", "for example 21 53")
         if len(_split(text)) != gears:
-            raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, for so many gears")
+            raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, one for each gear")
     elif question.dimension == "numbers":
         if not 1 <= len(_split(text)) <= gears or not all(_number(part) for part in _split(text)):
             raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "for example 0.3")

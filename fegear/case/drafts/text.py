@@ -316,7 +316,7 @@ def _range(answers: Answers) -> str:
     if answers.kind != "relief":
         return '# loads = ["2 kN", "4 kN"]     # further loads along the line of action'
     if ends(answers["torque"]):
-        return "# weights = [1, 1, 1]     # what each torque counts"
+        return "# weights = [1, 1, 1]     # weight of each torque"
     start, stop = (toml_string(f"{share * answers.si('torque'):.3g} N*m") for share in (0.5, 1.0))
     return f"# torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for a range, instead of torque"
 

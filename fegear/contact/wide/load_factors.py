@@ -43,13 +43,11 @@ _READ = 101
 class RootFactors:
     """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa]."""
 
-    face: float = shown(
-        "", "largest root tension over that of each pair's share spread evenly along its line", name="K_Fbeta"
-    )
+    face: float = shown("", "maximum root stress over that with uniform load along each contact line", name="K_Fbeta")
     transverse: float = shown(
-        "", "largest root tension of shares spread evenly over that of perfect flanks", name="K_Falpha"
+        "", "maximum root stress with uniform load along each line over that of unmodified flanks", name="K_Falpha"
     )
-    largest: float = shown("MPa", "largest root tension across the root")
+    largest: float = shown("MPa", "maximum root stress in the normal section")
 
 
 def transverse_load_factor(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:

@@ -256,7 +256,7 @@ class LoadedShafts:
 
 def gaps_of_even_loads(gearbox: Gearbox, pair: str) -> ShaftGaps:
     """What shafts open between the flanks of a pair under nominal loads that stay spread evenly over all faces."""
-    key = Key.of("shafts under even loads", gearbox)
+    key = Key.of("shafts under uniform loads", gearbox)
     found = _UNDER_EVEN_LOADS.get(key)
     if found is None:
         even = [EvenForces(mesh.even / mesh.load) for mesh in gearbox.meshes]

@@ -52,7 +52,7 @@ def double_helical_notes(
         how = f'double_helical = {{ gap = "{max(gap, 0.0) * 1e3:.6g} mm" }}'
         found.append(
             f"{first.component.said} and {second.component.said}: equal teeth of opposite hand on the same shafts "
-            "(halves of a double helical pair), imported as two pairs. For the load shared between the halves, request "
+            "(halves of a double helical pair), imported as two pairs. For the load sharing of the halves, request "
             f"double-helical in a case of the first pair with the torque of both and {how}, without the second pair, "
             "shafts and effects.misalignment."
         )

@@ -215,7 +215,7 @@ def flow_of(said: Said, stages: list[Stage], sets: list[Planetary], on: dict[int
             raise _contradiction(said, "torque_around_u_axis", "N*m", "external_load", "torque") from None
     for n in sorted(found.shared):
         said.notes.append(
-            f"{stages[n].component.said}: torque not determined by the model; distributed as evenly as equilibrium "
+            f"{stages[n].component.said}: torque not determined by the model; distributed as equally as equilibrium "
             "permits."
         )
     return Flow(found, bodies, held, whole, meshes, frozenset(assumed), assumed_speed)

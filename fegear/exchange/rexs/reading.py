@@ -63,7 +63,7 @@ def model_of(text: str, path: Path) -> Model:
     """The model that a text describes; `read_model` says what is refused."""
     if len(text) > _LARGEST:
         rule = f"is larger than {_LARGEST // 1_000_000} MB"
-        raise _refusal(path, rule, "export the gearbox alone, without meshes and results")
+        raise _refusal(path, rule, "export the gearbox only, without meshes and results")
     begin = text.lstrip()[:1]
     if begin not in ("<", "{"):
         raise _refusal(path, "is neither XML nor JSON", "check which file it is")

@@ -76,7 +76,7 @@ _GEAR_REMARKS = (
     ),
     (
         "Crosscheck of root stress: FE is the largest tangential stress along the fillet below the loaded flank, "
-        "radial compression included, in the whole ring with its own rim; the formulas do not include the rim; table "
+        "radial compression included, of the complete gear with its rim; the formulas do not include the rim; table "
         "crosscheck_sources states whether radial compression is subtracted. Root stress per line load is the same "
         "in plane stress and plane strain."
     ),

@@ -239,7 +239,7 @@ def on_iso(seen: Seen) -> Iterator[str]:
         yield f"Pair {seen.key}: ISO 6336-1 gives no c': {one.found.stiffness.reason}"
     yield (
         f"Crosscheck of pair {seen.key}: the helical teeth are compared through their virtual spur teeth; finite "
-        "elements are interpolated between the whole numbers of teeth next to z_n and know no helix."
+        "elements are interpolated between the integers next to z_n, without helix angle."
     )
 
 

@@ -210,7 +210,7 @@ def answer(data: OddTeethData, name: str) -> str:
     return (
         f"Gear {name}: the crack lowers the stiffness of tooth {worst.tooth} by up to "
         f"{percent(worst.stiffness_loss)} (load at radius {worst.radius * 1e3:.4g} mm), of tooth {beside.number} "
-        f"beside it by up to {percent(float(beside.stiffness_loss.max()))}."
+        f"next to it by up to {percent(float(beside.stiffness_loss.max()))}."
     )
 
 
@@ -221,7 +221,7 @@ def _first(seen: Seen) -> OddTooth:
 _SHEET = Sheet(
     tables=(
         Rows(
-            "odd_tooth_stiffness_{name}", "Stiffness of the cracked teeth of gear {name} and of the teeth beside them",
+            "odd_tooth_stiffness_{name}", "Stiffness of the cracked teeth of gear {name} and of their neighbours",
             (Every("odd"), Off("c_self", "c_self_error"), Off("c_next", "c_next_error")), stacked="teeth",
         ),
     ),

@@ -196,7 +196,7 @@ class OfFormula:
 
     shares: dict[str, Share]
     notes: tuple[str, ...]
-    place: Array = shown("", "number of teeth, beside other formulas")
+    place: Array = shown("", "number of teeth, offset for other formulas")
     ratio: Array = shown("", "formula / FE")
     edge: Array = shown("", "formula / FE, from which the step counts")
     count: NDArray[np.intp] = shown("", "points")

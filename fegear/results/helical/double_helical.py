@@ -211,7 +211,7 @@ _FIGURES = (
     Chart(
         "double_helical_face_{name}", "Load over both faces of pair {name}",
         "Pair {name}: mean load per face width over a base pitch, ends I (left) and II (right) with the gap between "
-        "them; dashed: even load. K_gamma = {d.load_factor:.4g}.",
+        "them; dashed: equal load. K_gamma = {d.load_factor:.4g}.",
         (
             Over(
                 "z",

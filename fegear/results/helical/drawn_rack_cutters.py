@@ -95,9 +95,9 @@ def _sections(name: str, cutters: tuple[RackCutter, RackCutter], u: Array) -> Fi
         Panel(Axis("y_{c}", "mm"), Axis("x_{c}, out of the pinion", "mm"), (*around, spot([-a_m], [0.0])),
               title="both cutters in contact", equal=True),
         Panel(Axis("y_{c1}", "mm"), Axis("x_{c1}", "mm"), own, (Mark("x", -a_m, "-a_{m}"),),
-              title="pinion cutter in its own frame", equal=True),
+              title="pinion cutter, cutter coordinates", equal=True),
         Panel(Axis("y_{c2}", "mm"), Axis("x_{c2}", "mm"), other, (Mark("x", a_m, "a_{m}"),),
-              title="gear cutter in its own frame", equal=True),
+              title="gear cutter, cutter coordinates", equal=True),
         Panel(Axis("u along the straight profile", "mm"), Axis("departure a_{c} u²", "um"),
               (outline(departure, "", "blue"),), title="departure, true scale"),
     )  # fmt: skip

@@ -102,7 +102,7 @@ class Path:
     cycles_error: float | None = None
     k_1_max: float = 0.0
     k_1_min: float = shown(
-        "MPa.m^(1/2)", "minimum K_I of the crack of the case over the mesh (negative: pressed together)",
+        "MPa.m^(1/2)", "minimum K_I of the crack of the case over the mesh (negative: closed)",
         name="K_I_min_start", default=0.0,
     )  # fmt: skip
 

@@ -92,7 +92,7 @@ _SHEET = Sheet(
             "gauge_loads_{name}", "Strain of gauge {name} for every load", (Every("gauge"),), "history", OVER_LOADS
         ),
         Rows(
-            "gauge_places_{name}", "Peak strain of gauge {name} over the place of the grid",
+            "gauge_places_{name}", "Peak strain of gauge {name} over the position of the grid",
             ("displacement", "peak"), of="places",
         ),
         comparison_table("gauge_measured_{name}", "Measured and computed strain of gauge {name}"),
@@ -135,7 +135,7 @@ _SHEET = Sheet(
             of="history", under="{load:said}",
         ),
         Chart(
-            "gauge_places_{name}", "Peak strain over the place of gauge {name}",
+            "gauge_places_{name}", "Peak strain over the position of gauge {name}",
             "Gauge {name}: peak strain with the grid displaced along the fillet within the placement tolerance.",
             (Over("displacement", (Line("peak"),), marks=lambda _seen: (Mark("x", 0.0),)),),
             of="places", under="{load:said}",

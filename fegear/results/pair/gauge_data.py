@@ -41,7 +41,7 @@ class PeakOfPlaces:
     """Largest strain at the nominal load of grids glued elsewhere."""
 
     displacement: Array = shown("mm", "displacement of the grid along the fillet towards the tip")
-    peak: Array = shown("um/m", "peak strain at this place", name="peak_strain")
+    peak: Array = shown("um/m", "peak strain at this position", name="peak_strain")
 
 
 @dataclass(frozen=True)
@@ -257,5 +257,5 @@ def verdict(
     if found.correlation < _ALIKE:
         judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
     elif not within:
-        judged += "; check load, gauge factor and place of the grid"
+        judged += "; check load, gauge factor and position of the grid"
     return judged if brief else f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"

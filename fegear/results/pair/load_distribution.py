@@ -149,8 +149,8 @@ _FIGURES = (
     Chart(
         "load_distribution_{name}", "Line load over the plane of action of pair {name}",
         "Pair {name}: line load as the contact line moves from the driver's root (left) to its tip (right), and "
-        "contact lines at {d.plane.count} roll positions. The scale of colours ends at {d.plane.top:.4g}; tips and "
-        "ends of the face may bear more.",
+        "contact lines at {d.plane.count} roll positions. The colour scale ends at {d.plane.top:.4g}; tips and "
+        "face ends may exceed it.",
         (
             Over(
                 "lines.x",
@@ -258,8 +258,8 @@ def limit_remarks(name: str, found: LoadedFlanks, i: int) -> tuple[str, ...]:
     width = float(found.cells[1] - found.cells[0])
     said = exceeding(
         f"Pair {name}: K_Hbeta is {largest:.4g}, the maximum that can be resolved ({most}): line loads are averaged "
-        f"over {width * 1e3:.4g} mm of face width (half a module or less). A larger misalignment or crown shows in "
-        "largest_line_load and largest_hertz_pressure, not in K_Hbeta."
+        f"over {width * 1e3:.4g} mm of face width (half a module or less). A larger misalignment or crown increases "
+        "largest_line_load and largest_hertz_pressure, not K_Hbeta."
     )
     return (said,)
 

@@ -53,7 +53,10 @@ def _measured(trace: ErrorTrace, teeth: int) -> MeasuredError:
         if short.pitches < FEWEST_PITCHES:
             rule = f"covers {short.pitches:.3g} tooth pitches, fewer than {FEWEST_PITCHES}"
             raise InputError(
-                f"{trace.key}.file", f'"{trace.file}"', rule, "specify at least a turn, or check the unit of the angle"
+                f"{trace.key}.file",
+                f'"{trace.file}"',
+                rule,
+                "specify at least one revolution, or check the unit of the angle",
             ) from None
         raise InputError(
             f"{trace.key}.file", f'"{trace.file}"',

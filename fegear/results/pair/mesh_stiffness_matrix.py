@@ -125,9 +125,9 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "mesh_stiffness_matrix_{name}", "Mesh stiffness of pair {name} over a base pitch",
-            "Pair {name}: stiffness along the tooth normal K_M, its lever kappa and rotary stiffness mu in halves of "
-            "the face width b; bands are estimated errors, grey what contact lines would have that are everywhere "
-            "equally stiff. The force lever varies (shuttling) at constant load.",
+            "Pair {name}: stiffness along the tooth normal K_M, its lever arm kappa and tilting stiffness mu in units "
+            "of b/2 (face width b); bands are estimated errors; grey: contact lines with uniform stiffness. "
+            "The lever arm of the force varies (shuttling) at constant load.",
             (
                 _over_pitch("stiffness", _level("stiffness", "mean", "ink")),
                 _over_pitch(

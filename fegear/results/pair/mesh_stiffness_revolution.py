@@ -345,7 +345,7 @@ _SHEET = Sheet(
     ),
     answer=Answer(
         _answer, figure="mesh_stiffness_revolution_{name}", rank="mesh_stiffness_min",
-        among="the least stiff of {count} pairs",
+        among="lowest stiffness of {count} pairs",
     ),
     remarks=(
         Remark(

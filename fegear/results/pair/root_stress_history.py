@@ -225,8 +225,8 @@ _VALUES = Each(
 _FIGURES = (
     Chart(
         "root_stress_history_{name}", "Root stress over the mesh cycle of pair {name}",
-        "Pair {name} at {load:said}: fillet stress of one tooth; by finite elements its own load's and its "
-        "neighbours' added. A to E: points of the path of contact. Largest tension {d.largest}.",
+        "Pair {name} at {load:said}: fillet stress of one tooth; FE values include the loads on neighbouring "
+        "teeth. A to E: points of the path of contact. Maximum root stress, tension side: {d.largest}.",
         (
             Over(
                 "stress.x",

@@ -272,8 +272,8 @@ _SHEET = Sheet(
         ),
         Remark(
             assuming(
-                "Set {name}: tooth 0 of planet {d.odd_number} meets tooth 0 of the sun, and with its other flank "
-                "tooth 0 of the ring; the teeth of the other planets are identical."
+                "Set {name}: tooth 0 of planet {d.odd_number} meshes with tooth 0 of the sun, and on its other flank "
+                "with tooth 0 of the ring; the teeth of the other planets are identical."
             ),
             when=lambda seen: seen.data.found.base_pitches > 1,
         ),

@@ -203,10 +203,10 @@ class TurnOfPlanet:
     mesh: NDArray[np.str_] = shown("", "mesh in which the tooth is loaded", table="turn")
     x: Array = shown("mm", "contact position of the tooth on the line of action of this mesh", table="turn")
     stress_sun_side: Array = shown(
-        "MPa", "at the most pulled place of the fillet below the flank that meets the sun", label="stress", table="turn"
+        "MPa", "at the point of maximum tension of the fillet on the sun side", label="stress", table="turn"
     )
     stress_ring_side: Array = shown(
-        "MPa", "at the most pulled place of the fillet below the flank that meets the ring", table="turn"
+        "MPa", "at the point of maximum tension of the fillet on the ring side", table="turn"
     )
 
 
@@ -254,7 +254,9 @@ _SHEET = Sheet(
         ),
         Rows(
             lambda seen: f"root_stress_history_{seen.name}_{seen.asked.gears['planet']}",
-            lambda seen: f"Root stress of a tooth of planet {seen.asked.gears['planet']} over a turn in the carrier",
+            lambda seen: (
+                f"Root stress of a tooth of planet {seen.asked.gears['planet']} over a revolution in the carrier"
+            ),
             (Every("turn"),), of=_turn,
         ),
     ),

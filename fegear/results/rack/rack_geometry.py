@@ -46,7 +46,7 @@ class RackGeometry:
     backlash: float = shown("mm", "backlash as travel of the rack, pinion fixed")
     pinion_tip_clearance: float = shown("mm", "clearance between tip of the pinion and root of the rack")
     rack_tip_clearance: float = shown("mm", "clearance between tip of the rack and root of the pinion")
-    travel_per_turn: float = shown("mm", "travel of the rack per turn of the pinion")
+    travel_per_turn: float = shown("mm", "travel of the rack per revolution of the pinion")
     stroke: float = shown("mm", "travel from the first contact of the first tooth to the last contact of the last")
     length: float = shown("mm", "length of the rack (all teeth)")
     height: float = shown("mm", "height of the rack from back to tip")
@@ -78,7 +78,7 @@ def _answer(seen: Seen) -> Iterator[str]:
         f"{figures(data.distance * 1e3, 5)} mm, backlash {figures(data.backlash * 1e6)} µm."
     )
     yield (
-        f"Travel per turn of the pinion {figures(data.travel_per_turn * 1e3, 5)} mm; stroke "
+        f"Travel per revolution of the pinion {figures(data.travel_per_turn * 1e3, 5)} mm; stroke "
         f"{figures(data.stroke * 1e3, 4)} mm."
     )
 

@@ -194,7 +194,7 @@ def _remarks(seen: Seen) -> Iterator[str]:
     )
     if seen.asked.left_out:
         yield neglecting(
-            f"Rack {name}: relief is off, which leaves out {' and '.join(seen.asked.left_out)}. Set relief = true "
+            f"Rack {name}: effects.relief is off: {' and '.join(seen.asked.left_out)} neglected. Set relief = true "
             "under [effects]."
         )
     if seen.asked.pair.pinion.tooth.undercut:

@@ -169,7 +169,7 @@ def _grind(seen: Seen) -> Iterator[str]:
     if least is not best:
         gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
         yield (
-            f"Pair {seen.name}: {least.label} ({least.modifications} modifications) leaves only {gain} less than "
+            f"Pair {seen.name}: {least.label} ({least.modifications} modifications) is only {gain} better than "
             f"{best.label} ({best.modifications}), within the estimated error."
         )
 
@@ -179,12 +179,15 @@ def _exact(seen: Seen) -> Iterator[str]:
     design = seen.data.design
     before, after = (state.judged.peak_to_peak.value for state in (design.unrelieved, design.exact))
     at = _torque(seen.data.load * seen.data.data.pair.driver.base_radius)
-    said = f"Pair {seen.name}: the exact topography leaves {_microns(after)} of {_microns(before)} µm at {at}"
+    said = (
+        f"Pair {seen.name}: the exact topography reduces the transmission error from {_microns(before)} to "
+        f"{_microns(after)} µm at {at}"
+    )
     (torque, none), left = _left(seen, design.unrelieved.label), _left(seen, design.exact.label)[1]
     worst = int(np.argmax(left / np.maximum(none, _NONE)))
     if left[worst] > none[worst]:
         said += (
-            f", but {figures(left[worst] * 1e6)} µm at {_torque(torque[worst])}, more than without relief "
+            f"; at {_torque(torque[worst])} it is {figures(left[worst] * 1e6)} µm, more than without relief "
             f"({figures(none[worst] * 1e6)} µm)"
         )
     yield f"{said}."
@@ -207,7 +210,7 @@ def _robust(seen: Seen) -> Iterator[str]:
             f"{_microns(mean[i])} µm at {_torque(torque[i])} ({best.label} {_microns(of_best[i])} µm)"
             for i in dict.fromkeys(i % torque.size for i in (-1, 0))
         )
-        worst = ", at the worst torque in proportion to it" if several else ""
+        worst = " (maximum over the torques relative to the torque)" if several else ""
         yield f"Pair {seen.name}: the robust modification has the minimum mean over the scatter{worst}: {left}."
 
 

@@ -174,7 +174,7 @@ _BESIDE_SLIDER = Chart(
 HARRIS_CHART = Chart(
     "harris_map_{name}", "Harris map of pair {name}",
     "Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
-    "wide: the design load, {d.load:said}; grey: the range of torques of the design, if there is one.",
+    "thick: design load, {d.load:said}; grey: range of torques of the design.",
     (OVER_ROLL,), views="maps",
 )  # fmt: skip
 

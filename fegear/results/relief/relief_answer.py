@@ -81,8 +81,8 @@ def _exact(seen: Seen) -> Iterator[str]:
     most = ", ".join(f"{_microns(float(one.table.relief.max()))} µm ({m})" for m, one in seen.data.reliefs.items())
     if most:
         yield (
-            f"Pair {seen.name}: the exact relief, at most {most}, leaves {_microns(designed)} of {_microns(before)} µm "
-            f"at {_torque(seen, seen.data.load)}."
+            f"Pair {seen.name}: the exact relief, at most {most}, reduces the transmission error from "
+            f"{_microns(before)} to {_microns(designed)} µm at {_torque(seen, seen.data.load)}."
         )
 
 

@@ -176,7 +176,9 @@ class ReliefChartData:
         ]  # fmt: skip
         if chart.loads.size > 1:
             worst = chart.worst()
-            found.append(chart_of("all loads, worst in proportion", worst, (float(worst.min()), float(worst.max()))))
+            found.append(
+                chart_of("all loads, maximum relative to load", worst, (float(worst.min()), float(worst.max())))
+            )
         return found
 
     @cached_property
@@ -298,7 +300,7 @@ CHART_SHEET = Sheet(
             "relief_chart_{name}", "Tip relief chart of pair {name}",
             lambda seen: seen.said(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
-                "with minimum A_e for each amount; star: optimum for all loads, each in proportion, and dashed: within "
+                "with minimum A_e for each amount; star: optimum for all loads (relative to load); dashed: within "
                 "10 % of it; diamonds: tip reliefs of the case. Dotted: "
             ) + f"{seen.data.unit_words} at {load_words(seen.data.pair.nominal)}, {seen.said('{d.delta:.4g}')}.",
             (

@@ -405,7 +405,7 @@ RELIEF_SHEET = Sheet(
         ),
         Chart(
             "relief_points_{name}", "Loads, deflections and relief of pair {name}",
-            "Pair {name}: at the roll angles asked for, design load, flank deflection and compensating relief, "
+            "Pair {name}: at the specified roll angles, design load, flank deflection and compensating relief, "
             "relative to the minimum of these points.",
             (
                 _at_points("load"), _at_points("deflection"),

@@ -113,8 +113,8 @@ def scheme(data: GearboxData) -> Figure:
         items.append(Curve(x, y, label, role, dash=dash, width=width, markers=False))
     items.append(_names(data, heights, start, ways, upright=upright))
     caption = (
-        f"Shafts unrolled into the plane, in the order of the meshes; displacements are drawn {figures(factor)} times "
-        "as large, each shaft's in the direction of its largest one."
+        f"Shafts developed into a plane, in the order of the meshes; displacements magnified {figures(factor)} times, "
+        "each in the direction of the maximum displacement of the shaft."
     )
     axes = _turned((Axis("along the shafts, z", "mm"), Axis("centre distances", "mm")), upright=upright)
     panel = Panel(*axes, tuple(items), equal=True)

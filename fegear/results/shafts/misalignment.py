@@ -117,7 +117,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
     for k, one in enumerate(_worst_first(seen)):
         every, by = one.shares.over_face[0] * 1e6, one.shares.over_face[1:] * 1e6
         main = int(np.argmax(np.abs(by)))
-        most = f", the most of {len(seen.data.nominal)} meshes" if k == 0 and len(seen.data.nominal) > 1 else ""
+        most = f", the maximum of {len(seen.data.nominal)} meshes" if k == 0 and len(seen.data.nominal) > 1 else ""
         yield (
             f"Pair {one.pair}: misaligned by {figures(every)} µm over the face width{most}; main cause "
             f"{CAUSE_WORDS[CAUSES[main]]} ({figures(by[main])} µm)."

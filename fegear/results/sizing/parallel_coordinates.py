@@ -93,7 +93,7 @@ def parallel_coordinates(seen: Seen) -> Iterator[Figure]:
     yield Figure(
         "sizing_parallel", "Variants over their criteria and sizes",
         "Every line is a variant; each quantity from its minimum (0) to its maximum (1); TE is the peak-to-peak "
-        f"transmission error. At most {_MOST} lines of each kind, evenly chosen. In the report, hover over a line for "
+        f"transmission error. At most {_MOST} lines of each kind, equally spaced. In the report, hover over a line for "
         "the variant.",
         (Panel(Axis(ticks=ticks), Axis("share of the range", limits=(-0.03, 1.03)), tuple(items)),),
     )  # fmt: skip

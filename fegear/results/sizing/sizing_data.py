@@ -171,7 +171,7 @@ class SizedVariant:
         return math.nan if by is None else by.root_stress
 
     @property
-    @shows("", "values at the end of what may vary", table="sizing")
+    @shows("", "values at the end of their range", table="sizing")
     def bounds(self) -> str:
         """In words of the case."""
         return ", ".join(self.on_bounds)

@@ -111,7 +111,7 @@ def _answers(seen: Seen) -> Iterator[str]:
     best = data.best
     yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}."
     if best.on_bounds:
-        yield f"Variant {best.number} lies at the end of what may vary: {', '.join(best.on_bounds)}."
+        yield f"Variant {best.number} lies at the end of the range of {', '.join(best.on_bounds)}."
     known = f"; of {data.known:,} with known transmission error" if data.known < data.feasible and data.known else ","
     few = f", {len(data.front):,} of them shown" if len(data.chosen) < data.on_front else ""
     yield f"{data.feasible:,} variants keep all limits{known} {data.on_front:,} are on the Pareto front{few}."
@@ -139,8 +139,8 @@ def _bounds(seen: Seen) -> tuple[Note, ...]:
         return ()
     return (
         Note(
-            f"Variant {best.number}: {', '.join(best.on_bounds)} at the end of what may vary; a better one may lie "
-            "beyond. Widen the range."
+            f"Variant {best.number}: {', '.join(best.on_bounds)} at the end of the range; a better variant may lie "
+            "beyond it. Widen the range."
         ),
     )
 
@@ -198,8 +198,8 @@ def _slices(seen: Seen) -> tuple[Note, ...]:
         return ()
     return (
         assuming(
-            "Transmission error of helical variants estimated with coupled slices; near integer overlap ratios it may "
-            "be a third off. Verified values count."
+            "Transmission error of helical variants estimated with coupled slices; near integer overlap ratios the "
+            "error may be a third. Use the verified values."
         ),
     )
 

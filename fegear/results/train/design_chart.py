@@ -140,7 +140,7 @@ def _mesh(scene: Scene) -> str:
     own = own_meshes(scene)
     name = _chart(scene).mesh or (own[0] if own else "")
     if name not in own:
-        raise InputError("dynamics.chart.mesh", f'"{name}"', "is not a mesh of this train with its own teeth")
+        raise InputError("dynamics.chart.mesh", f'"{name}"', "is not a mesh of this train with solved teeth")
     return name
 
 

@@ -125,7 +125,7 @@ def _mesh(scene: Scene, name: str) -> str:
         if part.pair_of(mesh) == pair:
             return mesh
     raise InputError(
-        f"gauge.{name}.pair", f'"{pair}"', "is not a mesh of the train with teeth of its own",
+        f"gauge.{name}.pair", f'"{pair}"', "is not a mesh of the train with solved teeth",
         "add the mesh to [train] or remove dynamic-strain from results",
     )  # fmt: skip
 

@@ -73,7 +73,7 @@ class Meetings:
     role: str
     n: NDArray[np.int64] = shown("", "harmonic of the mesh frequency")
     mode: NDArray[np.int64] = shown("", "natural mode")
-    speed: Array = shown("rpm", "speed at which they meet")
+    speed: Array = shown("rpm", "speed of coincidence")
     natural: Array = shown("kHz", "natural frequency")
 
     @classmethod
