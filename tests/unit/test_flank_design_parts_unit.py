@@ -292,4 +292,4 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
     robust = replace(design.best, label=ROBUST, over_mean=np.array([0.34e-6, 0.8e-6]))
     scattered = replace(design, states=(*design.states, robust), found={**design.found, ROBUST: "best"})
     (said,) = sentences(sheet._robust, scattered, [120.0, 320.0])
-    assert "at the worst torque in proportion to it: 0.8 µm at 320 N m (profile 0.4 µm), 0.34 µm at 120 N m" in said
+    assert "relative to the torque): 0.8 µm at 320 N m (profile 0.4 µm), 0.34 µm at 120 N m" in said
