@@ -16,7 +16,7 @@ from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
 from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
-from fegear.contact.plane.odd_compliance import odd_compliance
+from fegear.contact.plane.odd_compliance import odd_compliance, odd_neighbours_shifted_by_error
 from fegear.contact.plane.over_revolution import over_revolution, stress_over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
@@ -372,3 +372,23 @@ def test_a_profile_that_no_tooth_has_is_refused_under_its_key():
     spec = PairSpec(PAIR, loads=(LOAD,), relief=True, driver=FlankSpec(profiles=((0, deep),)))
     with pytest.raises(InputError, match=r"gear\.a\.odd_tooth\[0\]\.deviation = 5000 um .* times the maximum"):
         load(spec, [ordinary("driver"), ordinary("driven")], estimates=False)
+
+
+def test_neighbours_are_softer_by_the_largest_error_of_their_flanks_which_is_that_at_the_tips():
+    """Made to rise with both radii: the whole of what is said at the tips counts, on every pair of teeth its own."""
+
+    class Rising:
+        gear, middle, fine = odd_gear("driver", Missing()).gear, odd_gear("driver", Missing()).middle, None
+
+        def between_error(self, i, j, radius_p, radius_q):
+            assert (i, j) != (self.middle, self.middle)
+            return 1e-12 * (4.0 + i - self.middle) * (np.asarray(radius_p) + np.asarray(radius_q))
+
+    base = odd_compliance(odd_gear("driver", Missing()))
+    shifted = odd_neighbours_shifted_by_error(replace(base, influence=Rising()))
+    tip = base.influence.ordinary.highest_radius
+    assert base.series
+    for (i, j), series in shifted.series.items():
+        raised = series - base.series[i, j]
+        assert raised[0, 0] == pytest.approx(2e-12 * (4.0 + i) * tip, rel=1e-9)
+        assert np.count_nonzero(raised) == 1

@@ -120,3 +120,31 @@ def test_each_number_of_the_whole_gear_moves_with_what_it_depends_on():
         assert (found.c_self > found.c_next).all()
         assert found.c_next == pytest.approx(found.c_prev, rel=1e-4)  # reciprocal, at one radius
         assert (np.diff(found.root_compression) < 0.0).all()
+
+
+@pytest.mark.parametrize("ring", [False, True])
+def test_the_fillet_of_the_whole_gear_is_seen_from_the_root_to_the_flank(ring):
+    """Stretched along the tooth, the stress is the square of the tangent's part along it: it grows on the way."""
+    from skfem import Basis
+
+    from fegear.fem.plane.scikit_fem_alone import _Ring, _whole_gear
+    from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.external_tooth import Tooth
+    from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+    from fegear.geometry.rack import BasicRack
+
+    tooth = InternalTooth(40, PinionCutter(20), tip_radius=19.2) if ring else Tooth(6, BasicRack(1.0, 1.25, 0.25), 0.4)
+    bore = tooth.root_radius + 1.5 if ring else 1.2
+    whole = _Ring(_whole_gear(tooth, bore, settings_at(-4).scaled(3.0 if ring else 6.0), []), tooth.side)
+    basis = Basis(whole._grid, whole._vector, whole._curves, intorder=2)
+    stretch = np.zeros((whole.dofs.N, 1))
+    stretch[basis.element_dofs[1::2], 0] = basis.mapping.F(whole._vector.elem.doflocs.T)[1].T
+    for name in ("fillet:0", "back_fillet:0"):
+        arc, stress = whole.along(name, stretch, 3.0)
+        low, high = sorted((tooth.root_radius, tooth.form_radius))
+        assert high - low < arc[-1] < 3.0 * (high - low)
+        assert stress.shape == (arc.size, 1)
+        assert stress[0, 0] < 1.0
+        assert stress[-1, 0] > 1.8
+        assert (np.diff(arc) >= 0.0).all()
+        assert np.abs(np.diff(stress[:, 0])).max() < 0.4  # one piece follows the other

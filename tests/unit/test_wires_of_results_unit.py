@@ -13,7 +13,9 @@ from fegear.dynamics.train import single_tooth
 from fegear.dynamics.train.single_tooth import heaviest_pair, summed_harmonics
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
+from fegear.results.helical import double_helical
 from fegear.results.planetary import planet_motion
+from fegear.results.rating import rated_methods
 
 TOOTH = Tooth(20, BasicRack(1.0, 1.25, 0.25))
 
@@ -202,3 +204,42 @@ def test_motions_of_a_set_are_forecast_by_planets_and_speeds(monkeypatch):
     assert found.seconds == pytest.approx(planet_motion._SECONDS * 28)
     part.speeds = None
     assert planet_motion._forecast(None, "P").seconds == 0.0
+
+
+def test_only_what_finite_elements_say_of_a_rating_has_errors_and_each_method_says_its_own():
+    """Made up: of AGMA the gears stand in another order than in the pair, and nothing is estimated."""
+
+    def rating(first, **more):
+        names = "contact_stress", "contact_safety", "bending_stress", "bending_safety"
+        return SimpleNamespace(**{name: (first + k, first + k + 0.5) for k, name in enumerate(names)}, **more)
+
+    agma = SimpleNamespace(members=("driven", "driver"), contact=(1, 2), S_H=(3, 4), bending=(5, 6), S_F=(7, 8))
+    off = SimpleNamespace(bending_error=(0.1, 0.2), contact_error=0.05, replacement=SimpleNamespace(K_Hbeta=1.2))
+    found = {"formula": rating(10), "by_computed": rating(20), "spectrum": None, "spectrum_computed": rating(30)}
+    data = SimpleNamespace(**found, computed=off, agma=agma)
+    asked = SimpleNamespace(
+        conditions=SimpleNamespace(edition=2019, geometry=SimpleNamespace(members=("driver", "driven")))
+    )
+    found = {method.ending: (method, said) for method, said in rated_methods.methods(data, asked)}
+    assert list(found) == ["", "_computed", "_agma", "_spectrum_computed"]
+    assert [ending for ending, (method, _) in found.items() if method.estimated] == ["_computed"]
+    assert found["_computed"][1] == {
+        "contact_stress": (20, 20.5), "contact_safety": (21, 21.5), "bending_stress": (22, 22.5),
+        "bending_safety": (23, 23.5), "contact_error": (0.05, 0.05), "bending_error": (0.1, 0.2),
+    }  # fmt: skip
+    assert found["_agma"][1] == {
+        "contact_stress": (2, 1),
+        "contact_safety": (4, 3),
+        "bending_stress": (6, 5),
+        "bending_safety": (8, 7),
+    }
+    assert found["_spectrum_computed"][1] == {"contact_safety": (31, 31.5), "bending_safety": (33, 33.5)}
+
+
+def test_gears_at_end_2_are_those_that_are_named_or_mirror_those_at_end_1(monkeypatch):
+    monkeypatch.setattr(double_helical, "solid_solution_of", lambda upstream, gear: (upstream, gear))
+    monkeypatch.setattr(double_helical, "_mirror", lambda solved, other, work: ("of", solved, other, work))
+    asked = SimpleNamespace(gears=("p", "w"), second=("q", 7))
+    assert double_helical._gears(asked, "known", "work") == [
+        [("known", "p"), ("known", "w")], [("known", "q"), ("of", ("known", "w"), 7, "work")],
+    ]  # fmt: skip
