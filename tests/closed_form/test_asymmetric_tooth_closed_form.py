@@ -15,6 +15,7 @@ from fegear.geometry.asymmetric_tooth import AsymmetricTooth
 from fegear.geometry.balls_on_two_flanks import ball_touching_at
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.gear_data import GearData
 from fegear.geometry.inspection import span
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.mass import section_moments
@@ -213,6 +214,24 @@ def gear(tooth):
 
 def pair_of(teeth, distance=math.nan):
     return GearPair(*map(gear, teeth), distance)
+
+
+@pytest.mark.parametrize("name", TEETH)
+def test_a_drawing_has_base_circles_of_both_flanks_by_their_angles(name):
+    """d_b = d cos alpha_t of each flank."""
+    tooth = made(name)
+    module = 2e-3
+    hand = "right" if tooth.helix_angle else "spur"
+    side = Gear(tooth.drive, module, 0.5 * tooth.root_radius * module, hand=hand)
+    data = GearData(side, bool(side.helix_angle), None, None, {}, name)
+    reference = module * tooth.teeth / math.cos(side.helix_angle)
+    both = (data.base_diameter, data.pressure_angle), (data.back_base_diameter, data.back_pressure_angle)
+    for found, angle in both:
+        transverse = math.atan(math.tan(angle) / math.cos(side.helix_angle))
+        assert found == pytest.approx(reference * math.cos(transverse), rel=1e-12)
+    assert data.pressure_angle != data.back_pressure_angle
+    assert data.root_form_diameter == pytest.approx(2.0 * module * tooth.drive.form_radius)
+    assert data.back_root_form_diameter == pytest.approx(2.0 * module * tooth.drive.back.form_radius)
 
 
 NAMES = ("centre_distance", "tight_centre_distance", "circumferential_backlash", "normal_backlash", "free_backlash",

@@ -5,9 +5,10 @@
 Tables of standards and of makers were compared with their print when they were typed in; what a key or an argument is
 where it is not given is a promise. Of the rooms that hold such numbers (`ROOMS`) ``constants.json`` keeps what their
 names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
-count in comparisons, and bounds. How finely something is searched or drawn is free to change, and not kept. Long tables
-are kept as a sum in which every number has a weight of its own. Only what is kept and still there is compared; after a
-change that is meant, ``--accept`` keeps what is found.
+count in comparisons, and bounds; of the others what is neutral where it is not given: true, false, 0, 1. Of every
+result it keeps what it takes and for what it asks, and in which files its tables stand. How finely something is
+searched or drawn is free to change, and not kept. Long tables are kept as a sum in which every number has a weight of
+its own. Only what is kept and still there is compared; after a change that is meant, ``--accept`` keeps what is found.
 """
 
 import argparse
@@ -25,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
 #: Units and materials, keys, standards and closed forms, teeth by their standards, bearings and shafts, Python.
 ROOMS = ("base", "case", "formulas", "geometry", "shafts", "workbench")
+OTHERS = ("atlas", "contact", "design", "dynamics", "engine", "exchange", "fem", "output", "results", "studies")
 #: So many numbers are kept as they are.
 FEW = 12
 _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
@@ -32,9 +34,9 @@ _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)?
 DEEP = 8
 
 
-def modules():
+def modules(rooms=ROOMS):
     """Names of the modules of these rooms, with what is written in them."""
-    for path in sorted(path for room in ROOMS for path in (ROOT / "fegear" / room).rglob("*.py")):
+    for path in sorted(path for room in rooms for path in (ROOT / "fegear" / room).rglob("*.py")):
         yield ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"), path
 
 
@@ -98,7 +100,7 @@ def defaults(function):
 def of_module(name, path):
     """All that is kept of a module."""
     module, found = importlib.import_module(name), {}
-    for known in dict.fromkeys(assigned(path)):
+    for known in dict.fromkeys(assigned(path) if path else ()):
         found[known] = numbers(getattr(module, known, None))
     for known, thing in list(vars(module).items()):
         if getattr(thing, "__module__", None) != name:
@@ -114,9 +116,34 @@ def of_module(name, path):
     return {known: short(kept) for known, kept in found.items() if kept}
 
 
+def of_results():
+    """Flags of stages, and those of their tables by name."""
+    from fegear.results.catalogue import STAGES
+
+    kept = {}
+    for stage in STAGES:
+        said = {field.name: getattr(stage, field.name) for field in dataclasses.fields(stage)}
+        kept[stage.name] = numbers([said[name] for name in sorted(said) if isinstance(said[name], bool)])
+        tables, number = list(getattr(getattr(stage.present, "__self__", None), "tables", ())), 0
+        while tables:
+            one = tables.pop(0)
+            tables[:0] = vars(one).get("elements", ()) if dataclasses.is_dataclass(one) else ()
+            if hasattr(one, "matlab"):
+                name = one.name if isinstance(one.name, str) else number
+                kept[f"{stage.name}: {name}"], number = [float(one.printed), float(one.matlab)], number + 1
+    return kept
+
+
+def neutral(name):
+    """Of a module of the other rooms: flags, zeros and ones that are taken where nothing is given."""
+    declared = of_module(name, None).items()
+    return {known: kept for known, kept in declared if len(kept) == 1 and kept[0] in (0.0, 1.0)}
+
+
 def found():
-    """Of all modules."""
-    every = {name: of_module(name, path) for name, path in modules()}
+    """Of all modules, and of all results."""
+    every = {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
+    every |= {name: neutral(name) for name, _ in modules(OTHERS)}
     return {name: kept for name, kept in every.items() if kept}
 
 

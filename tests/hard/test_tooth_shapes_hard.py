@@ -1,6 +1,7 @@
 """Tooth shapes at the edge of what can be cut: limits recovered, orders kept, what cannot be refused in words."""
 
 import math
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -312,3 +313,28 @@ def test_a_sharp_rack_tip_on_the_pitch_line_is_refused_and_one_beside_it_holds()
         Tooth(15, BasicRack(1.0, 1.0, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
     beside = Tooth(15, BasicRack(1.0, 1.01, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
     assert np.all(np.isfinite(beside.fillet.points(np.linspace(beside.fillet.start, beside.fillet.end, 9))[0]))
+
+
+@pytest.mark.parametrize("angle", [14.5, 20.0, 30.0, 34.0, 38.0])
+@pytest.mark.parametrize("teeth", [5, 8])
+def test_a_slight_undercut_joins_fillet_and_flank_at_every_pressure_angle(angle, teeth):
+    """The trochoid ends at less than 1 rad where the rack's flanks are flat."""
+    rack = BasicRack(0.8, 0.9, 0.1, math.radians(angle))
+    shift = undercut_limit(teeth, rack) - 1e-5
+    tooth = Tooth(teeth, rack, shift, tip_radius=0.5 * teeth + shift + 0.5)
+    assert tooth.undercut
+    meet = tooth.fillet.points(tooth.fillet.end) - tooth.involute.points(tooth.involute.start)
+    assert np.abs(meet).max() < 1e-14
+
+
+@pytest.mark.parametrize(("teeth", "angle", "protuberance", "shift", "dedendum", "rounding"), [
+    (39, 15.633668056331215, 4.0062999404059645e-17, 0.05997835027448478, 1.3053182070903948, 0.09770588700867389),
+    (80, 13.52245553551916, 8.024426206675523e-16, 0.17685323443289502, 1.3128432209097425, 0.15013802642206447),
+    (27, 8.313837420534837, 7.680360934777446e-17, 0.3294778329858022, 1.2033324703103443, 0.08046577610255023),
+])  # fmt: skip
+def test_a_protuberance_that_is_lost_in_round_off_is_none(teeth, angle, protuberance, shift, dedendum, rounding):
+    plain = BasicRack(1.0, dedendum, rounding)
+    rack = replace(plain, protuberance=protuberance, protuberance_angle=math.radians(angle))
+    found, wanted = (Tooth(teeth, one, shift, tip_radius=0.5 * teeth + shift + 0.6) for one in (rack, plain))
+    assert found.form_radius == pytest.approx(wanted.form_radius, abs=1e-13)
+    assert found.fillet.end == pytest.approx(wanted.fillet.end, abs=1e-7)

@@ -9,6 +9,9 @@ import pytest
 
 import fegear
 from fegear.base.errors import GeometryError, InputError
+from fegear.case.design import ChartPart, RobustnessPart
+from fegear.case.dynamics import DesignChartPart
+from fegear.case.flank_design import FlankMapPart
 from fegear.case.reading import apply_override, build_scene, parse_document, read_scene
 from fegear.engine.run import Silence
 
@@ -277,3 +280,23 @@ def test_a_run_never_says_that_more_than_all_of_a_task_is_done(monkeypatch, resu
     fegear.run(document, progress=False)
     assert told
     assert all(0.0 <= fraction <= 1.0 for fraction in told)
+
+
+@pytest.mark.parametrize(("part", "one", "other", "limit"), [
+    (DesignChartPart, {"amounts": 1.0}, {"lengths": 0.5}, 100_000),
+    (ChartPart, {"amounts": "1 um"}, {"lengths": 0.5}, 100_000),
+    (RobustnessPart, {"load_factors": 1.0}, {"spacing_errors": "1 um"}, 100_000),
+    (FlankMapPart, {"over_face": "1 um"}, {"load_factors": 1.0}, 2_000),
+])  # fmt: skip
+def test_as_many_combinations_as_are_said_are_taken_and_not_one_more(part, one, other, limit):
+    """Of two lists: 11 times 9091 is 100001, 3 times 667 is 2001."""
+
+    def read(first, second):
+        lists = {key: [value] * first for key, value in one.items()} | {k: [v] * second for k, v in other.items()}
+        return part.model_validate(lists | ({"relief_errors": [0.0]} if part is RobustnessPart else {}))
+
+    more = 11 if limit == 100_000 else 3
+    assert read(10, limit // 10)
+    assert (limit + 1) % more == 0
+    with pytest.raises(ValueError, match=rf" = {limit + 1:,} [a-z ]+, above the limit"):
+        read(more, (limit + 1) // more)

@@ -112,3 +112,16 @@ def test_a_catalogue_bearing_goes_to_rexs_and_back():
     again, _ = there_and_back(scene)
     first, second = (one.case.bearing["bearing_51"].printed for one in (scene, again))
     assert same(first, second)
+
+
+@pytest.mark.parametrize(("given", "key"), [
+    ({"designation": "6206", "life": {"dynamic_rating": "190 kN"}}, "life.dynamic_rating"),
+    ({"designation": "6206", "catalogue": {"dynamic_rating": "190 kN"}}, "catalogue.dynamic_rating"),
+    ({"designation": "6206", "catalogue": {"static_rating": "90 kN"}}, "catalogue.static_rating"),
+    ({"designation": "6206", "catalogue": {"bore": "70 mm"}}, "catalogue.outside_diameter"),
+    ({"designation": "6026"}, "designation"),
+])  # fmt: skip
+def test_what_a_bearing_is_refused_for_is_said_under_the_key_that_was_given(given, key):
+    with pytest.raises((InputError, RangeError)) as refused:
+        BearingPart.model_validate(given)
+    assert refused.value.key == key

@@ -13,6 +13,7 @@ from fegear.fem.plane.odd.cracked_sector import crack_line
 from fegear.output.draw_plotly.layout import layout
 from fegear.output.report import run as report
 from fegear.results.shafts.drawn_gearbox import DrawnBody, DrawnGearbox
+from fegear.results.shafts.gearbox_scheme import _outline
 from fegear.results.train import vibration_revolution
 
 
@@ -78,3 +79,23 @@ def test_only_maps_with_holes_have_a_grey_ground(hole):
     items = (Curve([0.0, 1.0], [0.0, 1.0], "a"), HeatMap([0.0, 1.0], [0.0, 1.0], z, "z"))
     figure = Figure("name", "title", "caption", (Panel(Axis("x"), Axis("y"), items),))
     assert ("plot_bgcolor" in layout(figure, [[0, 1]], 2, 1)) == hole
+
+
+def test_a_body_of_a_scheme_is_one_outline_about_its_moved_axis_and_a_bearing_a_crossed_box_on_either_side():
+    bent = SimpleNamespace(at=lambda z: np.column_stack([2.0 * z, 3.0 * z, 0.0 * z]))
+    z, outer, inner = np.array([1.0, 2.0]), np.array([5.0, 6.0]), np.array([4.0, 4.0])
+
+    def outlined(kind):
+        body = DrawnBody(kind, "b", "s", z, outer, inner, z)
+        return _outline(body, 10.0, 100.0, bent, {"s": (np.array([0.0, 1.0]), "")}, 7.0)
+
+    (whole,) = outlined("gear")
+    axis = 10.0 + 7.0 * 3.0 * z
+    assert whole[0] == pytest.approx([101.0, 102.0, 102.0, 101.0, 101.0])
+    assert whole[1] == pytest.approx([*(axis + outer), *(axis - outer)[::-1], (axis + outer)[0]])
+    above, across, below, _ = outlined("bearing")  # stands still
+    assert above[1].min() == pytest.approx(14.0)
+    assert above[1].max() == pytest.approx(15.0)
+    assert below[1].min() == pytest.approx(5.0)
+    assert below[1].max() == pytest.approx(6.0)
+    assert across.tolist() == [[101.0, 102.0], [15.0, 14.0]]

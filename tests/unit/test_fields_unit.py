@@ -110,6 +110,9 @@ def test_the_loaded_tooth_in_space_is_a_closed_body_as_wide_as_the_face(deformed
     _, times = np.unique(np.sort(sides, axis=0), axis=1, return_counts=True)
     assert set(times.tolist()) == {2}  # closed
     assert skin.values.max() > 0.5 * skin.top  # the loaded tooth is among those that are shown
+    front, back = np.split(skin.values, 2)
+    assert (front == back).all()
+    assert skin.values.size == skin.points.shape[1]
     assert skin.points[1].min() > 0.0
 
 

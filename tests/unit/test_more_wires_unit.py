@@ -362,3 +362,11 @@ def test_what_a_gear_answers_for_each_quantity():
     assert answers.of_gear("c_0", asked).tolist() == [1.5, 2.5]
     assert answers.of_gear("c_1", asked).tolist() == [1.0, 4.0]
     assert answers.of_gear("root-stress", asked).tolist() == [7.0, 14.0]
+
+
+def test_indicators_of_a_motion_are_those_of_its_error_with_one_hunting_tooth(monkeypatch):
+    """Sidebands stand a shaft's order beside the mesh: of the teeth of driver and driven, over so many base pitches."""
+    monkeypatch.setattr(over_revolution, "indicators_of", lambda *given: given)
+    gears = {"driver": SimpleNamespace(teeth=20), "driven": SimpleNamespace(teeth=40)}
+    found = SimpleNamespace(pair=SimpleNamespace(gear=gears.__getitem__), te="te", cycles=40)
+    assert over_revolution.MotionOverRevolution.indicators.func(found) == ("te", 40, [20, 40])

@@ -8,6 +8,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.odd.crack import fillet_point, straight_crack, way_through
+from fegear.fem.plane.odd.hole import Hole, _room
 from fegear.fem.plane.odd.odd_influence import OddInfluence
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.outline import tooth_outline
@@ -124,3 +125,13 @@ def test_a_tooth_answers_for_itself_as_an_ordinary_one():
     tooth = SimpleNamespace(self_compliance=lambda *given: given)
     one = SimpleNamespace(tooth=lambda i: tooth if i == 4 else None, closing=())
     assert OddInfluence.own(one, 4, "radius", "patch", "width") == ("radius", "patch", "width")
+
+
+def test_a_hole_has_the_room_to_the_nearest_place_of_an_outline_not_to_its_nearest_corner():
+    """In a square of side 4, nearest to the middle of an edge or to none; beside it there is none."""
+    corners = np.array([[-2.0, 2.0, 2.0, -2.0, -2.0], [-2.0, -2.0, 2.0, 2.0, -2.0]])
+    chains = [SimpleNamespace(vertices=corners[:, :3]), SimpleNamespace(vertices=corners[:, 2:])]
+    for centre, away in (((0.0, 0.0), 2.0), ((0.5, 0.0), 1.5), ((-0.3, 0.9), 1.1)):
+        assert _room(chains, Hole(centre, 0.2)) == pytest.approx(away - 0.2, rel=1e-12)
+    with pytest.raises(InputError, match="across its outline"):
+        _room(chains, Hole((2.5, 0.0), 0.2))

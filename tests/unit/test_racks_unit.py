@@ -3,6 +3,7 @@
 import copy
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import fegear
 from fegear.base.errors import InputError
 from fegear.case.built.rack import loaded_rack_inputs, rack_inputs
 from fegear.case.reading import build_scene as scene_of
+from fegear.contact.rack.over_stroke import positions
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.iso6336.part3_root_stress import rack_tooth as as_rack_tooth
@@ -257,3 +259,13 @@ def test_results_state_errors_and_ends(results):
     ends = {one.name: one.si for one in tables["rack_stiffness_r_1"].columns}
     assert np.isnan(ends["c_prev"]).all()
     assert (ends["c_next"] != 0.0).all()
+
+
+def test_a_pitch_is_looked_at_where_a_relief_begins_and_where_pairs_come_and_go():
+    """Breaks on other base pitches count where they lie within this one."""
+    pair = SimpleNamespace(rack=SimpleNamespace(base_pitch=2.0), x_start=1.0, x_end=4.2)
+    flanks = SimpleNamespace(breaks=lambda of: np.array([1.5, 3.7, 5.9, 1.0]) if of is pair else None)
+    found = positions(SimpleNamespace(pair=pair), 4, flanks)
+    assert (np.diff(found) > 0.0).all()
+    ends = [1.0, 3.0, 2.2, 2.2]  # both ends of the pitch, and beside where the first pair leaves
+    assert found == pytest.approx(sorted([1.25, 1.75, 2.25, 2.75, 1.5, 1.7, 1.9, *ends]), abs=1e-5)

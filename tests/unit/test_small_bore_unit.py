@@ -1,6 +1,7 @@
 """Gears on small bores turn as a whole by far more than their teeth give way; how they share loads does not show it."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,12 @@ from fegear.case.reading import build_scene
 from fegear.contact.plane.maker import finite_element_compliance
 from fegear.contact.plane.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
 from fegear.engine.plan import make_plan
+from fegear.fem.plane.bore import check_bore
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 from fegear.results.catalogue import STAGES
 
@@ -89,3 +92,22 @@ def test_a_plan_refuses_a_bore_that_a_run_cannot_solve():
     with pytest.raises(RangeError, match=r"too close to the centre .*choose between 0\.0202") as refused:
         make_plan(build_scene(case, "case", Path()), STAGES)
     assert str(refused.value).startswith("gear.a.bore_radius = 0.0047625 mm")
+
+
+@pytest.mark.parametrize("module", [0.37e-3, 3.175e-3, 41e-3])
+def test_what_is_said_of_a_bore_or_rim_that_is_refused_is_taken_and_is_nearly_all_that_is(module):
+    """The remedy's two radii, in mm with six digits, and what lies a thousandth beyond them."""
+    gears = Tooth(28), InternalTooth(60, PinionCutter(24, tip_radius=0.2), tip_radius=29.0)
+    for tooth in gears:
+        said = []
+        for radius in (1e-4 * tooth.root_radius, tooth.root_radius, 1e3 * tooth.root_radius):
+            try:
+                check_bore(tooth, radius, module)
+            except RangeError as error:
+                said.append([float(word) * 1e-3 / module for word in re.findall(r"[\d.]+", error.remedy)[:2]])
+        assert len(said) >= 2
+        for low, high in said:
+            for inside, outside in ((low, low / 1.002), (high, high * 1.0001)):
+                check_bore(tooth, inside, module)
+                with pytest.raises(RangeError):
+                    check_bore(tooth, outside, module)

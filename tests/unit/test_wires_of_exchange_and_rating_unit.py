@@ -15,6 +15,7 @@ from fegear.contact.wide.rated import SolvedFlanks, computed_flanks
 from fegear.engine import processes
 from fegear.exchange.rexs import model_to_case
 from fegear.exchange.rexs.model_to_case import _height, _rest_of_shift, _roman
+from fegear.formulas.iso6336 import safety
 from fegear.geometry.involute import inv
 from fegear.results.helical import pair_forced_response
 from fegear.results.rating import rating
@@ -312,3 +313,23 @@ def test_how_a_motion_settled_is_asked_by_its_method(monkeypatch):
     seen.asked.motion.method = "integration"
     assert motion._how_it_settled(seen) == ["in time", "train", "states"]
     assert motion._method(seen) is None
+
+
+@pytest.mark.parametrize(("width", "ratio", "single"), [
+    ("plane", 1.999, True), ("plane", 2.0, False), ("plane", 2.6, False), ("solid", 2.6, True),
+])  # fmt: skip
+def test_a_plane_pair_without_single_contact_is_not_rated_by_what_is_computed(monkeypatch, width, ratio, single):
+    for name, made_up in (
+        ("inputs_with_shares", lambda inputs, _upstream: inputs), ("given", lambda _asked: "own"),
+        ("rated", lambda _asked: "conditions"), ("_computed", lambda *_: ("computed", ())),
+        ("bent_ratio", lambda *_: None), ("_standing", lambda *both: both), ("_agma", lambda _: (None, "")),
+    ):  # fmt: skip
+        monkeypatch.setattr(rating, name, made_up)
+    monkeypatch.setattr(safety, "rate_pair", lambda conditions, own: ("rated", conditions, own))
+    monkeypatch.setattr(safety, "sn_curves", lambda conditions, own: ("curves", conditions, own))
+    asked = SimpleNamespace(width=width, pair=SimpleNamespace(contact_ratio=ratio), levels=())
+    for computed in (False, True):
+        found = rating._rate(SimpleNamespace(asked=asked, computed=computed), {})
+        assert found.formula == ("rated", "conditions", "own")
+        assert found.by_computed == (("rated", "conditions", ("computed", "own")) if single and computed else None)
+        assert found.why_not == ((rating._NO_SINGLE,) if computed and not single else ())
