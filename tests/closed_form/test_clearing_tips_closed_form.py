@@ -87,6 +87,23 @@ def test_polygons_at_that_tip_are_clear_and_beyond_it_meet(z1, z3):
     assert by_polygons.rolled(*longer, distance) > by_polygons.MEETS
 
 
+def test_where_no_cut_of_one_gear_does_the_planet_is_cut_by_quarters_and_the_ring_by_the_rest():
+    planet = Tooth(39, profile_shift=0.23)
+    teeth = InternalTooth(42, PinionCutter(28, tip_radius=0.2), profile_shift=-0.05)
+
+    def clears(one, other):
+        return min(check.margin for check in internal_checks(one, other, 1.489) if check.refused) >= 0.0
+
+    tips = clearing_tips(planet, teeth, 1.489)
+    cut = replace(planet, tip_radius=tips.planet)
+    assert clears(cut, replace(teeth, tip_radius=tips.ring))
+    assert not clears(cut, replace(teeth, tip_radius=tips.ring - 1e-3))
+    share = (planet.tip_radius - tips.planet) / (planet.tip_radius - planet.form_radius)
+    assert share == pytest.approx(0.25)
+    ring = [teeth.tip_radius + part * (teeth.form_radius - teeth.tip_radius) for part in (0.1, 0.5, 0.79)]
+    assert not any(clears(planet, replace(teeth, tip_radius=tip)) for tip in ring)
+
+
 def ring(**cutter):
     return {"results": ["geometry"],
             "gear": {"r": {"teeth": 50, "module": "2 mm", "internal": True, "cutter": cutter}}}  # fmt: skip

@@ -210,6 +210,8 @@ def test_a_web_from_the_end_of_the_rim_to_that_of_the_hub_is_a_body():
     assert Gear(TOOTH, 1e-3, BORE * 1e-3, WIDTH * 1e-3, body=given.scaled(1e-3)).body_in_modules is not None
     assert not given.even
     assert not replace(given, web=(-0.3, 0.3), hub=FACE, lean=0.1).even
+    assert given.foot == pytest.approx((-1.2 + 0.51, -0.6 + 0.51))
+    assert given.along(WIDTH) == body_along(given.web, given.hub, given.foot[0] - given.web[0], WIDTH)
 
 
 @pytest.mark.dear

@@ -97,7 +97,7 @@ def _engagement(pair: GearPair, corners: bool, reliefs: ManyReliefs | None, i: i
     return replace(engagement, driver_relief=found[0], driven_relief=found[1])
 
 
-@pytest.mark.parametrize(("corners", "reliefs"), [(False, None), (True, RELIEFS)])
+@pytest.mark.parametrize(("corners", "reliefs"), [(False, None), (True, RELIEFS), (True, None)])
 def test_positions_are_those_of_each_pair(pairs, many, corners, reliefs):
     known = known_pairs(shipped_atlas("A"), many, corner_contact=corners, reliefs=reliefs, root_stress=True)
     at = np.array([0.0007, 0.3, 0.985])

@@ -86,6 +86,14 @@ def test_of_several_the_weakest_comes_first_and_says_among_how_many():
     )  # fmt: skip
 
 
+def test_of_two_both_are_said():
+    answers = [Answered((f"Pair {n}: S_H {r}.",), n, r, "the weaker of {count} pairs", tables=(n,))
+               for n, r in (("I", 1.2), ("II", 0.57))]  # fmt: skip
+    found = joined(answers)
+    assert found.sentences == ("Pair II: S_H 0.57, the weaker of two pairs.", "Pair I: S_H 1.2.")
+    assert found.tables == ("II", "I")
+
+
 def test_one_alone_is_not_compared():
     assert joined([Answered(("S_H 1.2.",), "", 1.2, "the weakest of {count}")]).sentences == ("S_H 1.2.",)
 

@@ -63,6 +63,8 @@ def test_opening_and_stress_are_those_of_the_solution():
     (one,) = data.cracks
     gear = data.gear
     assert (one.tooth, one.place, one.ends, data.pair) == (2, 1, "depth_ratio", "I")
+    assert np.isfinite(one.moved).all()
+    assert np.isfinite(one.mises).all()
     assert data.load == pytest.approx(60.0 / gear.base_radius / 20e-3)
     plane = gear.material.young_modulus / (1.0 - gear.material.poisson_ratio**2)
     way = one.path[:, 1] - one.path[:, 0]

@@ -132,6 +132,6 @@ def test_a_hole_has_the_room_to_the_nearest_place_of_an_outline_not_to_its_neare
     corners = np.array([[-2.0, 2.0, 2.0, -2.0, -2.0], [-2.0, -2.0, 2.0, 2.0, -2.0]])
     chains = [SimpleNamespace(vertices=corners[:, :3]), SimpleNamespace(vertices=corners[:, 2:])]
     for centre, away in (((0.0, 0.0), 2.0), ((0.5, 0.0), 1.5), ((-0.3, 0.9), 1.1)):
-        assert _room(chains, Hole(centre, 0.2)) == pytest.approx(away - 0.2, rel=1e-12)
+        assert _room(chains, Hole(0.2, centre)) == pytest.approx(away - 0.2, rel=1e-12)
     with pytest.raises(InputError, match="across its outline"):
-        _room(chains, Hole((2.5, 0.0), 0.2))
+        _room(chains, Hole(0.2, (2.5, 0.0)))
