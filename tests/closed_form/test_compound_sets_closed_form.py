@@ -421,8 +421,9 @@ def test_numbers_of_teeth_are_those_of_loops_over_all(planets, ratio):
                     own.add((s, p, r))
     assert found == own
     assert own
-    few = search(of, drive, wanted, 3)
+    few, every = search(of, drive, wanted, 3), search(of, drive, wanted, 10**6)
     assert [abs(one.off) for one in few] == sorted(abs(one.off) for one in few)
+    assert [one.teeth for one in few[:3]] == [one.teeth for one in every[:3]]  # none that is nearer was left out
     with pytest.raises(InputError, match="is not reached within"):
         search(of, drive, replace(wanted, ratio=-7.0), 3)
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.base.errors import GeometryError, RangeError
+from fegear.base.errors import GeometryError, InputError, RangeError
+from fegear.contact.plane.table_compliance import refuse_table
 from fegear.formulas import cornell as cornell_compliance
 from fegear.formulas import potential_energy, weber_banaschek
 from fegear.formulas.beam import NODES
@@ -100,3 +101,16 @@ def test_any_tooth_gives_finite_numbers_or_reasons(tooth, where):
             np.testing.assert_allclose(o.unwrap().total, finer.total, rtol=1e-10)
         else:
             assert "Sainsot" in o.reason
+
+
+@pytest.mark.parametrize(("left", "taken"), [(0.0, True), (0.149, True), (0.151, False)])
+def test_a_table_may_leave_out_fifteen_per_cent_of_the_path_at_either_end(left, taken):
+    p = pair()
+    for first, last in ((left, 0.0), (0.0, left)):
+        x = np.linspace(p.x_start + first * p.path_length, p.x_end - last * p.path_length, 9)
+        compliance = np.full(9, 20.0 / (p.face_width * p.driver.material.young_modulus))
+        if taken:
+            refuse_table(p, x, compliance, "pair")
+        else:
+            with pytest.raises(InputError, match=r"at most 15 % at each end; 15\.1 % is missing"):
+                refuse_table(p, x, compliance, "pair")

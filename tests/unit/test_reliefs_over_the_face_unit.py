@@ -305,3 +305,15 @@ def test_corrections_come_on_top_of_what_the_driver_has():
     }
     assert own == ground.driver_flank[1]
     assert lead_correction._ground(mesh, 0.0, 0.0).driver_flank == ("present",)
+
+
+@pytest.mark.parametrize("lengths", [(0.2, 0.5, 0.9), (0.1, 0.35, 0.8, 1.0), (0.3, 0.9), (0.4,)])
+def test_the_length_of_least_excitation_is_the_vertex_of_the_lowest_three_and_of_fewer_the_lowest(lengths):
+    """A parabola over the lengths, another for every amount and load, one of them lowest at an end."""
+    lengths, tops = np.array(lengths), np.array([[0.45, 0.6], [0.3, 5.0]])
+    values = 1.0 + (lengths[None, :, None] - tops[:, None, :]) ** 2
+    none = np.zeros((2, lengths.size, 2))
+    chart = ReliefChart(np.ones(2), lengths, np.ones(2), 1.0, none, none)
+    nearest = lengths[np.abs(lengths[None, :, None] - tops[:, None, :]).argmin(axis=1)]
+    inside = (lengths[0] < nearest) & (nearest < lengths[-1])
+    assert chart.lowest(values) == pytest.approx(np.where(inside, tops, nearest))
