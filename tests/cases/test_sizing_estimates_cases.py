@@ -15,7 +15,7 @@ from fegear.case.sizing import SizingPart
 from fegear.contact.many.many_loaded import ManyErrors
 from fegear.contact.many.many_roots import ManyRootStress
 from fegear.design.sizing import by_atlas
-from fegear.design.sizing.by_atlas import AtlasDuty, bare_errors, relieved_errors
+from fegear.design.sizing.by_atlas import AtlasDuty, Bare, bare_errors, relieved_errors
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -271,3 +271,30 @@ def test_a_sizing_without_an_atlas_is_estimated_by_coarse_finite_elements(monkey
     assert table["te_estimated"] == pytest.approx(1e-6 * (1.0 + table["x_1"]))
     assert np.isfinite(table["te_verified"]).sum() == 1
     assert table["te_verified"][np.argmin(table["place"])] == pytest.approx(table["te_estimated"].min())
+
+
+@pytest.mark.parametrize("relieved", [False, True])
+def test_half_of_the_estimates_are_looked_up_and_the_other_half_searched(monkeypatch, relieved):
+    """What is done goes from nothing to all in even parts."""
+
+    def parts(progress):
+        for part in (0.0, 0.5, 1.0):
+            progress(part)
+
+    def bare(_space, numbers, _duty, _work, progress):
+        parts(progress)
+        return Bare(*np.ones((4, numbers.size)))
+
+    def searched(_space, numbers, _duty, _work, progress):
+        parts(progress)
+        return SimpleNamespace(te=np.ones(numbers.size))
+
+    monkeypatch.setattr(estimated, "bare_of", bare)
+    monkeypatch.setattr(estimated, "relieved_of", searched)
+    monkeypatch.setattr(estimated, "sliced_of", lambda _space, numbers, *_: np.ones(numbers.size))
+    names = (estimated.BARE, estimated.RELIEVED) if relieved else (estimated.BARE,)
+    lives = SimpleNamespace(numbers=np.arange(5), names=("mass",), criteria=np.arange(5.0)[:, None])
+    done = []
+    found = estimated.estimated(None, lives, names, object(), (4, 2), None, done.append)
+    assert done == ([0.0, 0.25, 0.5, 0.5, 0.75, 1.0] if relieved else [0.0, 0.5, 1.0])
+    assert np.isfinite(found.costs).sum(axis=0).tolist() == ([4, 2] if relieved else [4])
