@@ -117,13 +117,12 @@ def of_module(name, path):
 
 
 def of_results():
-    """Flags of stages, and those of their tables by name."""
+    """Whether stages are for every load, and in points; where their tables stand, by name."""
     from fegear.results.catalogue import STAGES
 
     kept = {}
     for stage in STAGES:
-        said = {field.name: getattr(stage, field.name) for field in dataclasses.fields(stage)}
-        kept[stage.name] = numbers([said[name] for name in sorted(said) if isinstance(said[name], bool)])
+        kept[stage.name] = [float(stage.every_load), float(stage.in_points)]
         tables, number = list(getattr(getattr(stage.present, "__self__", None), "tables", ())), 0
         while tables:
             one = tables.pop(0)
