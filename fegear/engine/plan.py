@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Why a task runs that no result of the case asks for.
 ON_REQUEST = "shown on request"
+#: How many of the results that include an effect a note names.
+_NAMED = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,8 +199,9 @@ def _refuse_circle(task: Task, reason: str, result: str, finished: Collection[Ta
 
 
 def _idle(effect: str, stages: Sequence[Entry]) -> str:
-    results = dict.fromkeys(f'"{result}"' for one in stages if effect in one.effects for result in one.results)
-    who = f"request {' or '.join(results)}, or switch the effect off"
+    results = [*dict.fromkeys(f'"{result}"' for one in stages if effect in one.effects for result in one.results)]
+    more = f" ({len(results)} results include it)" if len(results) > _NAMED else ""
+    who = f"request {' or '.join(results[:_NAMED])}{more}, or switch the effect off"
     return f"effects.{effect} has no influence on the requested results; {who}."
 
 

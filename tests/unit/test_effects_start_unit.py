@@ -61,7 +61,11 @@ def test_only_what_the_case_names_is_called_idle():
     quiet, named = case(results=("geometry",)), case(results=("geometry",), effects={"hertz": "linear"})
     assert make_plan(quiet, STAGES).remarks == ()
     (said,) = make_plan(named, STAGES).remarks
-    assert said.startswith("effects.hertz has no influence on the requested results")
+    assert said.startswith(
+        'effects.hertz has no influence on the requested results; request "load-sharing" or "transmission-error" or '
+        '"root-stress-history" ('
+    )
+    assert said.endswith(" results include it), or switch the effect off.")
 
 
 def test_python_and_a_case_file_start_alike():

@@ -20,11 +20,14 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
 
 
-def _bare(scene: Scene, name: str) -> PairSpec:
-    """A pair and its loads, before any file is read."""
-    part, pair = scene.case.pair[name], scene.pairs[name]
+def _bare(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
+    """A pair and its loads, before any file is read; `over_face` as in `pair_spec`."""
+    part, pair, width = scene.case.pair[name], scene.pairs[name], scene.width_of(name)
     corners = scene.case.effects.corner_contact
-    return PairSpec(pair, part.all_loads(pair), width=scene.width_of(name), corner_contact=corners, name=name)
+    return PairSpec(
+        pair, part.all_loads(pair), width="solid" if over_face and width == "plane" else width,
+        corner_contact=corners, name=name,
+    )  # fmt: skip
 
 
 def check_plane_pair(scene: Scene, name: str) -> None:
@@ -150,7 +153,7 @@ def check_wide_pair(scene: Scene, name: str) -> None:
     for gear in (part.driver, part.driven):
         check_solid_gear(scene, gear)
         check_source(scene, gear, f"pair.{name}.width", "slices" if part.width == "slices" else "solid")
-    refuse_unloaded(_bare(scene, name))
+    refuse_unloaded(_bare(scene, name, over_face=True))
     if effects.misalignment:
         _check_misalignment(scene, name)
     odd = [gear for gear in (part.driver, part.driven) if scene.case.gear[gear].odd_tooth]
