@@ -52,4 +52,4 @@ class EvenlySpaced(Part):
     @property
     def array(self) -> NDArray[np.float64]:
         """All values, increasing, each once [SI]."""
-        return np.unique(self.in_order)
+        return self.in_order if self.values is None else np.array(sorted(set(self.values)))

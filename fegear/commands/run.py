@@ -191,6 +191,7 @@ def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_
     scene = read_scene(case, changes(overrides, wanted))
     planned = make_plan(scene, STAGES)
     speed = own_speed()
-    for line in plan_lines(scene, planned, speed):
-        voice.say(line)
-    voice.tell(plan_content(scene, planned, speed))
+    if as_json:
+        voice.tell(plan_content(scene, planned, speed))
+    else:
+        voice.say("\n".join(plan_lines(scene, planned, speed)))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Why a task runs that no result of the case asks for.
 ON_REQUEST = "shown on request"
 #: How many of the results that include an effect a note names.
-_NAMED = 3
+_NAMED = 4
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,14 +8,22 @@ from collections.abc import Sequence
 from fegear.case.reading import Scene
 from fegear.engine.own_speed import OwnSpeed
 from fegear.engine.plan import Plan
+from fegear.engine.stage import Forecast
 
 
 def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
     """Predicted seconds of each step [s], a gear shape counted where it is solved first; None where it is unknown."""
+    return _seconds(_forecasts(scene, plan))
+
+
+def _forecasts(scene: Scene, plan: Plan) -> list[Forecast]:
+    return [step.stage.forecast(scene, step.task.subject) for step in plan.steps]
+
+
+def _seconds(forecasts: Sequence[Forecast]) -> list[float | None]:
     solved: set[object] = set()
     found: list[float | None] = []
-    for step in plan.steps:
-        ahead = step.stage.forecast(scene, step.task.subject)
+    for ahead in forecasts:
         anew = sum(seconds for key, seconds in ahead.shapes.items() if key not in solved)
         solved |= set(ahead.shapes)
         found.append(None if ahead.seconds is None else ahead.seconds + anew)
@@ -25,11 +33,11 @@ def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
 def plan_lines(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> list[str]:
     """Lines for the terminal; seconds of a machine whose speed is known, else of a reference machine."""
     speed = speed or OwnSpeed()
-    lines, seconds = ["Computed:"], speed.scaled(plan, forecast_seconds(scene, plan))
-    for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
+    forecasts = _forecasts(scene, plan)
+    lines, seconds = ["Computed:"], speed.scaled(plan, _seconds(forecasts))
+    for number, (step, ahead, predicted) in enumerate(zip(plan.steps, forecasts, seconds, strict=True), start=1):
         effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
         lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
-        ahead = step.stage.forecast(scene, step.task.subject)
         if ahead.settings:
             lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in ahead.settings.items()))
         lines.append("     CPU time unknown" if predicted is None else f"     about {predicted:.2g} s")
@@ -65,7 +73,8 @@ def _folded(skipped: Sequence[tuple[str, str]]) -> list[str]:
 
 def plan_content(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> dict[str, object]:
     """The same as plain mappings and lists, for programs; ``seconds`` is None where the run time is unknown."""
-    seconds = (speed or OwnSpeed()).scaled(plan, forecast_seconds(scene, plan))
+    forecasts = _forecasts(scene, plan)
+    seconds = (speed or OwnSpeed()).scaled(plan, _seconds(forecasts))
     return {
         "case": scene.name,
         "steps": [
@@ -73,10 +82,10 @@ def plan_content(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> dic
                 "task": str(step.task),
                 "reasons": list(step.reasons),
                 "effects": list(step.effects),
-                "settings": dict(step.stage.forecast(scene, step.task.subject).settings),
+                "settings": dict(ahead.settings),
                 "seconds": predicted,
             }
-            for step, predicted in zip(plan.steps, seconds, strict=True)
+            for step, ahead, predicted in zip(plan.steps, forecasts, seconds, strict=True)
         ],
         "skipped": [{"stage": name, "reason": reason} for name, reason in plan.skipped],
         "remarks": list(plan.remarks),

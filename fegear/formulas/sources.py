@@ -7,21 +7,39 @@ the contact's half-width being Hertz's. One tooth pair on its own: no neighbours
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError, RangeError
-from fegear.formulas import cornell as cornell_compliance
-from fegear.formulas import hertz, potential_energy, weber_banaschek
+from fegear.formulas import hertz
 from fegear.formulas.outcome import ComplianceSource
+from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 
-SOURCES: dict[str, ComplianceSource] = {
-    s.name: s for s in (cornell_compliance.SOURCE, weber_banaschek.SOURCE, potential_energy.SOURCE)
-}
+#: Modules of the sources by their names.
+_HOMES = {"cornell": "cornell", "weber-banaschek": "weber_banaschek", "potential-energy": "potential_energy"}
+
+
+class _Sources(Mapping[str, ComplianceSource]):
+    """All sources by name, each loaded when it is asked for: a plan needs one of them."""
+
+    def __getitem__(self, name: str) -> ComplianceSource:
+        found: ComplianceSource = import_module(f"fegear.formulas.{_HOMES[name]}").SOURCE
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_HOMES)
+
+    def __len__(self) -> int:
+        return len(_HOMES)
+
+
+SOURCES: Mapping[str, ComplianceSource] = _Sources()
 
 
 def source(name: str) -> ComplianceSource:
@@ -35,6 +53,17 @@ def source(name: str) -> ComplianceSource:
             f'did you mean "{near[0]}"?' if near else "",
         )
     return SOURCES[name]
+
+
+def refuse_gear(name: str, gear: Gear) -> None:
+    """Refuse a gear outside the range of teeth and bodies that a source is made for, by both ends of its involute.
+
+    Raises
+    ------
+    InputError
+        Of the source.
+    """
+    source(name).tooth(gear, np.array([gear.form_radius, gear.involute_tip_radius]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,7 +60,7 @@ def refuse_deep_relief(gear: Gear, relief: Relief, low: float, high: float) -> N
     InputError
         With the place where it is deepest for what the tooth can take.
     """
-    roll = np.union1d(np.linspace(low, high, 101), np.clip(relief.kinks, low, high))
+    roll = np.sort(np.concatenate([np.linspace(low, high, 101), np.clip(relief.kinks, low, high)]))
     removal = relief.removal(roll)
     with np.errstate(divide="ignore", invalid="ignore"):  # a pointed tooth has nothing to take
         share = np.abs(removal) / deepest_relief(gear, roll)

@@ -63,7 +63,7 @@ def test_only_what_the_case_names_is_called_idle():
     (said,) = make_plan(named, STAGES).remarks
     assert said.startswith(
         'effects.hertz has no influence on the requested results; request "load-sharing" or "transmission-error" or '
-        '"root-stress-history" ('
+        '"root-stress-history" or "mesh-stiffness-revolution" ('
     )
     assert said.endswith(" results include it), or switch the effect off.")
 

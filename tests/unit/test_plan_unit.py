@@ -13,6 +13,7 @@ from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.measurements import unused_measurements
 from fegear.case.reading import build_scene
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.outcome import Outcome
 from fegear.engine.plan import make_plan
@@ -202,3 +203,18 @@ def test_a_former_name_of_a_result_asks_for_it_and_gives_the_new_one():
     assert STAGES.former() == {
         "tooth-loss": "gear-mesh-power-loss", "followed-modes": "mode-tracking", "pair-forces": "pair-forced-response",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(("bore", "refused"), [("24 mm", True), ("10 mm", False)])
+def test_a_gear_outside_the_range_of_a_formula_is_refused_by_the_plan_as_by_its_table(bore, refused):
+    gear = {"teeth": 30, "module": "2 mm", "face_width": "10 mm", "bore_radius": bore}
+    pair = {"driver": "a", "driven": "a", "load": "500 N", "compliance": {"source": "potential-energy"}}
+    scene = build_scene({"results": ["load-sharing"], "gear": {"a": gear}, "pair": {"I": pair}}, "c", None)
+    if not refused:
+        assert make_plan(scene, STAGES).steps
+        assert closed_form_compliance(scene.gears["a"], "potential-energy").own(0, 30e-3) > 0.0
+        return
+    with pytest.raises(InputError, match=r"pair\.I\.compliance\.source.*requires another gear a: root radius / bore"):
+        make_plan(scene, STAGES)
+    with pytest.raises(InputError, match="root radius / bore radius"):
+        closed_form_compliance(scene.gears["a"], "potential-energy")

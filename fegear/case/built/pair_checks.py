@@ -65,12 +65,12 @@ def check_plane_pair(scene: Scene, name: str) -> None:
 
 def _check_closed_forms(scene: Scene, name: str) -> None:
     """Refuse a formula of tooth compliance outside the range of teeth and bodies that it is made for."""
-    from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+    from fegear.formulas.sources import refuse_gear
 
     source = scene.case.pair[name].compliance.source
     for member in MEMBERS:
         try:
-            closed_form_compliance(scene.pairs[name].gear(member), source)
+            refuse_gear(source, scene.pairs[name].gear(member))
         except InputError as error:
             key, gear = f"pair.{name}.compliance.source", gear_name(scene, name, member)
             raise InputError(
