@@ -50,7 +50,9 @@ def idler(results=RESULTS, pairs=None):
     }  # fmt: skip
 
 
-def planets(flanks=(STEEP, FLAT), flank=None, results=("planet-load-sharing", "planet-root-stress")):
+def planets(
+    flanks=(STEEP, FLAT), flank=None, results=("planet-load-sharing", "planet-root-stress", "planet-vibration")
+):
     """Three planets, a floating sun, and a pin that is off its place."""
     gears = {
         "sun": gear(19, flanks, profile_shift=0.3, bore_radius="12 mm"),
@@ -65,6 +67,7 @@ def planets(flanks=(STEEP, FLAT), flank=None, results=("planet-load-sharing", "p
         "sun": "sun", "planet": "planet", "ring": "ring", "planets": 3, "fixed": "ring", "input": "sun",
         "torque": "200 N*m", "speed": "1500 rpm", "floating": ["sun"], "stiffness": {"pin": "400 N/um"},
         "body": {"carrier": carrier}, "pin_errors": {"tangential": ["20 um", "0 um", "5 um"]},
+        "speeds": ["1500 rpm"], "damping_ratio": 0.03,
     }  # fmt: skip
     document = {**idler(results, {}), "gear": gears, "planetary": {"P": group}}
     if flank:
@@ -262,6 +265,36 @@ def test_an_idler_between_equal_mates_is_bent_alike_to_either_side():
         driven, driving = (found[f"i.{side}_side.{quantity}"] for side in ("driven", "driving"))
         assert driven == pytest.approx(driving, rel=2e-3, abs=0.1)
     assert -1.6 < found["i.driven_side.stress_ratio"] < -1.0
+
+
+def test_motion_knows_no_contact_of_asymmetric_back_flanks():
+    document = idler(["dynamic-factor"])
+    document["effects"] |= {"contact_loss": True, "parametric": True}
+    document["dynamics"] = {"speeds": ["1000 rpm"]}
+    lever = 3e3 * 0.5 * 3e-3 * 19 * math.cos(math.radians(28.0))
+    document["train"] = {
+        "body": {name: {"gears": [name]} for name in "piw"}, "torque": {"p": f"{lever!r} N*m"}, "balance": "w",
+        "mesh": {
+            name: {"driver": pair["driver"], "driven": pair["driven"], "damping_ratio": 0.05}
+            for name, pair in document["pair"].items()
+        },
+    }  # fmt: skip
+    del document["pair"]["J"]["load"]
+    document["pair"]["J"]["torque"] = f"{lever * 25 / 19!r} N*m"
+    with pytest.raises(InputError, match=r'train\.mesh\.I\.backlash = .*set backlash = "unlimited"'):
+        make_plan(build_scene(document, "case", Path()), STAGES)
+    for mesh in document["train"]["mesh"].values():
+        mesh["backlash"] = "unlimited"
+    make_plan(build_scene(document, "case", Path()), STAGES)
+    # named against the power in one mesh only, the idler would be loaded on one flank twice
+    document["train"]["mesh"]["J"] |= {"driver": "w", "driven": "i"}
+    document["pair"]["J"] |= {"driver": "w", "driven": "i", "torque": f"{lever * 31 / 19!r} N*m"}
+    with pytest.raises(InputError, match=r'train\.mesh\.J\.driver = "w": is driven where mesh I runs as named'):
+        make_plan(build_scene(document, "case", Path()), STAGES)
+    group = planets(results=["planet-motion"])
+    group["planetary"]["P"] |= {"speeds": ["1000 rpm"], "backlash": "50 um"}
+    with pytest.raises(InputError, match=r"planetary\.P\.backlash = 0\.05 mm"):
+        make_plan(build_scene(group, "case", Path()), STAGES)
 
 
 def test_what_is_no_idler_is_said():

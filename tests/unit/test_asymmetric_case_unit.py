@@ -36,7 +36,8 @@ KNOWN = {
 IN_TRAINS = {
     "gear-train", "natural-modes", "campbell", "torque-ripple", "dynamic-increments", "mesh-force-spectrum",
     "tooth-force", "dynamic-root-stress", "idler-root-stress", "planet-set", "planet-load-sharing",
-    "planet-root-stress", "planet-modes", "planet-vibration",
+    "planet-root-stress", "planet-modes", "planet-vibration", "dynamic-factor",
+    "vibration-revolution", "planet-motion",
 }  # fmt: skip
 
 

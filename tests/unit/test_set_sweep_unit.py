@@ -67,7 +67,8 @@ def test_each_speed_starts_from_the_one_before_or_afresh(direction, starts, monk
         progress(0.5)
         return SimpleNamespace(x=f"x{number}", v=f"v{number}", model=model)
 
-    linear = SimpleNamespace(meshed=SimpleNamespace(mean_force=4.0))
+    model = SimpleNamespace(found=SimpleNamespace(ring_lever=1.0))
+    linear = SimpleNamespace(meshed=SimpleNamespace(mean_force=4.0, model=model))
     monkeypatch.setattr(set_motion, "steady_state", steady)
     vibration = SimpleNamespace(
         shift=lambda of: np.array([0.4, 0.8, 1.2]) if of(SimpleNamespace(largest_force=7)) else None
@@ -90,11 +91,12 @@ def test_each_speed_starts_from_the_one_before_or_afresh(direction, starts, monk
 
 
 def test_a_set_turns_at_its_mesh_frequency_and_is_the_same_at_another_speed():
-    linear = SimpleNamespace(meshed=SimpleNamespace(model=SimpleNamespace(count=3), mean_force=7.0), damping_ratio=0.3)
+    meshed = SimpleNamespace(model=SimpleNamespace(count=3), mean_forces=(7.0, 5.0))
+    linear = SimpleNamespace(meshed=meshed, damping_ratio=0.3)
     run = set_motion.SetMotion(linear, 50.0)
     assert run.speed == pytest.approx(100.0 * math.pi)
     assert run.period == 0.02
-    assert run.static.tolist() == [7.0] * 6
+    assert run.static.tolist() == [7.0] * 3 + [5.0] * 3
     assert run.at_speed(20.0 * math.pi).mesh_frequency == pytest.approx(10.0)
     with pytest.raises(RangeError, match="must be positive"):
         replace(run, mesh_frequency=0.0)

@@ -127,18 +127,21 @@ class SetSweep:
     states : tuple of SteadyState
         In increasing order of speed.
     mean_force : float
-        In every mesh where all planets carry alike [N].
+        In every mesh with the sun where all planets carry alike [N].
     tolerance : float
         Of the largest forces of motions that repeat, over the mean force.
     by_teeth : ndarray, shape (speeds,)
         What the estimated errors of the teeth change of the largest dynamic force while all teeth touch, over the mean
         force.
+    ring_lever : float
+        Mean force in the sun's meshes over that in the ring's (`PlanetarySet.ring_lever`).
     """
 
     states: tuple[SteadyState, ...]
     mean_force: float
     tolerance: float
     by_teeth: Array
+    ring_lever: float = 1.0
 
     def _of(self, values: str, mesh: int) -> Array:
         """Values of the meshes with sun (0) or ring (1), shape (speeds, planets)."""
@@ -161,13 +164,14 @@ class SetSweep:
     @shows("", "maximum ring mesh force / equal share", label="ring mesh")
     def ring_factor(self) -> Array:
         """Shape (speeds,)."""
-        return np.asarray(self._of("largest", 1).max(axis=1) / self.mean_force)
+        return np.asarray(self._of("largest", 1).max(axis=1) * self.ring_lever / self.mean_force)
 
     @property
     @shows("", "maximum tooth pair force (sun or ring) / equal share")
     def tooth_factor(self) -> Array:
         """Shape (speeds,)."""
-        both = [self._of("tooth_force", mesh).max(axis=1) for mesh in (0, 1)]
+        levers = (1.0, self.ring_lever)
+        both = [self._of("tooth_force", mesh).max(axis=1) * lever for mesh, lever in enumerate(levers)]
         return np.asarray(np.maximum(*both) / self.mean_force)
 
     @property
@@ -236,7 +240,9 @@ def set_sweep(
         if progress is not None:
             progress((number + 1) / order.size)
     found = tuple(states[::-1] if direction == "down" else states)
-    return SetSweep(found, run.linear.meshed.mean_force, tolerance, _by_teeth(run.linear, mesh_frequency))
+    meshed = run.linear.meshed
+    by_teeth = _by_teeth(run.linear, mesh_frequency)
+    return SetSweep(found, meshed.mean_force, tolerance, by_teeth, meshed.model.found.ring_lever)
 
 
 def _by_teeth(linear: LinearSet, mesh_frequency: Array) -> Array:

@@ -202,6 +202,12 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 def _check(scene: Scene, name: str) -> None:
     check_vibration(scene, name)
+    part = planetary_part(scene, name)
+    if part.backlash != "unlimited" and scene.gears[part.planet].asymmetric:
+        raise InputError(
+            f"planetary.{name}.backlash", f"{part.backlash * 1e3:.6g} mm",
+            "must be unlimited for asymmetric teeth (back-side contact is not available)", 'set backlash = "unlimited"',
+        )  # fmt: skip
     if scene.case.dynamics.method != "shooting":
         raise InputError(
             "dynamics.method", scene.case.dynamics.method, "applies to gear trains, not to planetary gear sets",

@@ -92,11 +92,23 @@ def check_motion(scene: Scene, subject: str = "") -> None:
     """Refuse friction where teeth are lumped, and torque ripple that shares no period with the meshes."""
     check_friction(scene, subject)
     _check_ripple(scene)
+    _check_back_sides(scene)
     effects = scene.case.effects
     if effects.friction and not effects.parametric:
         raise InputError(
             "effects.friction", "true", "requires time-varying mesh stiffness", "set effects.parametric = true"
         )
+
+
+def _check_back_sides(scene: Scene) -> None:
+    """Refuse asymmetric teeth that might touch on their back flanks, whose stiffness a mesh does not have."""
+    for mesh in train_inputs(scene).spec.meshes if scene.case.effects.contact_loss else ():
+        if mesh.pair.asymmetric and math.isfinite(mesh.room):
+            raise InputError(
+                f"train.mesh.{mesh.name}.backlash", f"{mesh.room * 1e3:.6g} mm",
+                "must be unlimited for asymmetric teeth with loss of contact (back-side contact is not available)",
+                'set backlash = "unlimited"',
+            )  # fmt: skip
 
 
 def _check_ripple(scene: Scene) -> None:
