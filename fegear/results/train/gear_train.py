@@ -27,7 +27,6 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import (
     loaded_pair,
     needs_teeth,
@@ -110,6 +109,7 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     """Springs and excitation of every mesh under its mean force, put into the train."""
     from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
+    from fegear.results.pair.loaded_flanks import loaded_flanks  # late: a plan of plane pairs does without
 
     train = build_train(asked.spec)
     forces, forward = static_forces(train), a_drives(train)
