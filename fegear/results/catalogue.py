@@ -28,7 +28,7 @@ from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Need, Stage
 
 #: What results on cracks need.
-_CRACKED = "[[gear.NAME.odd_tooth]] with crack, counted by effects.odd_teeth"
+_CRACKED = "[[gear.NAME.odd_tooth]] with crack, and effects.odd_teeth"
 #: Effects on loads in mesh and on root stress under them, of results on root stress.
 _STRESS, _PLANE_STRESS = (*PAIR_EFFECTS, *ROOT_EFFECTS), (*PLANE_EFFECTS, *ROOT_EFFECTS)
 #: Effects on root stress under forces that are given by a train.
@@ -73,7 +73,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Stiffness of cracked teeth", ("odd-tooth-stiffness",),
               "stiffness of a cracked tooth and of its neighbours along the flank",
               effects=(ODD_TEETH.name,), internal=True, table=_CRACKED,
-              requires=(Need(ODD_TEETH.name, "its teeth are what the result is about"),)),
+              requires=(Need(ODD_TEETH.name, "the result is for odd teeth"),)),
         Entry("crosscheck", "gear.crosscheck.CROSSCHECK", "Analytical formulas compared with FE", ("crosscheck",),
               "formulas for stiffness and root stress (ISO 6336, AGMA 908, ...) compared with finite elements",
               quantities=("c_0", "root-stress"), generated=True),
@@ -110,11 +110,11 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "Stress intensity of cracked teeth", ("stress-intensity",),
               "stress intensity factors K_I, K_II of cracks over the mesh under shared load",
               effects=(*PLANE_EFFECTS, ODD_TEETH.name), internal=True, table=_CRACKED,
-              requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
+              requires=(Need(ODD_TEETH.name, "the result is for cracked teeth"),)),
         Entry("crack-path", "pair.crack_path.CRACK_PATH", "Growth of cracks", ("crack-path",),
               "path of cracks through tooth or rim, load cycles, stiffness on the way",
               effects=(*PLANE_EFFECTS, ODD_TEETH.name), table=_CRACKED,
-              requires=(Need(ODD_TEETH.name, "its cracks are what the result is about"),)),
+              requires=(Need(ODD_TEETH.name, "the result is for cracked teeth"),)),
         Entry("gauge", "pair.gauge.GAUGE", "Strain of gauges in root fillets", ("gauge",),
               "strain and stress under strain gauges over the rotation; comparison with measured strain",
               effects=_PLANE_STRESS, internal=True, table="gauge.NAME"),
@@ -304,7 +304,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("loaded-shafts", "shafts.loaded_shafts.LOADED_SHAFTS", "Shafts under all meshes", effects=WIDE_EFFECTS,
               internal=True),
         Entry("gearbox", "shafts.gearbox_overview.GEARBOX", "Gearbox at a glance", ("gearbox",),
-              "meshes and bearings of a gearbox, the weakest first; what to change first; drawing under load",
+              "meshes and bearings of a gearbox in order of safety, recommended changes, drawing under load",
               internal=True, table="shaft.NAME"),
         Entry("shaft-deflection", "shafts.shaft_deflection.SHAFT_DEFLECTION",
               "Shaft deflection and bearing forces", ("shaft-deflection",),

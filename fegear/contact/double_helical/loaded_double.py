@@ -158,9 +158,9 @@ class LoadedDoublePair:
         limits = (
             "" if self.balance.free[:, case].all() or self.spec.floating is None else ", touching a stop of its play"
         )
-        idle = [f"the half at end {end} carries nothing at some mesh positions" for end, half in
+        idle = [f"the half at end {end} carries no load at some mesh positions" for end, half in
                 zip(("I", "II"), ends, strict=True) if (half == 0.0).any()]  # fmt: skip
-        back = "; its other flanks touch, which is not included" if self.touches_back[case] else ""
+        back = "; its non-working flanks are in contact, which is not included" if self.touches_back[case] else ""
         alone = f" At this load {idle[0]}{back}." if idle else ""
         return (
             f"Double helical pair: the half at end {('I', 'II')[most]} carries "

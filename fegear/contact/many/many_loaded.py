@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.contact.many.arrays import ManyEngagements
 
 
-_LONG = "Compiling load sharing of arrays of pairs: some ten seconds, once."
+_LONG = "Compiling load sharing of arrays of pairs: about 10 s, only once."
 
 
 class ManyErrors(NamedTuple):

@@ -209,7 +209,7 @@ def _refuse_too_many(engagement: Engagement) -> None:
     if engagement.cycles > MOST_PITCHES:
         raise InputError(
             "pair", f"{engagement.cycles} base pitches until the same teeth meet again",
-            f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
+            f"must be at most {MOST_PITCHES} for a revolution", "specify odd teeth of one gear only",
         )  # fmt: skip
 
 

@@ -275,7 +275,7 @@ def rooted_lines(
         Whether a tooth feels the loads of those beside it.
     """
     if solution.period > 1:
-        raise InputError("gear", "teeth that differ", "are not known to root stress over the face")
+        raise InputError("gear", "teeth that differ", "are not available for root stress over the face")
     places, _ = places_of(lines)
     bands = line_bands(pair, member, solution, lines)
     reach = abs(base_twist(pair)) * 0.5 * pair.face_width + (pair.base_pitch if coupling else 0.0)

@@ -57,7 +57,7 @@ class BodyMode:
     tangential: float = shown("", "kinetic energy share, circumferential")
 
     @property
-    @shows("", "along which direction it moves most")
+    @shows("", "main direction of motion")
     def kind(self) -> str:
         """What moves most: "axial" (umbrella, tilt), "radial" or "tangential" (torsion)."""
         shares = {"axial": self.axial, "radial": self.radial, "tangential": self.tangential}

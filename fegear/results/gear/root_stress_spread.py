@@ -141,7 +141,7 @@ class Population:
         """How many loads on which gears."""
         gears = np.unique(np.stack([_number(self.table, k) for k in WORDS if k != "load_position"], axis=1), axis=0)
         points = int((np.asarray(self.table["formula"]) == names_of(self.table)[0]).sum())
-        return f"{points} loads on {len(gears)} gears drawn evenly over {bounds_in_words(self.table)}"
+        return f"{points} loads on {len(gears)} gears, uniformly distributed over {bounds_in_words(self.table)}"
 
 
 def _marks(seen: Seen) -> tuple[Zone | Mark, ...]:

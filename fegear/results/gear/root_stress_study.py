@@ -198,7 +198,7 @@ class OfFormula:
     notes: tuple[str, ...]
     place: Array = shown("", "number of teeth, offset for other formulas")
     ratio: Array = shown("", "formula / FE")
-    edge: Array = shown("", "formula / FE, from which the step counts")
+    edge: Array = shown("", "formula / FE, start of the step")
     count: NDArray[np.intp] = shown("", "points")
 
     def _of_known(self, answer: Callable[[Array], float]) -> float | None:

@@ -186,9 +186,9 @@ def _on_root_stress(seen: Seen) -> str:
     t: StiffnessTable = seen.data
     i = int(first_of_largest(t.root_tension))
     return (
-        f"Gear {seen.name}: largest tangential fillet stress per line load. At its largest the tension sits at radius "
-        f"{t.root_tension_radius[i] * 1e3:.5g} mm, where the fillet's tangent makes "
-        f"{np.rad2deg(t.root_tension_angle[i]):.1f} deg with the tooth's centre line (ISO 6336-3 looks at 30 deg)."
+        f"Gear {seen.name}: maximum tangential fillet stress per line load. The maximum on the tension side is at "
+        f"radius {t.root_tension_radius[i] * 1e3:.5g} mm, where the tangent of the fillet is at "
+        f"{np.rad2deg(t.root_tension_angle[i]):.1f} deg to the tooth centre line (30 deg in ISO 6336-3)."
     )
 
 

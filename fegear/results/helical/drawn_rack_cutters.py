@@ -52,7 +52,7 @@ def _drawn(cutter: RackCutter, u: Array, share: float) -> tuple[RackCutter, str]
         return cutter, ""
     power = 10.0 ** math.floor(math.log10(ratio))
     scale = int(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= ratio))
-    return dataclasses.replace(cutter, parabola=cutter.parabola * scale), f" (departure drawn {scale} times)"
+    return dataclasses.replace(cutter, parabola=cutter.parabola * scale), f" (deviation magnified {scale} times)"
 
 
 def _tooth(profile: Array) -> Array:
@@ -98,7 +98,7 @@ def _sections(name: str, cutters: tuple[RackCutter, RackCutter], u: Array) -> Fi
               title="pinion cutter, cutter coordinates", equal=True),
         Panel(Axis("y_{c2}", "mm"), Axis("x_{c2}", "mm"), other, (Mark("x", a_m, "a_{m}"),),
               title="gear cutter, cutter coordinates", equal=True),
-        Panel(Axis("u along the straight profile", "mm"), Axis("departure a_{c} u²", "um"),
+        Panel(Axis("u along the straight profile", "mm"), Axis("deviation a_{c} u²", "um"),
               (outline(departure, "", "blue"),), title="departure, true scale"),
     )  # fmt: skip
     angles = " and ".join(f"{math.degrees(cutter.gear.normal_pressure_angle):.6g}" for cutter in cutters)

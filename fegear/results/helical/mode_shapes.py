@@ -90,7 +90,7 @@ def mesh_mode_shapes(seen: Seen) -> tuple[Figure, ...]:
         f"mesh_mode_shapes_{name}",
         f"Mesh mode shapes of pair {name}",
         f"Pair {name}, seen along the axes: base circles and their radii to the line of action (dotted), at rest "
-        "(grey) and at one end of the swing. Axial motion and tilting are not visible; purely axial or tilting modes "
+        "(grey) and at maximum amplitude. Axial motion and tilting are not visible; purely axial or tilting modes "
         "are omitted.",
         tuple(_drawing(one.shape, one.title, radii) for one in across or motions),
         columns=2,

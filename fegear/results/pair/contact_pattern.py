@@ -166,9 +166,9 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "contact_pattern_{name}", "Contact pattern of pair {name}",
-            "Pair {name}: the driver's flank where a coat of marking compound, {asked.coat:.4g!} um thick, is printed "
-            "as the contact lines pass over it; blank where the flanks stay further apart. {d.light.load:.4g} is about "
-            "the load of a pair turned by hand.",
+            "Pair {name}: the driver's flank with the pattern of a coat of marking compound, {asked.coat:.4g!} um "
+            "thick, after passage of the contact lines; blank where the gap is larger. {d.light.load:.4g} is about "
+            "the load when turned by hand.",
             (
                 Over(
                     "z", (Map("separation", "radius", limits=lambda seen: (0.0, seen.asked.coat)),), each="drawn",

@@ -151,7 +151,7 @@ def _answer(seen: Seen) -> Iterator[str]:
     for one in cast("CrackPathData", seen.data).paths:
         grown, what = one.found, f"Pair {seen.name}, crack of tooth {one.tooth} of gear {one.gear}"
         if one.closed:
-            yield f"{what}: does not grow, the loads of its tooth do not open it."
+            yield f"{what}: no growth, the loads on its tooth do not open it."
             continue
         reached = "breaks through" if grown.stopped == "surface" else "heads through"
         text = f"{what}: {reached} the {one.through}, {grown.length[0] * 1e3:.3g} to {grown.length[-1] * 1e3:.3g} mm"
