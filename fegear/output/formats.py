@@ -140,10 +140,10 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         racks="fegear.output.rack_dxf:written_rack",
     ),
     "step": Format(
-        "flanks", "solid of the gear", "fegear.output.step:written_step", "*.step",
+        "flanks", "solid of the gear, or of a rack", "fegear.output.step:written_step", "*.step",
         "CAD, printing: the solid gear, spur or helical, with its bore and its relief, as a disc (a `body` is "
         "neglected, with a note), mm; the axis is z, the middle of the face z = 0",
-        seconds="fegear.output.step:seconds_of", asymmetric=True,
+        seconds="fegear.output.step:seconds_of", asymmetric=True, racks="fegear.output.rack_step:written_rack",
     ),
     "relief": Format(
         "flanks", "modifications for grinding, as tables",

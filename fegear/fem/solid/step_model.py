@@ -116,7 +116,7 @@ def write_step(
                 f"{path.name}: the solid's volume is {volume * _MM**3:.9g} mm^3, and the section's area times the "
                 f"face width {expected * _MM**3:.9g} mm^3; not written."
             )
-        with _silence():
+        with silence():
             gmsh.write(str(path))
     return made
 
@@ -152,7 +152,7 @@ def _alone(gmsh: Any, path: Path) -> int:
 
     It goes there through a file in OpenCASCADE's own format, from which only what has the highest dimension is read.
     """
-    with tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder, _silence():
+    with tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder, silence():
         kept = str(Path(folder) / "sewn.brep")
         gmsh.model.occ.synchronize()
         gmsh.write(kept)
@@ -237,7 +237,7 @@ def _closed(gmsh: Any, name: str) -> tuple[int, int]:
 
 
 @contextmanager
-def _silence() -> Iterator[None]:
+def silence() -> Iterator[None]:
     """Send what the kernel prints on the process's own standard output nowhere."""
     sys.stdout.flush()
     kept, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
