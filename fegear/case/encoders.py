@@ -15,8 +15,8 @@ class ErrorTracePart(Part):
     file: str = Field(description="CSV file with the columns `angle [deg]` (rotation of `shaft`) and `te [um]`.")
     torque: PositiveTorque | None = Field(
         default=None,
-        description="Torque on the driver at which it was measured, one of the pair's loads. Default: nominal load of "
-        "the pair.",
+        description="Torque on the driver at which it was measured, one of the pair's loads. Default: the levels of "
+        "`torque_column`, where the file has it; otherwise the nominal load of the pair.",
     )
 
 
@@ -45,6 +45,15 @@ class EncodersPart(Part):
                            "none: `um`, `arcsec`, `urad`.")  # fmt: skip
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     te_column: str = Field(default="te", description="Name of the column of the transmission error.")
+    torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
+    torque_column: str = Field(
+        default="torque",
+        description="Name of the column of the torque on the driver, in files with several torques: each torque of the "
+        "pair takes the longest run of samples within `torque_band`, averaged over a tooth pitch.",
+    )
+    torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
+        default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
+    )
     reverse: bool = Field(
         default=False, description="The measured angle is counted against the direction of rotation of the shaft."
     )
@@ -65,7 +74,10 @@ class EncodersPart(Part):
             key = "te_column" if "te_column" in self.model_fields_set else "angle_column"
             other = "angle" if key == "te_column" else "transmission error"
             raise refuse(f"is the column of the {other}", "specify another column", key=key)
-        torques = [trace.torque for trace in self.traces]
+        if self.torque_column in (self.angle_column, self.te_column):
+            other = "angle" if self.torque_column == self.angle_column else "transmission error"
+            raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
+        torques = [trace.torque for trace in self.traces if trace.torque is not None]
         if len(set(torques)) < len(torques):
             raise refuse("contains one torque twice", "specify one trace for each torque", key="traces")
         return self

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, LengthOrZero, Number, Part, PositiveLength, Table, refuse
+from fegear.case.part import Angle, Length, LengthOrZero, Number, Part, PositiveLength, Table, refuse
 
 #: Keys that say where the middle of the grid lies.
 PLACES = ("tangent_angle", "centre_angle", "arc", "diameter", "height")
@@ -81,7 +81,14 @@ class GaugePart(Part):
     )
     grid_width: LengthOrZero = Field(default=0.0, description="Width of the measuring grid.")
     direction: Angle = Field(
-        default=0.0, description="Angle between the direction of measurement and the profile, -90 to 90 deg."
+        default=0.0,
+        description="Angle between the direction of measurement and the profile (in the transverse section), -90 to "
+        "90 deg; of 3D gears positive from the tip towards end II.",
+    )
+    face_position: Length = Field(
+        default=0.0,
+        description="Place of the grid centre along the face of 3D gears, from the middle of the common face, positive "
+        "towards end II.",
     )
     placement_tolerance: LengthOrZero = Field(
         default=1e-4, description="Uncertainty (±) of the position along the fillet. Default: 0.1 mm."

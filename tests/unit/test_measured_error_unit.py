@@ -180,6 +180,28 @@ def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
                                                          "measured_te_harmonics_rig"}  # fmt: skip
 
 
+def test_a_column_of_the_torque_parts_a_trace_by_the_torques_of_the_pair(computed, tmp_path):
+    rng, rows, parts = np.random.default_rng(3), [], {}
+    for name, at, torque in (("low.csv", 0, 10.0), ("high.csv", 1, 20.0)):
+        written(tmp_path, name, computed, at)
+        parts[name] = [line.split(",") for line in (tmp_path / name).read_text().splitlines()[1:]]
+        rows += [(*row, torque * (1.0 + 0.02 * rng.normal())) for row in parts[name]]
+        rows += [("0", "1", 13.0 + 0.05 * k) for k in range(200)]  # a ramp, of no torque of the pair
+    text = "".join(f"{a},{te},{torque:.4f}\n" for a, te, torque in rows)
+    (tmp_path / "both.csv").write_text("angle [deg],te [um],torque [N*m]\n" + text)
+    found, both = numbers(ran(changed(traces=[{"file": "both.csv"}]), tmp_path))
+    separate = [{"file": "low.csv", "torque": "10 N*m"}, {"file": "high.csv", "torque": "20 N*m"}]
+    _, apart = numbers(ran(changed(traces=separate), tmp_path))
+    for name in ("measured_scale", "measured_shift", "measured_peak_to_peak"):
+        assert both[name] == pytest.approx(apart[name], rel=0.01)
+    assert any("samples at other torques left out" in remark for remark in found.remarks)
+    case = build_scene(changed(traces=[{"file": "both.csv"}], torque_band=0.001), "case", tmp_path)
+    assert [trace.load for trace in encoders_of(case, "rig").traces]  # the mean over a tooth pitch sheds noise
+    (tmp_path / "both.csv").write_text("angle [deg],te [um],torque [N*m]\n0,1,50\n1,2,50\n2,1,50\n")
+    with pytest.raises(InputError, match=r"add the measured torques to pair\.p\.torques"):
+        encoders_of(build_scene(changed(traces=[{"file": "both.csv"}]), "case", tmp_path), "rig")
+
+
 def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_path):
     written(tmp_path, "high.csv", computed, 1, "driven")
     _, plain = numbers(ran(changed(shaft="driven"), tmp_path))
@@ -198,9 +220,11 @@ def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_
         ({"te_column": "angle"}, "is the column of the angle"), ({"te_column": "SG"}, "requires a column SG"),
         ({"traces": [{"file": "none.csv"}]}, "file not found"), ({"pair": "q"}, "is not a pair"),
         ({"traces": [{"file": "t.csv", "torque": "11 N*m"}]}, "is not a torque of pair p"),
-        ({"traces": [{"file": "t.csv"}, {"file": "t.csv"}]}, "one torque twice"),
-        ({"traces": [{"file": "t.csv"}, {"file": "t.csv", "torque": "20 N*m"}]}, "traces[0].torque = (not given): is"),
-        ({"traces": [{"file": "t.csv", "torque": "20 N*m"}, {"file": "t.csv"}]}, "traces[1].torque = (not given): is"),
+        ({"traces": [{"file": "t.csv", "torque": "20 N*m"}] * 2}, "one torque twice"),
+        ({"traces": [{"file": "t.csv"}, {"file": "t.csv"}]}, "is that of another trace"),
+        ({"torque_column": "te"}, "is the column of the transmission error"),
+        ({"traces": [{"file": "t.csv"}, {"file": "t.csv", "torque": "20 N*m"}]}, "traces[0].torque = 20 N*m: is"),
+        ({"traces": [{"file": "t.csv", "torque": "20 N*m"}, {"file": "t.csv"}]}, "traces[1].torque = 20 N*m: is"),
         ({"angle_column": "te"}, "angle_column = te: is the column of the transmission error"),
         ({"te_at": "driven"}, "is not an angle"), ({"te": "mm"}, "the case says mm"),
         ({"load_tolerance": 2.0}, "less than or equal to 1"),

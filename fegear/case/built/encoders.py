@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
 from fegear.case.csv_file import read_columns
 
 if TYPE_CHECKING:
@@ -94,36 +95,101 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     part, pair = scene.case.encoders[name], pair_of_encoders(scene, name)
     placed, mesh = scene.pairs[pair], scene.case.pair[pair]
     loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
-    traces = []
+    lever, traces = placed.driver.base_radius, []
+    said = f"pair {pair} ({', '.join(f'{load * lever:.5g}' for load in loads)} N*m)"
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
-        wanted = nominal if one.torque is None else one.torque / placed.driver.base_radius
+        wanted = nominal if one.torque is None else one.torque / lever
+        read = _trace(scene, part, placed, one.file, f"{key}.file")
+        if one.torque is None and read.torque is not None:
+            torques = np.array(loads) * lever
+            pitch = 2.0 * np.pi / abs((placed.driver if part.shaft == "driver" else placed.driven).teeth)
+            found = torque_levels(read.torque, read.angle, pitch, torques, part.torque_band)
+            if not found:
+                low, high = (float(edge) for edge in np.percentile(read.torque, [5.0, 95.0]))
+                raise InputError(
+                    f"{key}.file", f'"{one.file}"',
+                    f"has no run of samples within ±{percent(part.torque_band)} of a torque of {said}; its column "
+                    f"{part.torque_column} has {low:.4g} to {high:.4g} N*m",
+                    f"add the measured torques to pair.{pair}.torques, or set torque_band",
+                )  # fmt: skip
+            rest = read.angle.size - sum(run.stop - run.start for run in found.values())
+            reading = [read.reading] if read.reading else []
+            reading += [f"{rest} samples at other torques left out"] if rest else []
+            traces += [
+                ErrorTrace(read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file)
+                for k, run in found.items()
+            ]
+            continue
         known = [load for load in loads if wanted is not None and abs(load - wanted) <= _SAME_LOAD * load]
         if wanted is not None and not known:
-            torques = ", ".join(f"{load * placed.driver.base_radius:.5g}" for load in loads)
             raise InputError(
-                f"{key}.torque", f"{wanted * placed.driver.base_radius:.6g} N*m",
-                f"is not a torque of pair {pair} ({torques} N*m)", f"add it to pair.{pair}.torques",
+                f"{key}.torque", f"{wanted * lever:.6g} N*m", f"is not a torque of {said}",
+                f"add it to pair.{pair}.torques",
             )  # fmt: skip
-        angle, te, reading = _trace(scene, part, placed, one.file, f"{key}.file")
-        traces.append(ErrorTrace(angle, te, known[0] if known else 0.0, reading, key, one.file))
+        traces.append(ErrorTrace(read.angle, read.te, known[0] if known else 0.0, read.reading, key, one.file))
     traces.sort(key=lambda one: one.load)
     same = [two for two in pairwise(traces) if two[0].load == two[1].load]
     if same:
         given = {f"encoders.{name}.traces[{i}]": one.torque for i, one in enumerate(part.traces)}
         again = next((one.key for one in same[0] if given[one.key] is None), same[0][1].key)
-        said = "(not given)" if given[again] is None else f"{given[again]:.6g} N*m"
+        torque = f"{same[0][1].load * lever:.6g} N*m" if given[again] is None else f"{given[again]:.6g} N*m"
         raise InputError(
-            f"{again}.torque", said, "is that of another trace", "specify the torque at which it was measured"
+            f"{again}.torque", torque, "is that of another trace", "specify the torque at which it was measured"
         )
     return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), name)
 
 
-def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> tuple[Array, Array, str]:
-    """Angle and transmission error of one file, in the senses of the computed ones, and how it was read."""
+@dataclass(frozen=True)
+class _Columns:
+    """Of one file, in the senses of the computed curves; the torque where it has one [N m]."""
+
+    angle: Array
+    te: Array
+    torque: Array | None
+    reading: str
+
+
+def torque_levels(torque: Array, angle: Array, pitch: float, levels: Array, band: float) -> dict[int, slice]:
+    """The longest run of samples at each torque that was measured, by the number of the level.
+
+    The torque of a sample is the mean over a tooth pitch around it, which sheds what the mesh and noise add.
+
+    Parameters
+    ----------
+    torque, angle : ndarray, shape (N,)
+        [N m], [rad].
+    pitch : float
+        Of the teeth [rad].
+    levels : ndarray, shape (L,)
+        [N m].
+    band : float
+        Relative deviation from a level within which samples belong to it.
+    """
+    step = float(np.median(np.abs(np.diff(angle)))) if angle.size > 1 else 0.0
+    window = min(max(int(pitch / step) if step > 0.0 else 1, 1), torque.size)
+    total, at = np.concatenate([[0.0], np.cumsum(torque)]), np.arange(torque.size)
+    low, high = np.maximum(at - window // 2, 0), np.minimum(at - window // 2 + window, torque.size)
+    mean = (total[high] - total[low]) / (high - low)
+    found = {}
+    nearest = np.argmin(np.abs(mean[:, None] - levels), axis=1)
+    near = np.abs(mean - levels[nearest]) <= band * levels[nearest]
+    for k in range(levels.size):
+        on = np.concatenate([[False], near & (nearest == k), [False]])
+        starts, stops = (np.flatnonzero(one) for one in (on[1:] & ~on[:-1], ~on[1:] & on[:-1]))
+        if starts.size:
+            longest = int(np.argmax(stops - starts))
+            found[k] = slice(int(starts[longest]), int(stops[longest]))
+    return found
+
+
+def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> _Columns:
+    """Columns of one file."""
     along = part.te_at == "line-of-action"
-    columns = {part.angle_column: "angle", part.te_column: "length" if along else "angle"}
-    given = {part.angle_column: part.angle, part.te_column: part.te}
+    columns = {
+        part.angle_column: "angle", part.te_column: "length" if along else "angle", part.torque_column: "torque",
+    }  # fmt: skip
+    given = {part.angle_column: part.angle, part.te_column: part.te, part.torque_column: part.torque}
     found = read_columns(scene.file(file, key), key, columns, {name: unit for name, unit in given.items() if unit})
     for column, word in ((part.angle_column, "angle_column"), (part.te_column, "te_column")):
         found.require(column, key, file, word)
@@ -138,4 +204,7 @@ def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str
     for what, values in (("angle", angle), ("transmission error", te)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
             raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
-    return (-angle if part.reverse else angle), (-te if part.positive == "lead" else te), found.reading
+    return _Columns(
+        -angle if part.reverse else angle, -te if part.positive == "lead" else te, found.get(part.torque_column),
+        found.reading,
+    )  # fmt: skip

@@ -66,6 +66,8 @@ class Gauge:
     key, value : str, float
         Where the middle of its grid lies.
     grid : Grid
+    z : float
+        Place along the face of 3D gears, from the middle of the common face [m].
     placement, load_tolerance : float
         Uncertainties: [m], and relative.
     measured : MeasuredStrain or None
@@ -80,6 +82,7 @@ class Gauge:
     key: PlaceKey
     value: float
     grid: Grid
+    z: float
     placement: float
     load_tolerance: float
     measured: MeasuredStrain | None
@@ -108,29 +111,61 @@ def gauge_of(scene: Scene, name: str) -> Gauge:
     grid = Grid(part.grid_length, part.grid_width, part.direction)
     measured = None if part.measured is None else _measured(scene, name, part.measured)
     return Gauge(
-        pair, part.gear, member, part.tooth - 1, part.fillet, key, value, grid, part.placement_tolerance,
-        part.load_tolerance, measured, name,
+        pair, part.gear, member, part.tooth - 1, part.fillet, key, value, grid, part.face_position,
+        part.placement_tolerance, part.load_tolerance, measured, name,
     )  # fmt: skip
 
 
 def check_gauge(scene: Scene, name: str) -> None:
     """Refuse gauges that cannot be computed, before anything is."""
     found = gauge_of(scene, name)
-    if found.pair in scene.wide_pairs:
-        helical = scene.pairs[found.pair].driver.helix_angle != 0.0
-        raise InputError(
-            f"gauge.{name}.pair", f'"{found.pair}"', "must be a plane (2D) pair; its teeth are 3D",
-            "remove the gauge" if helical else f'set pair.{found.pair}.width = "plane"',
-        )  # fmt: skip
     gear, part = scene.gears[found.gear], scene.case.gear[found.gear]
-    along = Grid(0.0, 0.0, 0.0).strain_per_stress(gear.material, gear.plane_assumption)
-    if abs(found.grid.strain_per_stress(gear.material, gear.plane_assumption)) < _NOTHING * along:
+    if wide := found.pair in scene.wide_pairs:
+        _check_on_face(scene, name, found)
+    elif found.z != 0.0:
+        raise InputError(
+            f"gauge.{name}.face_position", f"{found.z * 1e3:.6g} mm",
+            f"has no effect on plane (2D) gears, those of pair {found.pair}",
+            f'remove it or set pair.{found.pair}.width = "solid"',
+        )  # fmt: skip
+    plane = gear.plane_assumption
+    along = Grid(0.0, 0.0, 0.0).strain_per_stress(gear.material, plane)
+    if not wide and abs(found.grid.strain_per_stress(gear.material, plane)) < _NOTHING * along:
         raise InputError(
             f"gauge.{name}.direction", f"{math.degrees(found.grid.direction):.6g} deg",
             "measures no strain: in this direction it is zero", "choose a direction nearer to the profile, 0 deg",
         )  # fmt: skip
     if part.tooth_mesh is None or part.tooth_mesh_fillet == "rack":
         place_gauge(found, FilletProfile.of_tooth(gear.symmetric_tooth, gear.module))
+
+
+def check_plane_gauge(scene: Scene, name: str) -> None:
+    """The same for results of plane pairs only."""
+    found = gauge_of(scene, name)
+    if found.pair in scene.wide_pairs:
+        helical = scene.pairs[found.pair].driver.helix_angle != 0.0
+        raise InputError(
+            f"gauge.{name}.pair", f'"{found.pair}"', "must be a plane (2D) pair; its teeth are 3D",
+            "remove the gauge, or request gauge only" if helical else f'set pair.{found.pair}.width = "plane"',
+        )  # fmt: skip
+    check_gauge(scene, name)
+
+
+def _check_on_face(scene: Scene, name: str, found: Gauge) -> None:
+    """Refuse what gauges on 3D gears cannot be, before anything is solved."""
+    half = 0.5 * scene.pairs[found.pair].face_width
+    reach = found.grid.half_across
+    if abs(found.z) + reach > half * (1.0 + 1e-9):
+        room = max(half - reach, 0.0)
+        raise InputError(
+            f"gauge.{name}.face_position", f"{found.z * 1e3:.6g} mm",
+            f"puts the grid beyond the common face, {-half * 1e3:.5g} to {half * 1e3:.5g} mm",
+            f"choose {-room * 1e3:.5g} to {room * 1e3:.5g} mm",
+        )  # fmt: skip
+    if found.tooth:
+        raise InputError(
+            f"gauge.{name}.tooth", found.tooth + 1, "must be 1: gauges on 3D gears follow the first tooth", "remove it"
+        )
 
 
 def place_gauge(gauge: Gauge, profile: FilletProfile) -> float:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.shown import shown, shows
+from fegear.contact.gauge_history import GaugeHistory
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.peaks import refined_peaks
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
-    from fegear.contact.plane.compliance import RootStressInfluence, Side
+    from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.fem.plane.gauge import GaugesOnFillet
-    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.pair import Member
 
 #: Even roll positions over the base pitch; both sides of every jump and the peaks come in addition.
 _POSITIONS = 200
@@ -30,103 +30,6 @@ _POSITIONS = 200
 _FEW = 9
 #: Teeth before the first and after the last pair that can touch: a base pitch on either side.
 _BEYOND = 1
-
-
-@dataclass(frozen=True)
-class GaugeHistory:
-    """What a gauge sees; strains in its direction, arrays over P positions of its tooth and L loads.
-
-    Parameters
-    ----------
-    pair : GearPair
-    member : {"driver", "driven"}
-    side : {"tension", "compression"}
-    x : ndarray, shape (P,)
-        Position of the tooth's contact [m].
-    stress, stress_error : ndarray, shape (P, L)
-        Mean tangential stress under the grid, and its estimated error; NaN if unknown [Pa].
-    displacement : ndarray, shape (G,)
-        Of grids that are glued elsewhere along the fillet, towards the tip [m]; zero is among them.
-    displaced : ndarray, shape (P, L, G)
-        Their mean stress [Pa].
-    opposite_stress : ndarray, shape (P, L)
-        Of a like gauge in the other fillet of the tooth [Pa].
-    strain_per_stress : float
-        [1/Pa].
-    """
-
-    pair: GearPair
-    member: Member
-    side: Side
-    stress_error: Array
-    displaced: Array
-    opposite_stress: Array
-    strain_per_stress: float
-    x: Array = shown("mm", "position of the tooth's contact on the line of action", table="gauge")
-    stress: Array = shown("MPa", "mean tangential stress under the grid")
-    displacement: Array = shown("mm", "displacement of the grid along the fillet towards the tip")
-
-    @property
-    @shows(
-        "deg", "rotation of the gear, zero with its tooth in contact at the pitch point", label="rotation of the gear",
-        table="gauge",
-    )  # fmt: skip
-    def angle(self) -> Array:
-        """Of the gear of the gauge, in the sense of its rotation [rad], shape (P,)."""
-        return self.x / self.pair.gear(self.member).base_radius
-
-    @property
-    @shows("deg", "roll angle of the contact point on the gear of the gauge", table="gauge")
-    def roll_angle(self) -> Array:
-        """[rad], shape (P,)."""
-        return self.pair.roll_angle(self.x, self.member)
-
-    @property
-    @shows("um/m", "mean strain under the grid", label="strain", table="gauge")
-    def strain(self) -> Array:
-        """In the direction of the grid, shape (P, L)."""
-        return self.strain_per_stress * self.stress
-
-    @property
-    def strain_error(self) -> Array | None:
-        """Estimated, shape (P, L); None where it is not known."""
-        if np.isnan(self.stress_error).any():
-            return None
-        return abs(self.strain_per_stress) * self.stress_error
-
-    @property
-    @shows("um/m", "strain of an equal gauge in the opposite fillet of the tooth", table="gauge")
-    def strain_opposite(self) -> Array:
-        """Shape (P, L)."""
-        return self.strain_per_stress * self.opposite_stress
-
-    @property
-    @shows("um/m", "strain with the grid displaced towards the root by placement_tolerance", table="gauge")
-    def strain_towards_root(self) -> Array | None:
-        """Shape (P, L); None without a tolerance."""
-        return self._of_end(0)
-
-    @property
-    @shows("um/m", "strain with the grid displaced towards the tip by placement_tolerance", table="gauge")
-    def strain_towards_tip(self) -> Array | None:
-        """Shape (P, L); None without a tolerance."""
-        return self._of_end(-1)
-
-    def _of_end(self, end: int) -> Array | None:
-        return None if self.displacement.size == 1 else self.strain_per_stress * self.displaced[:, :, end]
-
-    @property
-    def _sign(self) -> float:
-        return 1.0 if self.side == "tension" else -1.0
-
-    def peak_position(self, i: int) -> int:
-        """Position of the largest tension, or compression, under load number i."""
-        return int(np.argmax(self._sign * self.stress[:, i]))
-
-    def peak_of_places(self, i: int) -> Array:
-        """Largest strain at every displacement under load number i, shape (G,)."""
-        stress = (self._sign * self.displaced[:, i]).max(axis=0)
-        return np.asarray(self._sign * self.strain_per_stress * stress)
 
 
 def gauge_history(
@@ -186,9 +89,10 @@ def gauge_history(
     order = np.argsort(places, kind="stable")
     order = order[(places[order] > low) & (places[order] < high)]
     displaced, error, beside = (one.reshape(-1, *one.shape[2:])[order] for one in (displaced, error, beside))
+    seen, sense = gauges.strain_per_stress, 1.0 if gauges.side == "tension" else -1.0
     return GaugeHistory(
-        e.pair, member, gauges.side, error, displaced, beside, gauges.strain_per_stress,
-        places[order], displaced[:, :, at], displacement,
+        e.pair, member, gauges.side, math.copysign(sense, sense * seen), abs(seen) * error, error, seen * displaced,
+        places[order], seen * displaced[:, :, at], seen * beside, displaced[:, :, at], displacement,
     )  # fmt: skip
 
 

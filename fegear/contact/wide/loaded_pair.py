@@ -283,8 +283,8 @@ class LoadedWidePair:
             progress((number + 1) / len(MEMBERS))
         return RootStressInMesh(stress, {}, over_face, across)
 
-    def _rooted(self, member: Member, found: LoadedFlanks, solution: SolidSolution) -> RootedLines:
-        """Recalled where it is known: neither gaps nor loads change it."""
+    def rooted(self, member: Member, found: LoadedFlanks, solution: SolidSolution) -> RootedLines:
+        """Contact lines of all roll positions on a gear; recalled where known: neither gaps nor loads change it."""
         from fegear.contact.wide.root_stress import rooted_lines
 
         return self.flanks.cache.call(
@@ -301,9 +301,9 @@ class LoadedWidePair:
         from fegear.contact.plane.tooth_stress import ToothStress
 
         coarse, z = self.error.coarse, self.places_along
-        rooted, again, across = self._rooted(member, self.found, influence.fine), None, 0.0
+        rooted, again, across = self.rooted(member, self.found, influence.fine), None, 0.0
         if self.estimated and influence.coarse:
-            again = self._rooted(member, coarse, influence.coarse)
+            again = self.rooted(member, coarse, influence.coarse)
         largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
         off: dict[Side, list[Array]] = {"tension": [], "compression": []}
         for i in range(self.found.load.size):

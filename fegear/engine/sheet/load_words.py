@@ -31,10 +31,23 @@ def load_words(load: float, digits: int = 5) -> str:
 
 @contextmanager
 def loads_as_given(scene: Scene, subject: str) -> Iterator[None]:
-    """Meanwhile loads are called as the case gives those of this pair; of what is no pair, by the force."""
-    part = scene.case.pair.get(subject)
-    token = _LEVER.set(None if part is None else part.lever(scene.pairs[subject]))
+    """Meanwhile loads are called as the case gives those of this pair; of what belongs to no pair, by the force."""
+    name = pair_of_subject(scene, subject)
+    token = _LEVER.set(None if name is None else scene.case.pair[name].lever(scene.pairs[name]))
     try:
         yield
     finally:
         _LEVER.reset(token)
+
+
+def pair_of_subject(scene: Scene, subject: str) -> str | None:
+    """Name of the pair whose loads a subject of a result has: itself, or that of a gauge or of encoders."""
+    case = scene.case
+    if subject in case.pair:
+        return subject
+    if (gauge := case.gauge.get(subject)) is not None:
+        mine = [name for name, pair in case.pair.items() if gauge.gear in (pair.driver, pair.driven)]
+        return gauge.pair or (mine[0] if len(mine) == 1 else None)
+    if (encoders := case.encoders.get(subject)) is not None:
+        return encoders.pair or (next(iter(case.pair)) if len(case.pair) == 1 else None)
+    return None

@@ -75,6 +75,11 @@ class Grid:
         """How far the grid reaches along the profile to either side of its middle [m]."""
         return 0.5 * sum(self.along)
 
+    @property
+    def half_across(self) -> float:
+        """How far it reaches across the profile to either side [m]."""
+        return 0.5 * (self.length * abs(math.sin(self.direction)) + self.width * abs(math.cos(self.direction)))
+
     def strain_per_stress(self, material: Material, plane: Plane) -> float:
         """Strain in its direction per tangential stress of a free surface [1/Pa]."""
         along, across = math.cos(self.direction) ** 2, math.sin(self.direction) ** 2
@@ -117,18 +122,25 @@ class FilletProfile:
     @classmethod
     def of_mesh(cls, fillet: FilletStrain, gear: Gear) -> FilletProfile:
         """Of a fillet as it is meshed; its ends are half an edge's points away and go on straight."""
-        arc, module = np.concatenate([[0.0], fillet.arc, [fillet.length]]), gear.module
+        return cls.through(fillet.arc, fillet.length, fillet.radius, fillet.angle, fillet.tangent_angle, gear)
+
+    @classmethod
+    def through(
+        cls, arc: Array, length: float, radius: Array, angle: Array, tangent_angle: Array, gear: Gear
+    ) -> FilletProfile:
+        """Through points of a fillet, shape (points,) each: lengths in modules, angles from the tooth's centre line."""
+        module = gear.module
 
         def to_ends(values: Array) -> Array:
             first, last = (
-                values[at] + (end - fillet.arc[at]) * (values[at] - values[by]) / (fillet.arc[at] - fillet.arc[by])
-                for at, by, end in ((0, 1, 0.0), (-1, -2, fillet.length))
+                values[at] + (end - arc[at]) * (values[at] - values[by]) / (arc[at] - arc[by])
+                for at, by, end in ((0, 1, 0.0), (-1, -2, length))
             )
             return np.concatenate([[first], values, [last]])
 
         return cls(
-            arc * module, to_ends(fillet.radius) * module, np.abs(to_ends(fillet.angle)),
-            to_ends(fillet.tangent_angle), gear.root_radius,
+            np.concatenate([[0.0], arc, [length]]) * module, to_ends(radius) * module, np.abs(to_ends(angle)),
+            to_ends(tangent_angle), gear.root_radius,
         )  # fmt: skip
 
     @property
@@ -142,12 +154,23 @@ class FilletProfile:
         return 2.0 * self.radius
 
     def place(self, key: PlaceKey, value: float, grid: Grid) -> float:
-        """Arc length of the middle of a grid [m]; of several places that of the one nearest to the root land.
+        """Arc length of the middle of a grid [m], all of which lies on the fillet: `middle` and `check`.
 
         Raises
         ------
         InputError
-            If the fillet has no such place, or the grid does not lie on it with all of its length.
+        """
+        middle = self.middle(key, value)
+        self.check(middle, grid)
+        return middle
+
+    def middle(self, key: PlaceKey, value: float) -> float:
+        """Arc length of a place [m]; of several that of the one nearest to the root land.
+
+        Raises
+        ------
+        InputError
+            If the fillet has no such place.
         """
         along = np.asarray(getattr(self, key))
         over = (along - value) * (1.0 if along[0] <= along[-1] else -1.0)
@@ -160,23 +183,20 @@ class FilletProfile:
                     key, _written(key, value),
                     f"is outside the fillet, {_written(key, low)} to {_written(key, high)}", "choose a place within",
                 )  # fmt: skip
-            middle = float(self.arc[int(np.argmin(np.abs(along - value)))])
-        else:
-            i = int(crossed[0])
-            rise = over[i + 1] - over[i]
-            share = -over[i] / rise if rise else 0.0
-            middle = float(self.arc[i] + share * (self.arc[i + 1] - self.arc[i]))
-        self.check(middle, grid)
-        return middle
+            return float(self.arc[int(np.argmin(np.abs(along - value)))])
+        i = int(crossed[0])
+        rise = over[i + 1] - over[i]
+        share = -over[i] / rise if rise else 0.0
+        return float(self.arc[i] + share * (self.arc[i + 1] - self.arc[i]))
 
-    def check(self, middle: float, grid: Grid) -> None:
-        """Refuse a grid that reaches beyond the fillet.
+    def check(self, middle: float, grid: Grid, half: float | None = None) -> None:
+        """Refuse a grid that reaches beyond the fillet, by `half` of a length to either side where that is known [m].
 
         Raises
         ------
         InputError
         """
-        length, half = float(self.arc[-1]), grid.half
+        length, half = float(self.arc[-1]), grid.half if half is None else half
         slack = _SLACK * length
         if middle - half < -slack or middle + half > length + slack:
             longest = 2.0 * min(middle, length - middle)

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
-from fegear.case.built.pair_checks import check_relief
+from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, place_gauge
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number, exact
-from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
+from fegear.engine.sheet.rows import Cell, EveryLoad, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
-from fegear.results.gear.solved_gear import needs_solution, solution_of
+from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import GaugeData
-from fegear.results.pair.loaded_teeth import OVER_LOADS, loaded_pair
+from fegear.results.pair.loaded_teeth import OVER_LOADS, check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     DASHED,
     MEASURED,
@@ -27,6 +26,8 @@ from fegear.results.pair.placed_gauge import (
     compared,
     comparison_table,
     comparison_values,
+    gauges_on,
+    placed,
     placed_gauge,
 )
 
@@ -34,18 +35,36 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
+    from fegear.contact.gauge_history import GaugeHistory
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
+    from fegear.results.pair.placed_gauge import PlacedGauge
 
 #: Seconds of both fillets over the path.
 _SECONDS = 0.4
+#: Of 3D gears, for each load: both fillets of both solutions.
+_SECONDS_WIDE = 0.5
 
 
 @dataclass(frozen=True)
 class GaugeInputs:
-    """What this stage reads: the gauge, the speed of its gear [rad/s], and whether errors are estimated."""
+    """What this stage reads.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    speed : float or None
+        Of its gear [rad/s].
+    estimates : bool
+        Whether errors are estimated.
+    wide : bool
+        Whether its gear is 3D.
+    name : str
+    """
 
     gauge: Gauge
     speed: float | None
     estimates: bool
+    wide: bool
     name: str = field(compare=False)
 
 
@@ -54,31 +73,59 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     speed, pair = scene.case.pair[gauge.pair].speed, scene.pairs[gauge.pair]
     if speed is not None and gauge.member == "driven":
         speed /= pair.ratio
-    return GaugeInputs(gauge, speed, scene.estimates, name)
+    return GaugeInputs(gauge, speed, scene.estimates, gauge.pair in scene.wide_pairs, name)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     gauge = gauge_of(scene, name)
-    return (Task("loaded-pair", gauge.pair), *needs_solution(gauge.gear))
+    return (*needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
 
 
 def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
-    from fegear.contact.plane.gauge_history import gauge_history
-
-    gauge = asked.gauge
-    teeth, placed = loaded_pair(upstream, gauge.pair), placed_gauge(gauge, solution_of(upstream, gauge.gear))
-    history = gauge_history(
-        teeth.engagement, teeth.shifted, teeth.loads, teeth.nominal, gauge.member, placed.gauges, placed.opposite,
-        placed.displacement, gauge.tooth, estimates=asked.estimates,
-    )  # fmt: skip
+    gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
+    place, history, clearance = (_on_face if asked.wide else _in_plane)(asked, upstream)
     at = teeth.loads.index(teeth.nominal)
     return GaugeData(
-        teeth.loads, at, history, placed.place, placed.clearance(history.pair, gauge.member), placed.clipped,
-        gauge.load_tolerance, asked.speed, compared(gauge, history.angle, history.strain[:, at]),
-        gauge.measured.reading if gauge.measured else "",
+        teeth.loads, at, history, place.place, clearance, place.clipped, gauge.load_tolerance, asked.speed,
+        compared(gauge, history.angle, history.strain[:, at]), gauge.measured.reading if gauge.measured else "",
+
     )  # fmt: skip
 
 
+def _in_plane(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
+    from fegear.contact.plane.gauge_history import gauge_history
+
+    gauge, solved = asked.gauge, solution_of(upstream, asked.gauge.gear)
+    teeth, place = loaded_pair(upstream, gauge.pair), placed_gauge(gauge, solved)
+    history = gauge_history(
+        teeth.engagement, teeth.shifted, teeth.loads, teeth.nominal, gauge.member, *gauges_on(gauge, place, solved),
+        place.displacement, gauge.tooth, estimates=asked.estimates,
+    )  # fmt: skip
+    return place, history, place.clearance(history.pair, gauge.member, gauge.side, solved.fine.flank)
+
+
+def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
+    from fegear.contact.wide.gauge_history import wide_gauge_history
+    from fegear.fem.solid.gauge import half_up_fillet, lean_at, profile_of_solid
+
+    gauge, solved = asked.gauge, solid_solution_of(upstream, asked.gauge.gear)
+    teeth = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
+    gear, fillet = teeth.pair.gear(gauge.member), solved.fine.fillets[gauge.side]
+    profile = profile_of_solid(fillet, gear)
+    skew, across = lean_at(fillet, solved.fine.tau, place_gauge(gauge, profile) / gear.module)
+    half = half_up_fillet(gauge.grid, skew / across)
+    place = placed(gauge, profile, half)
+    profile.check(place.middle, gauge.grid, half)
+    history = wide_gauge_history(
+        teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved
+    )
+    return place, history, place.clearance(teeth.pair, gauge.member, gauge.side, solved.fine.flank)
+
+
+#: Of a history, in the order of its columns.
+_CURVES = (
+    "x", "angle", "roll_angle", "strain", "strain_opposite", "strain_towards_root", "strain_towards_tip",
+)  # fmt: skip
 _ERROR = Off("strain", "history.strain_error")
 _SHEET = Sheet(
     loads="loads",
@@ -86,10 +133,10 @@ _SHEET = Sheet(
     tables=(
         Rows(
             "gauge_{name}", "Strain of gauge {name} over the rotation of the gear, {load:said}",
-            (Cell("t", of=lambda seen: seen.data), Every("gauge"), "stress", _ERROR), of="history",
+            (Cell("t", of=lambda seen: seen.data), *_CURVES, "stress", _ERROR), of="history",
         ),
         EveryLoad(
-            "gauge_loads_{name}", "Strain of gauge {name} for every load", (Every("gauge"),), "history", OVER_LOADS
+            "gauge_loads_{name}", "Strain of gauge {name} for every load", _CURVES, "history", OVER_LOADS
         ),
         Rows(
             "gauge_places_{name}", "Peak strain of gauge {name} over the position of the grid",
@@ -110,6 +157,7 @@ _SHEET = Sheet(
         Number("diameter", exact, of="place"),
         Number("tangent_angle", exact, of="place"),
         Number("centre_angle", exact, of="place"),
+        Number("z", exact, of="place", when=lambda seen: seen.asked.wide),
         *comparison_values(),
     ),
     figures=(
@@ -167,7 +215,7 @@ _SHEET = Sheet(
 
 def _check(scene: Scene, name: str) -> None:
     check_gauge(scene, name)
-    check_relief(scene, gauge_of(scene, name).pair)
+    check_teeth(scene, gauge_of(scene, name).pair)
 
 
 def _cites(_scene: Scene, _name: str) -> Iterator[Citation]:
@@ -178,6 +226,8 @@ def _cites(_scene: Scene, _name: str) -> Iterator[Citation]:
 def _forecast(scene: Scene, name: str) -> Forecast:
     """Both fillets over the path, and once more for each error of a compliance."""
     pair = gauge_of(scene, name).pair
+    if pair in scene.wide_pairs:
+        return forecasts.constant(_SECONDS_WIDE * forecasts.loads(scene, pair))
     return forecasts.constant(_SECONDS * (0.5 + 0.25 * forecasts.engagements(scene, pair)))
 
 

@@ -12,7 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.plane.gauge_history import GaugeHistory
+from fegear.contact.gauge_history import GaugeHistory
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
@@ -34,6 +34,8 @@ class GaugePlace:
                                  name="place_tangent_angle")  # fmt: skip
     centre_angle: float = shown("deg", "angle of the grid centre from the tooth centre line, about the gear axis",
                                 name="place_centre_angle")  # fmt: skip
+    z: float = shown("mm", "place of the grid centre along the face, from the middle of the common face",
+                     name="place_face_position")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -126,12 +128,15 @@ class GaugeData:
     @shows("MPa", "mean tangential stress under the grid at the peak")
     def peak_stress(self) -> Array:
         """Under each load, shape (L,)."""
-        return self.peak_strain / self.history.strain_per_stress
+        return np.array([self.history.stress[self._peak(i), i] for i in range(len(self.loads))])
 
     @property
     def peak_stress_error(self) -> Array | None:
         """Estimated, shape (L,)."""
-        return None if self.peak_error is None else self.peak_error / abs(self.history.strain_per_stress)
+        error = self.history.stress_error
+        if np.isnan(error).any():
+            return None
+        return np.array([error[self._peak(i), i] for i in range(len(self.loads))])
 
     @property
     @shows("um/m", "largest less smallest strain over the mesh cycle")
@@ -152,23 +157,16 @@ class GaugeData:
         return np.array([self.history.x[self._peak(i)] for i in range(len(self.loads))])
 
     @property
-    def _peak_opposite(self) -> Array:
-        strain = self.history.strain_opposite
-        sign = -1.0 if self.history.side == "tension" else 1.0
-        at = (sign * self.history.opposite_stress).argmax(axis=0)
-        return np.asarray(strain[at, np.arange(strain.shape[1])])
-
-    @property
     @shows("um/m", "peak strain of an equal gauge in the opposite fillet of the tooth")
     def peak_strain_opposite(self) -> Array:
         """Under each load, shape (L,)."""
-        return self._peak_opposite
+        return self.history.peak_opposite
 
     @property
     @shows("", "peak strain of the compression fillet / peak strain of the tension fillet")
     def fillet_ratio(self) -> Array:
         """Under each load, shape (L,)."""
-        pair = self._peak_opposite, self.peak_strain
+        pair = self.history.peak_opposite, self.peak_strain
         compressed, pulled = pair if self.history.side == "tension" else pair[::-1]
         return np.asarray(compressed / pulled)
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.fitted_curve import Fitted, FittedCurve
     from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.plane.trace import LoadedFlank
     from fegear.geometry.pair import GearPair, Member
 
 #: Places to either side of the grid's at which the peak is computed.
@@ -34,14 +36,12 @@ _DOTS = {"size": 5.0, "symbol": "circle"}
 
 @dataclass(frozen=True)
 class PlacedGauge:
-    """A gauge on a solved gear.
+    """Where a gauge lies on the fillet of a solved gear, and grids within its placement tolerance.
 
     Parameters
     ----------
-    gauges : GaugesOnFillet
-        At every displacement.
-    opposite : GaugesOnFillet
-        One like it in the other fillet.
+    middle : float
+        Place of the middle of the grid up the fillet [m].
     displacement : ndarray, shape (G,)
         Zero is among them [m].
     place : GaugePlace
@@ -51,43 +51,57 @@ class PlacedGauge:
         Whether the placement tolerance reaches beyond the fillet.
     """
 
-    gauges: GaugesOnFillet
-    opposite: GaugesOnFillet
+    middle: float
     displacement: Array
     place: GaugePlace
     above: float
     clipped: bool
 
-    def clearance(self, pair: GearPair, member: Member) -> float:
+    @property
+    def arc(self) -> Array:
+        """Middles of all grids [m]."""
+        return self.middle + self.displacement
+
+    def clearance(self, pair: GearPair, member: Member, side: Side, flank: LoadedFlank) -> float:
         """From the end of the grid to the lowest contact on the flank above it, along the profile [modules]."""
-        if self.gauges.side == "compression":
+        if side == "compression":
             return math.inf
-        flank, module = self.gauges.influence.fine.flank, self.gauges.influence.gear.module
+        module = pair.driver.module
         ends = pair.radius(np.array([pair.x_start, pair.x_end]), member) / module
         return float(np.min(flank.arc_of_radius(ends)) - flank.flank_start) + self.above / module
 
 
-def placed_gauge(gauge: Gauge, solved: GearInfluence) -> PlacedGauge:
-    """A gauge on the fillet as it is meshed, and grids within its placement tolerance.
+def placed(gauge: Gauge, profile: FilletProfile, half: float) -> PlacedGauge:
+    """A gauge on a fillet, of which its grid covers `half` to either side of its middle [m].
 
     Raises
     ------
     InputError
         If it does not lie on the fillet.
     """
-    profile = FilletProfile.of_mesh(solved.fine.fillets[gauge.side], solved.gear)
-    middle, length, half = place_gauge(gauge, profile), float(profile.arc[-1]), gauge.grid.half
+    middle, length = place_gauge(gauge, profile), float(profile.arc[-1])
     low = min(max(-gauge.placement, half - middle), 0.0)
     high = max(min(gauge.placement, length - half - middle), 0.0)
     displacement = np.unique(np.concatenate([np.linspace(low, 0.0, _PLACES + 1), np.linspace(0.0, high, _PLACES + 1)]))
-    other, at = "compression" if gauge.side == "tension" else "tension", profile.at(middle)
+    at = profile.at(middle)
     return PlacedGauge(
-        GaugesOnFillet(solved, gauge.side, gauge.grid, middle + displacement),
-        GaugesOnFillet(solved, other, gauge.grid, np.array([middle])),  # type: ignore[arg-type]  # the two words
-        displacement,
-        GaugePlace(middle, 2.0 * at["radius"], at["tangent_angle"], at["centre_angle"]),
-        length - half - middle,
-        high - low < 2.0 * gauge.placement * (1.0 - 1e-9),
+        middle, displacement, GaugePlace(middle, 2.0 * at["radius"], at["tangent_angle"], at["centre_angle"], gauge.z),
+        length - half - middle, high - low < 2.0 * gauge.placement * (1.0 - 1e-9),
+    )  # fmt: skip
+
+
+def placed_gauge(gauge: Gauge, solved: GearInfluence) -> PlacedGauge:
+    """A gauge on the fillet of a plane gear as it is meshed."""
+    profile = FilletProfile.of_mesh(solved.fine.fillets[gauge.side], solved.gear)
+    return placed(gauge, profile, gauge.grid.half)
+
+
+def gauges_on(gauge: Gauge, at: PlacedGauge, solved: GearInfluence) -> tuple[GaugesOnFillet, GaugesOnFillet]:
+    """A gauge at all of its places on a plane gear, and one like it in the other fillet."""
+    other: Side = "compression" if gauge.side == "tension" else "tension"
+    return (
+        GaugesOnFillet(solved, gauge.side, gauge.grid, at.arc),
+        GaugesOnFillet(solved, other, gauge.grid, np.array([at.middle])),
     )
 
 

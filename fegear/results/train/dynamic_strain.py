@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of
+from fegear.case.built.gauges import Gauge, check_plane_gauge, gauge_of
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
 from fegear.engine.citation import Citation
@@ -27,6 +27,7 @@ from fegear.results.pair.placed_gauge import (
     compared,
     comparison_table,
     comparison_values,
+    gauges_on,
     placed_gauge,
 )
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
@@ -133,7 +134,7 @@ def _mesh(scene: Scene, name: str) -> str:
 def _check(scene: Scene, name: str) -> None:
     _mesh(scene, name)
     needs_one_speed(scene, name)
-    check_gauge(scene, name)
+    check_plane_gauge(scene, name)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -154,10 +155,12 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
 
     force: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
     gauge, mesh = asked.gauge, force.train.meshes[force.mesh]
-    placed = placed_gauge(gauge, solution_of(upstream, gauge.gear))
+    solved = solution_of(upstream, gauge.gear)
+    place = placed_gauge(gauge, solved)
+    gauges = gauges_on(gauge, place, solved)[0]
     number = gauge.tooth if mesh.error.pitches > 1 else 0
     found = tooth_strain(
-        force.train, force.mesh, mesh.role(gauge.member), placed.gauges, placed.displacement, asked.speed,
+        force.train, force.mesh, mesh.role(gauge.member), gauges, place.displacement, asked.speed,
         asked.positions, force.harmonics, number, coupled=asked.coupled, effects=asked.effects,
     )  # fmt: skip
     alone = len(force.train.exciters) == 1

@@ -1,0 +1,106 @@
+"""Strain under a gauge in a root fillet over the rotation of its gear, of plane (2D) and 3D teeth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.influence import Side
+    from fegear.geometry.pair import GearPair, Member
+
+
+@dataclass(frozen=True)
+class GaugeHistory:
+    """What a gauge sees; strains in its direction, arrays over P positions of its tooth and L loads.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    sense : float
+        1 where the peak is the largest strain, -1 where it is the smallest one: of the compression fillet, and across
+        the profile.
+    known_error, stress_error : ndarray, shape (P, L)
+        Estimated errors; NaN if unknown.
+    displaced : ndarray, shape (P, L, G)
+        Mean strain of grids that are glued elsewhere.
+    strain_opposite : ndarray, shape (P, L)
+        Of a like gauge in the other fillet of the tooth.
+    x : ndarray, shape (P,)
+        Position of the tooth's contact, at mid-face [m].
+    strain : ndarray, shape (P, L)
+    stress : ndarray, shape (P, L)
+        Mean tangential stress under the grid [Pa].
+    displacement : ndarray, shape (G,)
+        Of grids that are glued elsewhere along the fillet, towards the tip [m]; zero is among them.
+    """
+
+    pair: GearPair
+    member: Member
+    side: Side
+    sense: float
+    known_error: Array
+    stress_error: Array
+    displaced: Array
+    x: Array = shown("mm", "position of the tooth's contact on the line of action", table="gauge")
+    strain: Array = shown("um/m", "mean strain under the grid", label="strain", table="gauge")
+    strain_opposite: Array = shown(
+        "um/m", "strain of an equal gauge in the opposite fillet of the tooth", table="gauge"
+    )
+    stress: Array = shown("MPa", "mean tangential stress under the grid")
+    displacement: Array = shown("mm", "displacement of the grid along the fillet towards the tip")
+
+    @property
+    @shows(
+        "deg", "rotation of the gear, zero with its tooth in contact at the pitch point", label="rotation of the gear",
+        table="gauge",
+    )  # fmt: skip
+    def angle(self) -> Array:
+        """Of the gear of the gauge, in the sense of its rotation [rad], shape (P,)."""
+        return self.x / self.pair.gear(self.member).base_radius
+
+    @property
+    @shows("deg", "roll angle of the contact point on the gear of the gauge", table="gauge")
+    def roll_angle(self) -> Array:
+        """[rad], shape (P,)."""
+        return self.pair.roll_angle(self.x, self.member)
+
+    @property
+    def strain_error(self) -> Array | None:
+        """Estimated, shape (P, L); None where it is not known."""
+        return None if np.isnan(self.known_error).any() else self.known_error
+
+    @property
+    @shows("um/m", "strain with the grid displaced towards the root by placement_tolerance", table="gauge")
+    def strain_towards_root(self) -> Array | None:
+        """Shape (P, L); None without a tolerance."""
+        return self._of_end(0)
+
+    @property
+    @shows("um/m", "strain with the grid displaced towards the tip by placement_tolerance", table="gauge")
+    def strain_towards_tip(self) -> Array | None:
+        """Shape (P, L); None without a tolerance."""
+        return self._of_end(-1)
+
+    def _of_end(self, end: int) -> Array | None:
+        return None if self.displacement.size == 1 else self.displaced[:, :, end]
+
+    def peak_position(self, i: int) -> int:
+        """Position of the peak under load number i."""
+        return int(np.argmax(self.sense * self.strain[:, i]))
+
+    def peak_of_places(self, i: int) -> Array:
+        """Peak strain at every displacement under load number i, shape (G,)."""
+        return np.asarray(self.sense * (self.sense * self.displaced[:, i]).max(axis=0))
+
+    @property
+    def peak_opposite(self) -> Array:
+        """Peak strain of the gauge in the other fillet under every load, shape (L,)."""
+        return np.asarray(-self.sense * (-self.sense * self.strain_opposite).max(axis=0))
