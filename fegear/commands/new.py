@@ -71,6 +71,9 @@ def new(
             help='Torque on the driver, e.g. "260 N m"; for --kind relief also a range, "120 to 320 N m".',
         ),
     ] = None,
+    power: Annotated[
+        str | None, typer.Option("--power", help='Power at the speed of the driver instead of a torque, e.g. "5 kW".')
+    ] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Speed of the driver, e.g. "1480 rpm".')] = None,
     tip_relief: Annotated[
         tuple[str, str] | None,
@@ -94,7 +97,7 @@ def new(
 
     For example: fegear new drive --teeth 21 53 --profile-shift 0.3 0.1 --module 3mm --torque "260 N m"
     """
-    from fegear.case.drafts.answers import Answers, kind_of
+    from fegear.case.drafts.answers import Answers, kind_of, with_torque_of_power
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
 
@@ -109,6 +112,7 @@ def new(
         "helix_angle": helix_angle,
         "face_width": face_width,
         "torque": torque,
+        "power": power,
         "speed": speed,
         "tip_relief": tip_relief and tip_relief[0],
         "relief_length": tip_relief and tip_relief[1],
@@ -128,6 +132,7 @@ def new(
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
         answers = _asked()
     else:
+        told = with_torque_of_power(told)
         answers = Answers(kind_of(kind, told), told)
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from fegear.case.reading import Scene
 from fegear.engine.own_speed import OwnSpeed
@@ -93,4 +93,13 @@ def plan_content(scene: Scene, plan: Plan, speed: OwnSpeed | None = None) -> dic
 
 
 def _short(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    """A setting as people read it: mappings and lists within brackets, without quotes."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, Mapping):
+        return f"({', '.join(f'{key} {_short(one)}' for key, one in value.items())})"
+    if isinstance(value, list | tuple | set | frozenset):
+        return ", ".join(_short(one) for one in value) or "none"
+    return str(value)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _WIDE, _HIGH, _ROOM = 240.0, 110.0, 10.0
 #: Modules of height that are seen, and the pair that is drawn.
 _SEEN = 5.2
+#: Foot of a tooth of the driver from its middle and the pitch circle [modules].
+_FOOT = (1.15, 1.2)
 _DRAWN = """
 results = ["geometry"]
 gear.a = { teeth = 21, module = "1 mm" }
@@ -83,11 +85,14 @@ def _relief() -> str:
 
 
 def _stiffness() -> str:
-    driver = _in_mesh()[0]
-    scale, low = 30.0, float(driver[1].min())
-    points = np.array([0.5 * _WIDE + driver[0] * scale, _HIGH - 8.0 - (driver[1] - low) * 0.62 * scale])
-    return _svg(_path(points, "driver"), *(
-        f'<circle class="hot" cx="{0.5 * _WIDE + side * 26.0:.0f}" cy="{0.56 * _HIGH:.0f}" r="{r}"/>'
+    """One tooth of the driver, and where its root stress is largest."""
+    driver, scale = _in_mesh()[0], 30.0
+    land = np.abs(driver[0]) < math.pi
+    middle = float(np.mean(driver[0, land & (driver[1] > driver[1, land].max() - 0.02)]))
+    x, y = 0.5 * _WIDE, 0.5 * _HIGH
+    tooth = driver[:, np.abs(driver[0] - middle) < x / scale]
+    return _svg(_path(np.array([x + (tooth[0] - middle) * scale, y - tooth[1] * scale]), "driver"), *(
+        f'<circle class="hot" cx="{x + side * _FOOT[0] * scale:.0f}" cy="{y + _FOOT[1] * scale:.0f}" r="{r}"/>'
         for side in (-1.0, 1.0) for r in (5, 9)
     ))  # fmt: skip
 

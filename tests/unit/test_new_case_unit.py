@@ -95,6 +95,15 @@ def test_new_writes_what_the_options_say(say, tmp_path):
     assert list(read_scene(tmp_path / "one.toml").gears) == ["gear"]
 
 
+def test_a_power_at_a_speed_is_a_torque(say, tmp_path):
+    assert say("new", "x", "--power", "5 kW", "--speed", "1450 rpm", "-q")[0] == 0
+    pair = read_scene(tmp_path / "x.toml").case.pair["I"]
+    assert pair.torque * pair.speed == pytest.approx(5e3, rel=1e-5)
+    assert say("new", "y", "--power", "5 kW", "-q")[0] == 0  # at the speed that is assumed
+    pair = read_scene(tmp_path / "y.toml").case.pair["I"]
+    assert pair.torque * pair.speed == pytest.approx(5e3, rel=1e-5)
+
+
 def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
     """Teeth 21/53, module 3, x .3/-.1, tip relief 20 um over 4 mm, 260 N m, face 30 mm; then 15 degrees and 10 um."""
     drawn = ("--teeth", "21", "53", "--profile-shift", ".3", "-.1", "--module", "3mm", "--torque", "260 N m")
@@ -137,6 +146,10 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
             "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, train, two-stage-gearbox",
         ),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
+        (("x", "--torque", "5 kW"), 'is a power; use --power "5 kW"'),
+        (("x", "--torque", "5 N m", "--power", "5 kW"), "contradicts --torque"),
+        (("x", "--power", "5 N m"), "is not a power"),
+        (("x", "--power", "0 kW"), "must be positive"),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "is in a folder that does not exist"),
         (("x", "--profile-shift", "5", "0"), "pinion"),

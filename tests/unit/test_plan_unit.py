@@ -17,6 +17,7 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.outcome import Outcome
 from fegear.engine.plan import make_plan
+from fegear.engine.plan_in_words import _short
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Need, Stage, Task
 from fegear.engine.table import Column, Table
@@ -218,3 +219,14 @@ def test_a_gear_outside_the_range_of_a_formula_is_refused_by_the_plan_as_by_its_
         make_plan(scene, STAGES)
     with pytest.raises(InputError, match="root radius / bore radius"):
         closed_form_compliance(scene.gears["a"], "potential-energy")
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ({"order": 3, "solver": "condensed", "wide": 0.12345678}, "(order 3, solver condensed, wide 0.123457)"),
+        (["fe", "lewis"], "fe, lewis"), ((), "none"), (True, "yes"), (2.0, "2"), (None, "None"),
+    ],
+)  # fmt: skip
+def test_settings_of_a_plan_are_no_python(value, said):
+    assert _short(value) == said

@@ -51,8 +51,9 @@ from fegear.output.report.blocks import (  # fmt: skip
     Still,
     Switch,
     Values,
+    as_words,
 )
-from fegear.output.report.page import Page, Section, page_text, render, write_page
+from fegear.output.report.page import Page, Section, fragment, page_text, render, write_page
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.loaded_pair import LOADED_PAIR
 
@@ -284,6 +285,20 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
 )  # fmt: skip
 def test_an_identifier_is_said_in_words(name, said):
     assert spoken(name) == said
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "spelled"),
+    [
+        ("K_Hbeta", "K_Hβ", "K<sub>Hβ</sub>"), ("K_Hbeta_before", "K_Hβ before", "K<sub>Hβ</sub> before"),
+        ("S_H_min", "S_H min", "S<sub>H</sub> min"), ("sigma_F_driver", "σ_F driver", "σ<sub>F</sub> driver"),
+        ("load_margin", "load margin", "load margin"), ("a.K_Hbeta", "a.K_Hbeta", "a.K<sub>Hbeta</sub>"),
+        ("x_start", "x start", "x start"), ("TE_mean", "TE mean", "TE mean"),
+    ],
+)  # fmt: skip
+def test_a_head_has_the_symbols_of_the_trade(name, said, spelled):
+    assert as_words(name) == said
+    assert "".join(fragment([Paragraph(as_words(name))]).split("\n")) == f"<p>{spelled}</p>"
 
 
 def test_a_stress_intensity_has_the_root_of_a_metre():

@@ -136,6 +136,38 @@ class Answers:
         return to_si((ends(self[name]) or (self[name],))[-1], question.dimension, _option(name))
 
 
+def with_torque_of_power(given: Mapping[str, str]) -> dict[str, str]:
+    """Answers with the torque of a power at the speed, where a power is given.
+
+    Raises
+    ------
+    InputError
+        If a torque is given, too, or is a power.
+    """
+    found = dict(given)
+    if (power := found.pop("power", None)) is None:
+        if _is_power(torque := found.get("torque", "")):
+            raise InputError("--torque", f'"{torque}"', "is a power", f'use --power "{torque}"')
+        return found
+    if "torque" in found:
+        raise InputError("--power", f'"{power}"', "contradicts --torque", "remove one of them")
+    watts, speed = to_si(power, "power", "--power"), found.setdefault("speed", _ALL["speed"][1])
+    turning = to_si(speed, _ALL["speed"][2], "--speed")
+    for option, text, size in (("--power", power, watts), ("--speed", speed, turning)):
+        if not size > 0.0:
+            raise InputError(option, f'"{text}"', "must be positive")
+    found["torque"] = f"{watts / turning:.6g} N*m"
+    return found
+
+
+def _is_power(text: str) -> bool:
+    try:
+        to_si(text, "power", "--power")
+    except InputError:
+        return False
+    return True
+
+
 def kind_of(kind: str | None, given: Mapping[str, str]) -> str:
     """The kind of case that answers are for: by the numbers of teeth, where none or a gearbox is asked for.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.gauge_history import GaugeHistory
+from fegear.contact.gauge_strain import GaugeHistory
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.peaks import refined_peaks

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -39,6 +40,10 @@ _MEANINGLESS = 0.5
 
 class Block:
     """A piece of a page: plain data, drawn by the macro of its class's name in ``templates/blocks.html``."""
+
+
+#: Symbols at the beginning of a name: K_Hbeta, S_F, sigma_H, C_Hbeta.
+_SYMBOL = re.compile(r"([A-Z]|sigma)_([A-Z][A-Za-z]*)(?![A-Za-z])")
 
 
 @dataclass(frozen=True)
@@ -377,8 +382,17 @@ class Still(Block):
 
 
 def as_words(name: object) -> str:
-    """A name as words; names with dots are keys and stay as they are written."""
-    return str(name) if "." in str(name) else str(name).replace("_", " ")
+    """A name as words, symbols as written in the trade (K_Hβ); names with dots are keys and stay as they are."""
+    text = str(name)
+    if "." in text:
+        return text
+    symbol = _SYMBOL.match(text)
+    if symbol is None:
+        return text.replace("_", " ")
+    letter, lower = symbol.groups()
+    for word, greek in (("alpha", "α"), ("beta", "β")):
+        lower = lower.replace(word, greek)
+    return f"{'σ' if letter == 'sigma' else letter}_{lower}{text[symbol.end() :].replace('_', ' ')}"
 
 
 def readable(value: object) -> Block | str:

@@ -159,6 +159,12 @@ def _symbols(text: str) -> list[tuple[str, str]]:
     return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
 
 
+def _known_symbols(text: str) -> list[tuple[str, str]]:
+    """The same of sentences and heads, for symbols of the trade only: S_H, K_Hβ, C_Hβ; names of gears stay."""
+    parts = re.split(r"(?<=\b[A-Zσ])_([A-Z][A-Za-zαβ]*)", text)
+    return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
+
+
 @cache
 def templates() -> Future[Environment]:
     """Jinja2 with the compiled templates, in a thread: most of a run holds no lock of the interpreter."""
@@ -195,7 +201,13 @@ def _environment() -> Environment:
         return getattr(made.get_template("blocks.html").module, type(block).__name__)(block)
 
     made.filters.update(
-        symbols=_symbols, base64=_base64, drawn=drawn, resource=_resource, unit=pretty_unit, words=as_words
+        symbols=_symbols,
+        known_symbols=_known_symbols,
+        base64=_base64,
+        drawn=drawn,
+        resource=_resource,
+        unit=pretty_unit,
+        words=as_words,
     )
     for name in ("page.html", "blocks.html"):
         made.get_template(name)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
-    from fegear.contact.gauge_history import GaugeHistory
+    from fegear.contact.gauge_strain import GaugeHistory
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.results.pair.placed_gauge import PlacedGauge
 
@@ -105,7 +105,7 @@ def _in_plane(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, Gaug
 
 
 def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
-    from fegear.contact.wide.gauge_history import wide_gauge_history
+    from fegear.contact.wide.gauge_on_face import wide_gauge_history
     from fegear.fem.solid.gauge import half_up_fillet, lean_at, profile_of_solid
 
     gauge, solved = asked.gauge, solid_solution_of(upstream, asked.gauge.gear)

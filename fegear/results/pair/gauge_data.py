@@ -12,7 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.gauge_history import GaugeHistory
+from fegear.contact.gauge_strain import GaugeHistory
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.gauge_history import GaugeHistory
+from fegear.contact.gauge_strain import GaugeHistory
 from fegear.fem.solid.gauge import grid_on_face
 
 if TYPE_CHECKING:
