@@ -226,7 +226,7 @@ def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_
         ({"traces": [{"file": "t.csv"}, {"file": "t.csv", "torque": "20 N*m"}]}, "traces[0].torque = 20 N*m: is"),
         ({"traces": [{"file": "t.csv", "torque": "20 N*m"}, {"file": "t.csv"}]}, "traces[1].torque = 20 N*m: is"),
         ({"angle_column": "te"}, "angle_column = te: is the column of the transmission error"),
-        ({"te_at": "driven"}, "is not an angle"), ({"te": "mm"}, "the case says mm"),
+        ({"te_at": "driven"}, "is not an angle"), ({"te": "mm"}, "the case has mm"),
         ({"load_tolerance": 2.0}, "less than or equal to 1"),
     ],
 )  # fmt: skip
