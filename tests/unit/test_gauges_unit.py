@@ -108,7 +108,7 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({}, TRACE.replace("strain [um/m]", "strain [m/m]"), "above 5 %"),
         ({}, "angle [deg],strain [um/m]\n" + "1,2\n" * 20, "has the same angle in every line"),
         ({}, "angle [deg],strain [um/m]\n" + "".join(f"{a},7\n" for a in range(20)), "the same strain in every line"),
-        ({"angle": "rad"}, TRACE, "the case has rad"), ({"strain": "mm/m"}, TRACE, "the case says mm/m"),
+        ({"angle": "rad"}, TRACE, "the case has rad"), ({"strain": "mm/m"}, TRACE, "the case has mm/m"),
         ({"angle": "furlong"}, TRACE.replace(" [deg]", ""), "unknown unit"),
         ({"fit": ["scale", "scale"]}, TRACE, "contains a quantity twice"), ({"fit": ["gain"]}, TRACE, "must be"),
         ({"fit": "scale"}, TRACE, "must be a list"), ({"strain_column": "angle"}, TRACE, "is the column of the angle"),

@@ -15,7 +15,7 @@ from fegear.case.effects import EffectsPart
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from fegear.base.solution_cache import SolutionCache
     from fegear.contact.loaded_teeth import Answer, Change, Neglected
@@ -61,15 +61,19 @@ def remedy(effects: EffectsPart, effect: str) -> str:
 
 
 def neglected_remarks(
-    name: str, found: Neglected, effects: EffectsPart, tolerance: float, nominal: float
-) -> tuple[str, ...]:
-    """Effects of load sharing that are off and would change the wanted answers by more than the tolerance."""
+    name: str, found: Neglected, effects: EffectsPart, tolerance: float, nominal: float,
+    load_words: Callable[[float], str] | None = None,
+) -> tuple[str, ...]:  # fmt: skip
+    """Effects of load sharing that are off and would change the wanted answers by more than the tolerance.
+
+    `load_words` says what a load is called; by default by the force.
+    """
     said: list[str] = [
         neglecting(f"Pair {name}: {effect} is off; its influence cannot be estimated from the data specified: {error}")
         for effect, error in found.wrong.items()
     ]
     for effect, parts in found.changes.items():
-        sizes = [_size(change, nominal) for change in parts if change.share > tolerance]
+        sizes = [_size(change, nominal, load_words) for change in parts if change.share > tolerance]
         if sizes:
             said.append(remark(f"Pair {name}", effects, tolerance, effect, sizes))
     return tuple(said)
@@ -163,12 +167,13 @@ def design_remarks(
     )
 
 
-def _size(change: Change, nominal: float) -> str:
+def _size(change: Change, nominal: float, load_words: Callable[[float], str] | None = None) -> str:
     unit, factor, scale = _SAID[change.answer]
     what = {"root tension": "the maximum root stress (tension side)", "K_Hbeta": "K_Hbeta"}.get(
         change.answer, f"the {change.answer}"
     )
     where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
-    load = "" if change.load == nominal else f" under {figures(change.load, 5)} N"
+    said = load_words(change.load) if load_words else f"{figures(change.load, 5)} N"
+    load = "" if change.load == nominal else f" under {said}"
     size = figures(change.size * factor, signed=True)
     return f"{what} by {size}{unit} ({percent(change.share)} of {scale}{where}{load})"

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 #: Keys of the rack's teeth under other names in a case.
 _KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "body":
          "reference_height", "module": "pinion", "pressure_angle": "pinion"}  # fmt: skip
+#: Keys of its tooth that a case gives as lengths.
+_LENGTHS = ("thickness_allowance", "tip_rounding", "tip_chamfer")
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ def rack_inputs(scene: Scene, name: str) -> RackInputs:
     try:
         pair = _pair(part, gear)
     except InputError as error:
-        error = _from_the_back(part, error)
+        error = _by_backlash(part, _from_the_back(part, _in_lengths(error, gear.module)))
         first, _, rest = error.key.partition(".")
         known = _KEYS.get(first, first)
         raise at(key, replace_key(error, f"{known}.{rest}" if rest else known)) from None
@@ -154,6 +156,28 @@ def _pinion_relief(spec: ReliefSpec, pair: RackAndPinion) -> Relief:
 
     radii = float(pair.radius(ends[0])), float(pair.radius(ends[1]))
     return spec.over(pair.pinion, radii, (rolls[0], rolls[1]), normalised)
+
+
+def _in_lengths(error: InputError, module: float) -> InputError:
+    """A refusal of what a case gives as a length, which the tooth of a rack knows in modules, in millimetres."""
+    if error.key not in _LENGTHS:
+        return error
+
+    def length(found: re.Match[str]) -> str:
+        return f"{float(found[1]) * module * 1e3:.4g} mm"
+
+    value = f"{error.value * module * 1e3:.6g} mm" if isinstance(error.value, float) else str(error.value)
+    said = (re.sub(r"(-?[0-9.]+(?:e-?[0-9]+)?) modules", length, one) for one in (value, error.rule, error.remedy))
+    return type(error)(error.key, *said)
+
+
+def _by_backlash(part: RackAndPinionPart, error: InputError) -> InputError:
+    """A refusal of a distance that follows from a backlash as one of the backlash."""
+    if error.key != "distance" or part.backlash is None or part.distance is not None:
+        return error
+    return type(error)(
+        "backlash", f"{part.backlash * 1e6:.6g} um", error.rule, error.remedy.replace("distance", "backlash")
+    )
 
 
 def _from_the_back(part: RackAndPinionPart, error: InputError) -> InputError:

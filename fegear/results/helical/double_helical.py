@@ -222,7 +222,7 @@ _FIGURES = (
                 "load", options={"zero": True},
             ),
         ),
-        of="face_of_first", under="{load:.5g} N",
+        of="face_of_first", under="{load:said}",
     ),
     Chart(
         "double_helical_{name}", "Load sharing and axial motion of pair {name} over a base pitch",
@@ -239,7 +239,7 @@ _FIGURES = (
             ),
             Over("x", (Line("axial_force", error="over_pitch.force_error"),), when=lambda seen: not seen.data.floating),
         ),
-        of="over_pitch", under="{load:.5g} N",
+        of="over_pitch", under="{load:said}",
     ),
 )  # fmt: skip
 

@@ -16,6 +16,7 @@ from fegear.contact.unloaded.manufacture import lead_angle_error_of_cut, lead_er
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
@@ -259,7 +260,7 @@ def _pattern_caption(seen: Seen) -> str:
 
 def _under(seen: Seen) -> str:
     """The load of contact ellipses, where there are any."""
-    return f"{seen.data.load:.4g} N" if seen.data.ellipses is not None and seen.data.load is not None else ""
+    return load_words(seen.data.load, 4) if seen.data.ellipses is not None and seen.data.load is not None else ""
 
 
 _POINT = ("kind", "r1", "z1", "r2", "z2")
@@ -335,7 +336,8 @@ _SHEET = Sheet(
         ),
         Chart(
             "contact_ellipses_{name}", "Contact ellipses of pair {name}",
-            "Pair {name}: contact ellipses for flank contact, {d.load:.4g} N on one tooth pair.",
+            lambda seen: f"Pair {seen.name}: contact ellipses for flank contact, "
+            f"{load_words(seen.data.load, 4)} on one tooth pair.",
             (
                 Over(
                     PHI,

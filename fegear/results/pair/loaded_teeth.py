@@ -19,6 +19,7 @@ from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.stage import Stage, Task, Upstream
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.gear.drawing import path_marks
@@ -84,7 +85,9 @@ class AskedOfTeeth:
 
     def neglected_notes(self, teeth: LoadedTeeth) -> tuple[str, ...]:
         """Effects that are off and change the answers by more than the tolerance."""
-        return neglected_remarks(self.spec.name, teeth.neglected, self.effects, self.tolerance, teeth.nominal)
+        return neglected_remarks(
+            self.spec.name, teeth.neglected, self.effects, self.tolerance, teeth.nominal, load_words
+        )
 
 
 def plane_pairs(scene: Scene) -> tuple[str, ...]:

@@ -166,6 +166,8 @@ def _names(
     """Names of shafts with their largest displacement, of bearings, and of gears."""
     places: list[tuple[float, float, str]] = []
     room = 0.03 * _span(heights)
+    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in data.drawn.bodies])
+    size = max(float(np.ptp(ends)), _span(heights) + 2.0 * max(body.outer.max() for body in data.drawn.bodies))
     for body in data.drawn.bodies:
         middle, height = start[body.shaft] + 0.5 * (body.z[0] + body.z[-1]), heights[body.shaft]
         if body.kind == "shaft":
@@ -175,12 +177,11 @@ def _names(
         elif body.kind == "gear":
             places.append((middle, height - 0.5 * (body.inner[0] + body.outer[0]), body.name))
         else:
-            places.append((middle, height - body.outer[0] - room, body.name))
+            beside = 0.5 * _WIDE * size * len(body.name) if upright else 0.0
+            places.append((middle, height - body.outer[0] - room - beside, body.name))
     z, y, labels = zip(*places, strict=True)
     x, y = _turned((np.array(z) * 1e3, np.array(y) * 1e3), upright=upright)
-    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in data.drawn.bodies]) * 1e3
-    high = 1e3 * (_span(heights) + 2.0 * max(body.outer.max() for body in data.drawn.bodies))
-    return Points(x, apart(x, y, labels, max(float(np.ptp(ends)), high)), "", "ink", size=0.0, labels=labels)
+    return Points(x, apart(x, y, labels, 1e3 * size), "", "ink", size=0.0, labels=labels)
 
 
 def apart(x: Array, y: Array, labels: Sequence[str], size: float) -> Array:
