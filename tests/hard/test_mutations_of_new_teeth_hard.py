@@ -33,6 +33,11 @@ ASYMMETRIC = {
           "thickness_allowance": "80 um", "rim_thickness": "16 mm",
           "cutter": {"teeth": 25, "profile_shift": 0.1, "tip_radius": 0.1, "coast_tip_radius": 0.15}},
 }  # fmt: skip
+TURNED = {
+    name: {"teeth": teeth, "normal_module": "3 mm", **BOTH, "helix_angle": "16 deg", "hand": hand,
+           "rack": {"tip_radius": 0.15, "coast_tip_radius": 0.25}, "thickness_allowance": "40 um"}
+    for name, teeth, hand in (("p", 23, "right"), ("w", 37, "left"))
+}  # fmt: skip
 SHAPED = {
     "p": {"teeth": 28, "module": "3 mm", "face_width": "10 mm",
           "fillet": {"kind": "ellipse", "form_diameter": "80 mm", "root_diameter": "76.6 mm"}},
@@ -66,6 +71,11 @@ CASES = {
     "asymmetric pinion": ({"gear": ASYMMETRIC, "pair": {"I": PAIR}}, ("geometry", "load-sharing"), ("gear", "p")),
     "asymmetric ring": (
         {"gear": ASYMMETRIC, "pair": {"I": PAIR | {"driven": "r"}}}, ("geometry", "load-sharing"), ("gear", "r")),
+    "asymmetric idler": (
+        {"gear": ASYMMETRIC, "pair": {"I": PAIR | {"driver": "w", "driven": "p"}, "II": PAIR | {"driven": "r"}}},
+        ("geometry", "idler-root-stress"), ("pair",)),
+    "asymmetric helical": (
+        {"gear": TURNED, "pair": {"I": PAIR | {"width": "slices"}}}, ("geometry", "load-distribution"), ("gear", "w")),
     "asymmetric pair": ({"gear": ASYMMETRIC, "pair": {"I": PAIR | {"flank": "coast"}}}, ("geometry",), ("pair", "I")),
     "fillet": ({"gear": SHAPED, "pair": {"I": PAIR}}, ("geometry", "root-stress-history"), ("gear", "p")),
     "fillet design": (

@@ -11,6 +11,7 @@ from fegear.base.printed import figures
 from fegear.base.shown import shows
 from fegear.case.gear import GearPart
 from fegear.case.reading import Scene
+from fegear.case.working_flanks import coast_name
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.sheet.answer import Answer
@@ -194,6 +195,7 @@ def assumed_bodies(scene: Scene) -> tuple[str, ...]:
 
 def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     """Which gears have no span or no dimension over balls, and why."""
+    twins = {coast_name(name) for name in drawing.gears}  # the same gears seen from their coast flanks
     spanless = tuple(
         f"Gear {name}: span measurement not possible, face width too small for the helix angle."
         for name, gear in drawing.gears.items()
@@ -201,7 +203,7 @@ def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     ) + tuple(
         f"Gear {name}: asymmetric teeth have no span and no chordal thickness (two base circles); dimension over balls."
         for name, gear in drawing.gears.items()
-        if gear.asymmetric
+        if gear.asymmetric and name not in twins
     )
     return spanless + tuple(
         f"Gear {name} has no dimension over or between balls: no ball that contacts both flanks protrudes from the "
@@ -209,7 +211,7 @@ def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
         if gear.tooth.internal
         else f"Gear {name}: no dimension over balls; balls touching both flanks do not protrude beyond the tip circle."
         for name, gear in drawing.gears.items()
-        if measured(gear, drawing.balls.get(name)) is None
+        if name not in twins and measured(gear, drawing.balls.get(name)) is None
     )
 
 
