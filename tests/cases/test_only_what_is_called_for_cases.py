@@ -13,6 +13,7 @@ import pytest
 from solved_once import CACHE
 
 import fegear
+from fegear.base.effects import EFFECTS, PLANE_EFFECTS
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.tally import tallying
@@ -26,8 +27,7 @@ from fegear.studies.sweep import read_axis, sweep_case
 CASES = Path(__file__).parents[2] / "cases"
 TIP = "gear.a.relief={ tip = { amount = '20 um', normalised_length = 1.0 } }"
 SPACING = "gear.a.spacing_errors={ values = [" + ", ".join(["'3 um'", *["'0 um'"] * 27]) + "] }"
-OFF = {"corner_contact": "false", "neighbour_coupling": "false", "hertz": "none", "relief": "false",
-       "spacing_errors": "false"}  # fmt: skip
+OFF = {name: EFFECTS[name].off or "false" for name in PLANE_EFFECTS}
 #: The functions that do an effect's work: a module and how their names begin.
 WORK = {
     "corner_contact": ("contact/plane/corner.py", ""),
@@ -72,7 +72,8 @@ def called(of) -> set[str]:
 @pytest.mark.dear("corner_contact", "neighbour_coupling", "spacing_errors")
 @pytest.mark.parametrize("effect", [None, *OFF])
 def test_only_the_effects_that_are_on_are_worked_at(effect):
-    on = {} if effect is None else {effect: "load-dependent" if effect == "hertz" else "true"}
+    assert effect in {None, *WORK}, "name the functions in WORK that no other effect calls"
+    on = {} if effect is None else {effect: "true" if EFFECTS[effect].on is True else EFFECTS[effect].on}
     assert called(scene("neglected=false", **on)) == set(on)
 
 

@@ -5,13 +5,23 @@ from pathlib import Path
 import pytest
 
 import fegear
-from fegear.base.effects import AT_REST, EFFECTS, GAPS, MOTION_EFFECTS, PLANE_EFFECTS, WIDE_EFFECTS, Described
+from fegear.base.effects import (
+    AT_REST,
+    EFFECTS,
+    GAPS,
+    MOTION_EFFECTS,
+    PLANE_EFFECTS,
+    ROOT_EFFECTS,
+    WIDE_EFFECTS,
+    Described,
+)
 from fegear.base.errors import InputError
 from fegear.case.effects import EffectsPart, started
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
+#: Effects of teeth that every pair is described with.
 TEETH = {"corner_contact", "neighbour_coupling", "hertz"}
 TIP = {"tip": {"amount": "20 um", "length": "3 mm"}}
 GEARS = {"a": {"teeth": 20, "module": "3 mm", "face_width": "10 mm"}, "b": {"teeth": 40, "module": "3 mm"}}
@@ -95,8 +105,11 @@ def test_a_slip_in_the_start_is_refused_and_every_effect_has_its_facts():
 
 def test_which_effects_teeth_gaps_motions_and_widths_have():
     """A spacing error is felt at any width, a misalignment only by a face; an odd tooth only over a revolution."""
-    assert set(AT_REST) == TEETH, "a new effect of teeth belongs into TEETH and into the case that it is described by"
-    assert set(GAPS) == {"relief", "spacing_errors", "misalignment"}
-    assert set(MOTION_EFFECTS) == {"contact_loss", "friction", "parametric", "torque_ripple"}
-    assert set(WIDE_EFFECTS) == TEETH | {"relief", "spacing_errors", "misalignment"}
-    assert set(PLANE_EFFECTS) == set(WIDE_EFFECTS) - {"misalignment"}
+    kinds = (AT_REST, GAPS, ROOT_EFFECTS, MOTION_EFFECTS, ("odd_teeth",))
+    assert sorted(name for names in kinds for name in names) == sorted(EFFECTS)
+    assert set(AT_REST) >= TEETH
+    assert set(GAPS) >= {"relief", "spacing_errors", "misalignment"}
+    assert set(MOTION_EFFECTS) >= {"contact_loss", "friction", "parametric", "torque_ripple"}
+    assert {*WIDE_EFFECTS, *PLANE_EFFECTS} == {*AT_REST, *GAPS}
+    assert {*WIDE_EFFECTS} & {*PLANE_EFFECTS} >= TEETH | {"relief", "spacing_errors"}
+    assert "misalignment" not in PLANE_EFFECTS
