@@ -30,7 +30,6 @@ _SYMMETRIC_ONLY = {
     "body": "remove it: gears with asymmetric teeth are solid discs",
     "rim_support": "remove it: asymmetric teeth are fixed all round the bore",
     "odd_tooth": "remove it",
-    "lead": "remove it",
     "bias": "remove it",
     "topography": "remove it",
     "measured": "remove it",
@@ -75,11 +74,31 @@ def check_asymmetric(part: GearKeys) -> None:
     for key in ("protuberance", "grinding_allowance"):
         if getattr(part.rack, key):
             raise refuse("is not available for asymmetric teeth", "remove it", key=f"rack.{key}")
+    _check_even_lead(part)
     if isinstance(part.profile_shift, str):
         raise refuse(
             "is not available for asymmetric teeth", "give the profile shift as a number", key="profile_shift",
             value=shown(part.profile_shift),
         )  # fmt: skip
+
+
+def _check_even_lead(part: GearKeys) -> None:
+    """Refuse leads whose ends differ: both flanks of asymmetric teeth have the lead, and see the ends exchanged."""
+    lead = part.lead
+    if lead is None:
+        return
+    for key in ("slope", "file"):
+        if getattr(lead, key):
+            raise refuse(
+                "is not available for asymmetric teeth (equal ends only)", "set lead.crowning, or end_relief",
+                key=f"lead.{key}",
+            )  # fmt: skip
+    for i, end in enumerate(lead.end_relief):
+        if end.end != "both":
+            raise refuse(
+                "is not available for asymmetric teeth (equal ends only)", 'set end = "both"',
+                key=f"lead.end_relief[{i}].end", value=f'"{end.end}"',
+            )  # fmt: skip
 
 
 def check_odd_teeth(part: GearKeys) -> None:

@@ -113,3 +113,10 @@ def test_a_helical_pair_with_exchanged_flanks_is_the_same_pair(width):
         assert other[key] == pytest.approx(value, rel=1e-12, abs=1e-15), key
     assert "I.K_Hbeta" in one
     assert "I.K_Hbeta_iso" not in one  # the standard knows equal flanks only
+    if width == "slices":
+        crowned = case((steep, flat), "coast", width)
+        crowned["effects"]["relief"] = True
+        for gear in crowned["gear"].values():
+            gear["lead"] = {"crowning": "6 um"}
+        found = fegear.run(crowned, cache=cache).values
+        assert float(found["I.K_Hbeta"].value) > 1.05 * one["I.K_Hbeta"]

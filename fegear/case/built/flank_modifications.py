@@ -96,7 +96,7 @@ def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankMo
         try:
             found.append(LeadEndRelief(end.amount, end.length, width, end.end, power))
         except InputError as error:
-            key = f"gear.{name}.lead.end_relief[{i}].length"
+            key = f"gear.{scene.written.get(name, name)}.lead.end_relief[{i}].length"
             raise InputError(key, error.value, error.rule, error.remedy) from None
     if part.file is not None:
         key = f"gear.{name}.lead.file"
