@@ -258,3 +258,16 @@ def test_drawings_of_the_ring_close(tmp_path):
     lines = [np.array([(v.x, v.y) for v in make_path(one).flattening(1e-3)]) for one in entities]
     ends = np.array([end for line in lines for end in (line[0], line[-1])])
     assert all(np.sort(np.hypot(*(ends - end).T))[1] < 1e-6 for end in ends)
+
+
+@pytest.mark.parametrize("teeth", [8, 12, 25])
+@pytest.mark.parametrize("radius", [0.1, 0.35])
+def test_the_rounding_of_a_cutter_touches_both_of_its_flanks_and_its_tip_circle(teeth, radius):
+    """Its centre lies so far along the involute's normal, and so far inside of the tip."""
+    cutter = PinionCutter(teeth, profile_shift=0.1, addendum=1.0, tip_radius=radius)
+    ring = AsymmetricInternalTooth(60, cutter, FLAT, math.radians(20.0), radius, -0.3, 0.0, 29.9)
+    for flank, angle in (("drive", FLAT), ("coast", math.radians(20.0))):
+        base = 0.5 * teeth * math.cos(angle)
+        length, normal, centre = ring.cutter_rounding(flank)
+        assert math.hypot(base, length - radius) == pytest.approx(0.5 * teeth + 1.1 - radius, rel=1e-12)
+        assert centre - normal == pytest.approx(math.atan2(length - radius, base), rel=1e-12)

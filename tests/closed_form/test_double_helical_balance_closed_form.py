@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from fegear.base.errors import InputError
+from fegear.contact.double_helical import load_double
 from fegear.contact.double_helical.balance import AxialSeat, balance
 
 TWIST = (0.3, -0.3)
@@ -262,3 +264,19 @@ def test_equal_halves_share_to_the_last_bit():
         assert (found.share == 0.5).all()
         assert (found.approach == half.under(np.broadcast_to([25.0, 2500.0], (20, 2)))[0]).all()
         assert (found.position == 0.0).all()
+
+
+@pytest.mark.parametrize("widths", [("solid", "solid"), ("slices", "solid"), ("slices", "slices")])
+def test_what_slices_miss_counts_in_errors_of_halves_that_are_sliced_and_of_no_others(monkeypatch, widths):
+    monkeypatch.setattr(load_double, "_made", lambda *_: (SimpleNamespace(panel=1.0), "gaps"))
+    monkeypatch.setattr(load_double, "_common_positions", lambda *_: None)
+    monkeypatch.setattr(load_double, "_balanced", lambda *_: SimpleNamespace())
+    monkeypatch.setattr(load_double, "missed_by_slices", lambda twist: {"contact": 0.1 * twist})
+    monkeypatch.setattr(load_double, "double_error", lambda steps, missed: (len(steps), missed))
+    monkeypatch.setattr(load_double, "replace", lambda one, **more: SimpleNamespace(**(vars(one) | more)))
+    halves = [SimpleNamespace(width=width, pair=SimpleNamespace(driver=SimpleNamespace(twist=twist)))
+              for width, twist in zip(widths, (2.0, 3.0), strict=True)]  # fmt: skip
+    gears = [[SimpleNamespace(coarse=None)] * 2] * 2
+    found = load_double.load_double(SimpleNamespace(halves=halves), gears)
+    wanted = max(0.1 * half.pair.driver.twist if half.width == "slices" else 0.0 for half in halves)
+    assert found.error == (2, pytest.approx(wanted))

@@ -1,6 +1,7 @@
 """A row of rack teeth: the limit of gears, an own assembly of all teeth, reciprocity; loads as gears' limit."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
 from fegear.contact.pair_spec import FlankSpec, PairSpec
-from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.fe_compliance import FiniteElementCompliance, finite_element_compliance
 from fegear.contact.plane.maker import load_plane
 from fegear.contact.rack.over_stroke import base_pitch
 from fegear.contact.rack.rack_contacts import RackContacts
@@ -195,3 +196,17 @@ def test_neighbours_are_reciprocal_and_ends_are_softer():
     assert own == sorted(own, reverse=True)
     assert own[0] > 1.1 * own[1]
     assert len(set(solved.alike)) < 30
+
+
+def test_the_corner_of_a_rack_is_that_of_a_gear_of_many_teeth():
+    """The slope of its wedge; the difference falls like one over the teeth."""
+    rack = SimpleNamespace(tooth=RackTooth(BasicRack(1.0, 1.25, 0.38)), module=MODULE)
+    found, half = RackCompliance.tip_wedge.fget(SimpleNamespace(rack=rack))
+    assert half == pytest.approx(0.02 * MODULE)
+    off = []
+    for teeth in (100, 300, 900):
+        of = SimpleNamespace(gear=SimpleNamespace(tooth=Tooth(teeth, BasicRack(1.0, 1.25, 0.38))),
+                             reference_half_width=1.0)  # fmt: skip
+        off.append(FiniteElementCompliance.tip_wedge.fget(SimpleNamespace(influence=of))[0] - found)
+    assert np.abs(off[1:]) == pytest.approx(np.abs(off[:-1]) / 3.0, rel=0.1)
+    assert abs(off[-1]) < 2e-2 * abs(found)

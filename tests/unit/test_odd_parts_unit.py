@@ -1,13 +1,14 @@
 """Odd teeth by parts: how far it is through a tooth, which stress counts, what is not known; answers made up."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.fem.plane.odd.crack import fillet_point, straight_crack, way_through
+from fegear.fem.plane.odd.crack import Crack, fillet_point, straight_crack, way_through
 from fegear.fem.plane.odd.hole import Hole, _room
 from fegear.fem.plane.odd.odd_influence import OddInfluence
 from fegear.geometry.external_tooth import Tooth
@@ -135,3 +136,11 @@ def test_a_hole_has_the_room_to_the_nearest_place_of_an_outline_not_to_its_neare
         assert _room(chains, Hole(0.2, centre)) == pytest.approx(away - 0.2, rel=1e-12)
     with pytest.raises(InputError, match="across its outline"):
         _room(chains, Hole(0.2, (2.5, 0.0)))
+
+
+@pytest.mark.parametrize("closing", [False, True])
+def test_a_crack_seen_from_the_other_flank_is_mirrored_and_its_faces_press(closing):
+    """What one load opens the other presses together; the mouth is as far up the other fillet."""
+    crack = Crack(0.4, ((0.3, 8.0), (-0.1, 7.8)), True, closing)
+    assert crack.mirrored() == Crack(0.4, ((-0.3, 8.0), (0.1, 7.8)), False, True)
+    assert crack.mirrored().mirrored() == replace(crack, closing=True)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.base.notes import NoteClass, class_of
 from fegear.case.built import tooth_influence
 from fegear.contact.wide import load_factors, rated, root_stress
 from fegear.contact.wide.load_factors import RootFactors
@@ -333,3 +334,19 @@ def test_a_plane_pair_without_single_contact_is_not_rated_by_what_is_computed(mo
         assert found.formula == ("rated", "conditions", "own")
         assert found.by_computed == (("rated", "conditions", ("computed", "own")) if single and computed else None)
         assert found.why_not == ((rating._NO_SINGLE,) if computed and not single else ())
+
+
+@pytest.mark.parametrize(("errors", "open_", "says"), [
+    ([0.005], None, None), ([0.05, 0.004], False, "mesh refined once for tolerance 1 %"),
+    ([0.05, 0.02, 0.004], False, "mesh refined 2 times"), ([0.05], True, "solved for tolerance 1 %"),
+    ([0.05, 0.02], True, "(finest allowed) is used although c_next exceeds the tolerance."),
+])  # fmt: skip
+def test_a_mesh_that_stays_beyond_the_tolerance_is_said_to_exceed_and_one_that_was_refined_is_told(errors, open_, says):
+    rounds = [
+        SimpleNamespace(error=error, unknowns=100, errors={"c_self": 0.1 * error, "c_next": error}) for error in errors
+    ]
+    said = tooth_influence._tolerance_remarks("a", SimpleNamespace(rounds=rounds), 0.01)
+    assert len(said) == (says is not None)
+    for one in said:
+        assert says in one
+        assert (class_of(one) is NoteClass.EXCEEDS) == open_
