@@ -34,4 +34,6 @@ def test_the_rule_of_evenly_spaced_planets(planets):
         rule = phasing(found, 2 * planets)
         left = (rule.harmonic * sun) % planets
         assert np.allclose(rule.torque, left == 0, atol=1e-12)
-        assert np.allclose(rule.force, (left == 1) | (left == planets - 1), atol=1e-12)
+        beside = (left == 1) | (left == planets - 1)
+        assert np.allclose(rule.force, beside, atol=1e-12)
+        assert rule.excites == tuple(np.where(left == 0, "rotation", np.where(beside, "translation", "planets")))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.fem.plane.odd import odd_gear
 from fegear.fem.plane.odd.crack import Crack, fillet_point, straight_crack, way_through
 from fegear.fem.plane.odd.hole import Hole, _room
 from fegear.fem.plane.odd.odd_influence import OddInfluence
@@ -144,3 +145,19 @@ def test_a_crack_seen_from_the_other_flank_is_mirrored_and_its_faces_press(closi
     crack = Crack(0.4, ((0.3, 8.0), (-0.1, 7.8)), True, closing)
     assert crack.mirrored() == Crack(0.4, ((-0.3, 8.0), (0.1, 7.8)), False, True)
     assert crack.mirrored().mirrored() == replace(crack, closing=True)
+
+
+def test_a_stress_errs_by_no_less_than_a_usual_part_of_what_orders_differ_by_along_the_flank():
+    """The root mean square of what they differ by at places of the flank, where they happen to agree."""
+
+    def apart(_near, _other, _side, r, _width):
+        return np.array([3.0, 4.0, 0.0]) if np.size(r) == 3 else np.array([0.1, 50.0])
+
+    known = SimpleNamespace(
+        _near=lambda *teeth: teeth, _on_flank=lambda _, r: np.asarray(r), _half_width=lambda width: width, _kept={},
+        _samples=lambda _: np.zeros(3), _off_stress=apart, fine=SimpleNamespace(lower=1, odd=()),
+        gear=SimpleNamespace(module=0.5), ordinary=SimpleNamespace(reach=-1),
+    )  # fmt: skip
+    found = odd_gear.OddGearInfluence.root_stress_error(known, 0, 0, "tension", np.zeros(2), None)
+    least = odd_gear._USUAL * math.sqrt(25.0 / 3.0)
+    assert found == pytest.approx(odd_gear._STRESS_SHARE / 0.5 * np.array([max(0.1, least), 50.0]))

@@ -349,4 +349,4 @@ def test_a_mesh_that_stays_beyond_the_tolerance_is_said_to_exceed_and_one_that_w
     assert len(said) == (says is not None)
     for one in said:
         assert says in one
-        assert (class_of(one) is NoteClass.EXCEEDS) == open_
+        assert (class_of(one) is NoteClass.BEYOND_TOLERANCE) == open_

@@ -1,14 +1,17 @@
 """What pages and terminals say of runs, sweeps and effects: counts, shares, seconds, the worst and the first."""
 
+import contextlib
 import io
 import math
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.base.notes import exceeding
+from fegear.commands import studies as commands
 from fegear.engine.named import Named
 from fegear.engine.processes import Failure
 from fegear.engine.table import Column, Table
@@ -207,3 +210,19 @@ def test_the_page_of_effects_lists_the_largest_changes_first():
 def test_a_table_of_nothing_is_empty():
     assert len(effects_table([]).columns) == 14
     assert isinstance(effects_table([]).columns[0], Column)
+
+
+def test_a_study_of_effects_ends_after_the_seconds_that_it_took(monkeypatch, tmp_path):
+    ended, said = [], []
+    watching = SimpleNamespace(begin=lambda *_: None, advance=lambda _: None, end=ended.append)
+    voice = SimpleNamespace(
+        watcher=lambda: contextlib.nullcontext(watching), say=said.append, tell_folder=lambda _: None
+    )
+    monkeypatch.setattr(commands, "Voice", lambda *_: voice)
+    monkeypatch.setattr("fegear.studies.effects.effect_study", lambda *_: ("scene", (), ()))
+    monkeypatch.setattr("fegear.output.effects.write_effects", lambda *_: ["one."])
+    clock = iter([1000.0, 1003.5, 1004.25])
+    monkeypatch.setattr(commands, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    commands.effects(Path("c.toml"), out=tmp_path / "new")
+    assert ended == [3.5]
+    assert said == ["one.", f"Wrote {tmp_path / 'new'} in 4.25 s."]
