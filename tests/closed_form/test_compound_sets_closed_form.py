@@ -421,9 +421,13 @@ def test_numbers_of_teeth_are_those_of_loops_over_all(planets, ratio):
                     own.add((s, p, r))
     assert found == own
     assert own
-    few, every = search(of, drive, wanted, 3), search(of, drive, wanted, 10**6)
-    assert [abs(one.off) for one in few] == sorted(abs(one.off) for one in few)
-    assert [one.teeth for one in few[:3]] == [one.teeth for one in every[:3]]  # none that is nearer was left out
+    wide = replace(wanted, tolerance=0.04)
+    every = search(of, drive, wide, 10**6)
+    count = len(every) // 2
+    few = search(of, drive, wide, count)
+    off = [round(abs(one.off), 9) for one in few]
+    assert off == sorted(off)
+    assert [one.teeth for one in few[:count]] == [one.teeth for one in every[:count]]  # none nearer was left out
     with pytest.raises(InputError, match="is not reached within"):
         search(of, drive, replace(wanted, ratio=-7.0), 3)
 

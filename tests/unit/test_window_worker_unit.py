@@ -3,9 +3,14 @@
 import re
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.items import Curve, Skin
+from fegear.engine.figure.panel import Panel
 from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.window import glance, worker
@@ -299,3 +304,23 @@ pair.I = { driver = "a", driven = "b", torque = "50 N*m", speed = "900 rpm" }
     pair = scene_of(Asked(text, "box", ".")).pairs["I"]
     assert ratio is not None
     assert float(ratio[1]) == pytest.approx(pair.contact_ratio, rel=1e-9)
+
+
+def test_figures_that_a_page_can_draw_are_sent_and_pictures_and_what_is_not_made_yet_are_not():
+    line = Panel(Axis("x"), Axis("y"), (Curve(np.arange(2.0), np.arange(2.0), "one"),))
+    points, corners = np.zeros((3, 3)), np.zeros((3, 1), dtype=int)
+    body = Panel(Axis(""), Axis(""), (Skin(points, corners, np.zeros(3), 1.0, "stress", "MPa"),))
+    figures = Figure("drawn", "Drawn", "", (line,)), Figure("body", "Body", "", (body,)), SimpleNamespace(key="later")
+    said = []
+    worker = SimpleNamespace(
+        _asked=None, _later=[], _waits=lambda *_: False, _sent=SimpleNamespace(news=lambda found: found),
+        _say=lambda kind, **more: said.append((kind, more)),
+    )  # fmt: skip
+    task = Task("geometry", "a")
+    plan = SimpleNamespace(steps=[SimpleNamespace(task=task, stage=SimpleNamespace(title="Geometry"))])
+    scene = SimpleNamespace(case=SimpleNamespace(accuracy=SimpleNamespace(tolerance=0.01)))
+    outcome = SimpleNamespace(figures=figures, values=(), tables=(), data=None)
+    Worker._found(worker, scene, plan, task, outcome, "draft")
+    ((kind, found),) = said
+    assert (kind, found["title"], found["draft"]) == ("found", "Geometry: a", "draft")
+    assert [one["key"] for one in found["figures"]] == ["drawn"]
