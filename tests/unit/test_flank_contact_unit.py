@@ -399,6 +399,11 @@ def test_root_stress_is_the_sum_of_single_stations_over_own_and_neighbouring_tee
         alone = rooted_lines(flanks.pair, member, found.lines, solution, coupling=False)
         assert len(alone.teeth) < len(rooted.teeth)
         assert set(alone.sources) == {0}
+        for p, count in zip(*np.unique(alone.teeth[:, 0], return_counts=True), strict=True):
+            touch = [int(found.lines.pair[p, s.start]) for s in found.lines.at(p)]
+            of_p = alone.teeth[alone.teeth[:, 0] == p, 1]
+            assert count <= max(touch) - min(touch) + 1
+            assert min(touch) <= of_p.min() <= of_p.max() <= max(touch)
 
 
 def test_a_line_without_load_hides_nothing_of_the_fillet_below_it(known):
