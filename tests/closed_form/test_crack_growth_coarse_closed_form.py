@@ -70,6 +70,8 @@ def test_a_step_goes_on_where_the_stress_is_largest_and_numbers_are_in_si():
     assert found.k_2 / scale == pytest.approx([0.06101, 0.03410], abs=1e-4)
     assert found.stiffness == pytest.approx(2e11 / np.array([9.71311, 10.65714]), rel=1e-4)
     assert found.stiffness_loss == pytest.approx([0.0, 1.0 - 9.71311 / 10.65714], abs=1e-5)
+    assert (found.stiffness_error > 1e-5 * found.stiffness).all()  # as a share that of the compliance
+    assert (found.stiffness_error < 1e-2 * found.stiffness).all()
     assert found.load_radius == pytest.approx(np.full(2, 9.5 * 3e-3))
     assert found.length == pytest.approx([0.9e-3, 1.5e-3], rel=1e-9)
     assert found.end == "rim"

@@ -18,7 +18,7 @@ from fegear.contact.wide.mesh_matrix import (
     tilt_lever,
 )
 from fegear.contact.wide.roll_points import roll_points
-from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, mesh_parameters
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
@@ -236,3 +236,17 @@ def test_parameters_are_those_of_the_paper(known):
 def test_a_mesh_of_a_stiffness_only_is_even_over_its_face():
     mesh = MeshParameters(3e8)
     assert (mesh.kappa, mesh.mu, mesh.base_helix_angle) == (0.0, pytest.approx(1.0 / 3.0, abs=1e-15), 0.0)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_moments_of_a_distribution_are_those_of_its_trapezoids_however_small_the_load(scale):
+    """Load and deflection scaled alike; where nothing is carried nothing gives way."""
+    z, give = np.array([-1.0, 0.0, 0.5, 1.0]), np.array([2.0, 4.0, 5.0, 0.0])
+    load = np.array([6.0, 4.0, 10.0, 0.0])  # 3, 1, 2, 0 per length
+    found = mesh_parameters(z, scale * load, scale * give, face_width=2.0)
+    fine = np.linspace(-1.0, 1.0, 400_001)
+    k = np.interp(fine, z, [3.0, 1.0, 2.0, 0.0])
+    total, first, second = (np.trapezoid(k * fine**n, fine) for n in range(3))
+    assert total == pytest.approx(3.25)
+    assert found.stiffness == pytest.approx(total)
+    assert (found.kappa, found.mu) == (pytest.approx(first / total), pytest.approx(second / total))

@@ -12,6 +12,7 @@ from fegear.fem.plane.odd import odd_gear
 from fegear.fem.plane.odd.crack import Crack, fillet_point, straight_crack, way_through
 from fegear.fem.plane.odd.hole import Hole, _room
 from fegear.fem.plane.odd.odd_influence import OddInfluence
+from fegear.fem.plane.odd.other_sector import _arc
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.outline import tooth_outline
 from fegear.geometry.rack import BasicRack
@@ -161,3 +162,14 @@ def test_a_stress_errs_by_no_less_than_a_usual_part_of_what_orders_differ_by_alo
     found = odd_gear.OddGearInfluence.root_stress_error(known, 0, 0, "tension", np.zeros(2), None)
     least = odd_gear._USUAL * math.sqrt(25.0 / 3.0)
     assert found == pytest.approx(odd_gear._STRESS_SHARE / 0.5 * np.array([max(0.1, least), 50.0]))
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_the_root_circle_of_a_missing_tooth_has_unit_tangents_along_it(way):
+    ends = [7.0 * np.array([math.sin(a), math.cos(a)]) for a in (-0.3 * way, 0.2 * way)]
+    chain = _arc(*ends, np.linspace(0.0, 1.0, 6))
+    assert np.hypot(*chain.vertices) == pytest.approx(np.full(6, 7.0))
+    assert np.hypot(*chain.tangents) == pytest.approx(np.ones(6))
+    assert (chain.tangents * chain.vertices).sum(axis=0) == pytest.approx(np.zeros(6), abs=1e-12)
+    steps = np.diff(chain.vertices)
+    assert (steps * chain.tangents[:, :-1]).sum(axis=0) == pytest.approx(np.full(5, 7.0 * math.sin(0.1)))

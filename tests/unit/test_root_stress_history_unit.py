@@ -1,6 +1,7 @@
 """Root stress of a tooth on its way through the mesh: the largest of the curve along its fillet, between any points."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.contact.plane.root_stress import RootStress
+from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.contact.plane.root_stress_history import root_stress_history, superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress
 from fegear.fem.plane.settings import MeshSettings
@@ -134,3 +135,13 @@ def test_what_a_formula_does_not_know_is_neither_largest_nor_least():
     alone = replace(found, compression=None, compression_error=None, tension_error=np.full((4, 2), np.nan))
     assert (alone.largest_compression, alone.largest_pressed(0), alone.compression_off(0)) == (None, None, None)
     assert (alone.error(0), alone.range_off(1)) == (None, None)
+
+
+def test_what_loads_may_have_besides_counts_with_the_sign_that_stresses_a_point_more():
+    """By hand: -4 to 5 N/mm besides, on points with 2 and -3 per load; one state has the other load, too."""
+    known = SimpleNamespace(superposed=lambda _felt, shape: np.full(shape, 10.0))
+    felt = [Felt(np.ones(2), np.array([2.0, -3.0])), Felt(np.ones(1), np.array([[1.0, 0.0]]), np.array([1]))]
+    low, high = [np.full(2, -4.0), np.zeros(1)], [np.array([5.0, 0.0]), np.full(1, 7.0)]
+    assert RootStress.bound(known, felt, low, high, (2, 2)).tolist() == [[20.0, 22.0], [17.0, 22.0]]
+    none = [np.zeros(2), np.zeros(1)]
+    assert RootStress.bound(known, felt, none, none, (2, 2)).tolist() == [[10.0, 10.0]] * 2
