@@ -4,13 +4,14 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.linalg import eigh
 
 from fegear.base.errors import GeometryError, InputError
-from fegear.dynamics.compound.assembly import check_assembly, check_neighbours, clearances, clusters
+from fegear.dynamics.compound.assembly import Cluster, check_assembly, check_neighbours, clearances, clusters
 from fegear.dynamics.compound.compound_modes import CompoundModel, compound_modes, loaded_flanks
 from fegear.dynamics.compound.compound_set import CompoundSet, End, Mesh, Shaft
 from fegear.dynamics.compound.drives import Drive, Trains
@@ -439,3 +440,12 @@ def test_meshes_that_close_a_loop_are_refused():
     meshes = tuple(Mesh(End(one.first.member, one.first.wheel), End("other", "p")) for one in of.meshes)
     with pytest.raises(InputError, match="close a loop"):
         Trains(CompoundSet(of.shafts, (group, again), (*of.meshes, *meshes)))
+
+
+def test_planets_miss_the_nearest_angle_that_fits_and_nothing_where_any_does():
+    turns = (0.0, 1.0, 2.1, 4.0)
+    assert Cluster.misfit(SimpleNamespace(step=0, turns=turns)) == [0.0] * 4
+    found = Cluster.misfit(SimpleNamespace(step=12, turns=turns))
+    step = 2.0 * math.pi / 12
+    assert found == pytest.approx([0.0, 1.0 - 2.0 * step, 2.1 - 4.0 * step, 4.0 - 8.0 * step])
+    assert max(map(abs, found)) <= 0.5 * step

@@ -12,7 +12,7 @@ import fegear
 from fegear.base.errors import InputError
 from fegear.case.built.rack import loaded_rack_inputs, rack_inputs
 from fegear.case.reading import build_scene as scene_of
-from fegear.contact.rack.over_stroke import positions
+from fegear.contact.rack.over_stroke import _standing, positions
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.iso6336.part3_root_stress import rack_tooth as as_rack_tooth
@@ -273,3 +273,11 @@ def test_a_pitch_is_looked_at_where_a_relief_begins_and_where_pairs_come_and_go(
     assert (np.diff(found) > 0.0).all()
     ends = [1.0, 3.0, 2.2, 2.2]  # both ends of the pitch, and beside where the first pair leaves
     assert found == pytest.approx(sorted([1.25, 1.75, 2.25, 2.75, 1.5, 1.7, 1.9, *ends]), abs=1e-5)
+
+
+def test_base_pitches_of_a_rack_are_alike_where_all_teeth_that_count_are():
+    """Those in contact and one beside at either end; beyond the rack there is none."""
+    rack = SimpleNamespace(reach=1, exists=lambda t: 0 <= t < 5, solved=SimpleNamespace(alike=[7, 8, 8, 8, 9]))
+    found = SimpleNamespace(numbers=np.array([-1, 0, 1]))
+    stand = {tooth: list(_standing(SimpleNamespace(driven=rack), found, tooth)) for tooth in (-1, 2, 4)}
+    assert stand == {-1: [-1, -1, -1, 7, 8], 2: [7, 8, 8, 8, 9], 4: [8, 8, 9, -1, -1]}
