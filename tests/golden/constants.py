@@ -30,6 +30,8 @@ OTHERS = ("atlas", "contact", "design", "dynamics", "engine", "exchange", "fem",
 #: So many numbers are kept as they are.
 FEW = 12
 _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
+#: How many fields of a class of data do not count in comparisons, and so in the keys of results; kept where there are.
+UNSEEN = "not compared"
 #: How deep what a name stands for is looked into: rows of tables of dataclasses.
 DEEP = 8
 
@@ -84,6 +86,8 @@ def of_class(kind):
             if field.name in inspect.get_annotations(kind):
                 flags = [] if field.compare and field.repr else [float(field.compare), float(field.repr)]
                 found[field.name] = [*numbers(field.default), *flags]
+        found[UNSEEN] = [float(sum(not field.compare for field in dataclasses.fields(kind)))]
+        found = {name: kept for name, kept in found.items() if name != UNSEEN or kept != [0.0]}
     return found
 
 
@@ -136,7 +140,8 @@ def of_results():
 def neutral(name):
     """Of a module of the other rooms: flags, zeros and ones that are taken where nothing is given."""
     declared = of_module(name, None).items()
-    return {known: kept for known, kept in declared if len(kept) == 1 and kept[0] in (0.0, 1.0)}
+    found = {known: kept for known, kept in declared if len(kept) == 1}
+    return {known: kept for known, kept in found.items() if known.endswith(UNSEEN) or kept[0] in (0.0, 1.0)}
 
 
 def found():
@@ -154,10 +159,10 @@ def kept():
 def differences(old, new):
     """What differs of what is in both, in words."""
     return [
-        f"{module}.{name}: {old[module][name]} was kept, {new[module][name]} is found"
+        f"{module}.{name}: {old[module][name]} was kept, {new[module].get(name, [0])} is found"
         for module in old if module in new
-        for name in old[module] if name in new[module]
-        if not same(old[module][name], new[module][name])
+        for name in old[module] if name in new[module] or name.endswith(UNSEEN)
+        if not same(old[module][name], new[module].get(name, [0]))
     ]  # fmt: skip
 
 
