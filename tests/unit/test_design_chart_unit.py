@@ -8,6 +8,7 @@ import pytest
 
 from fegear.dynamics.train.dynamic_factor import factor_line
 from fegear.engine.figure.items import Curve, Points
+from fegear.results.train import design_chart
 from fegear.results.train.design_chart_sheet import CHART_SHEET, DesignChartData, UnequalRelief
 
 LENGTHS = np.array([0.5, 0.75, 1.0, 1.25])
@@ -87,3 +88,13 @@ def test_where_the_line_misses_most_is_said():
     (sentence,) = shown_of(replace(made, dynamic_factor=off)).remarks
     assert "at 1.5 Delta, L_n = 1.25: 3, predicted 1.9" in sentence
     assert shown_of(replace(made, line=None)).remarks == ()
+
+
+@pytest.mark.parametrize("unequal", [0, 1, 4])
+def test_a_forecast_counts_the_unmodified_pair_the_grid_and_three_for_each_unequal_relief(monkeypatch, unequal):
+    monkeypatch.setattr(design_chart.forecasts, "seconds_per_speed", lambda _: 0.5)
+    chart = SimpleNamespace(amounts=[1, 2], lengths=[1, 2, 3], unequal=[None] * unequal)
+    scene = SimpleNamespace(case=SimpleNamespace(dynamics=SimpleNamespace(chart=chart, speed_values=np.ones(5))))
+    found = design_chart._forecast(scene, "")
+    assert found.settings == {"points": 7 + 3 * unequal, "speeds": 5}
+    assert found.seconds == pytest.approx((7 + 3 * unequal) * 2.6)
