@@ -59,12 +59,16 @@ def test_an_order_of_elements_changes_more_than_shorter_edges_leave():
     third = solid_settings(3e-3)
     assert third.coarser(3.0).section.order < third.section.order
 
-    def shares(fine, coarse):
-        one, other = (None if of is None else SimpleNamespace(settings=of) for of in (fine, coarse))
+    def shares(fine, coarse, tau=TAU):
+        one, other = (None if of is None else SimpleNamespace(settings=of, tau=tau) for of in (fine, coarse))
         return SolidInfluence.entry_shares.fget(SimpleNamespace(fine=one, coarse=other))
 
     usual = shares(COARSE, COARSE.coarser(3.0))
     assert usual == shares(COARSE, None)
+    # of spur gears both are not so rough; where the order is another one nothing hangs on it
+    spur = shares(COARSE, COARSE.coarser(3.0), 0.0)
+    assert [key for key in usual if spur[key] < usual[key]] == ["neighbour", "root_compression"]
+    assert shares(third, third.coarser(3.0), 0.0) == shares(third, third.coarser(3.0))
     by_order = shares(third, third.coarser(3.0))
     assert by_order["contact"] < 0.5 * usual["contact"]
     assert by_order["neighbour"] < usual["neighbour"]
