@@ -11,7 +11,7 @@ from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack
 
 GEAR = Tooth(30, BasicRack(1.0, 1.25, 0.25))
-RING = InternalTooth(50, PinionCutter(27, -0.134, 1.25, tip_radius=0.14), profile_shift=0.459)
+RING = InternalTooth(50, PinionCutter(27, -0.134, 1.25, tip_radius=0.14), profile_shift=0.459, tip_radius=23.682)
 #: Longest edges at tolerances of 0.01 and 0.1, half-width of the wider pressure at both [modules].
 EDGE, LONG_EDGE, WIDE = 0.26, 0.44, 0.36
 
@@ -56,8 +56,8 @@ def test_a_place_of_two_teeth_has_the_larger_part_of_both():
     known = Estimate(SimpleNamespace(flank=flank, tooth=RING, reach=0), None, WIDE, 2.0 * WIDE)
     low, high = RING.involute_radii
     samples = np.linspace(low, high, _SAMPLES)
-    known.__dict__ |= {"_samples": samples, "common_errors": (0.0, 0.0), "_least_beside": 0.0}
-    known.__dict__["_neighbours"] = {1: np.ones((_SAMPLES, _SAMPLES))}
+    usual = {1: np.ones((_SAMPLES, _SAMPLES))}
+    known.__dict__.update(_samples=samples, common_errors=(0.0, 0.0), _least_beside=0.0, _neighbours=usual)
     off = np.zeros((2, 2))
     object.__setattr__(known, "_neighbour_difference", lambda *_asked: (off, off))
     _, error = known.neighbour(1, samples[[0, -1]], samples[[0, -1]])
