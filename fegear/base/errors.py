@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -14,6 +15,8 @@ NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno
 NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
 #: Most characters of an input that a message repeats.
 _SHOWN = 60
+#: Most items of a list, and levels of lists in lists, that a message can show.
+_ITEMS, _DEEP = 1000, 4
 #: Most characters of a path that a message repeats: its end counts as much as its beginning.
 PATH = 300
 #: Most characters of a value, or of a rule that repeats one.
@@ -23,11 +26,29 @@ _LONGEST = 1000
 def shown(value: object, most: int = _SHOWN) -> str:
     """Return an input as messages repeat it: on one line, texts in quotes, longer ones than `most` cut short."""
     try:
-        text = value if isinstance(value, str) else repr(value)
+        text = value if isinstance(value, str) else _written(value)
     except ValueError:  # a whole number of thousands of digits
         text = f"(a {type(value).__name__} that cannot be written)"
     text = _one_line(text, most)
     return f'"{text}"' if isinstance(value, str) else text
+
+
+def _written(value: object, depth: int = 0) -> str:
+    """A value as a case file has it: lists, tables, texts and truth values of TOML; of long lists the beginning."""
+    if isinstance(value, list | tuple | dict) and depth < _DEEP:
+        some = [*islice(value, _ITEMS)]
+        if isinstance(value, dict):
+            return (
+                "{}"
+                if not some
+                else "{ " + ", ".join(f"{key} = {_written(value[key], depth + 1)}" for key in some) + " }"
+            )
+        return f"[{', '.join(_written(one, depth + 1) for one in some)}]"
+    if depth and isinstance(value, str):
+        return f'"{value}"'
+    if depth and isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value)
 
 
 def _one_line(text: str, most: int) -> str:
@@ -65,7 +86,8 @@ class InputError(FegearError):
     def __init__(self, key: str, value: object, rule: str, remedy: str = "") -> None:
         self.key, self.value, self.rule, self.remedy = key, value, rule, remedy
         # Names and values are the user's: whatever they are, the sentence stays one, on one line.
-        said = f"{_one_line(key, PATH)} = {_one_line(str(value), _LONGEST)}: {_one_line(rule, _LONGEST)}"
+        said_of = _written(value) if isinstance(value, list | tuple | dict) else str(value)
+        said = f"{_one_line(key, PATH)} = {_one_line(said_of, _LONGEST)}: {_one_line(rule, _LONGEST)}"
         super().__init__(said + (f"; {remedy}" if remedy else "") + ".")
 
     def under(self, prefix: str, names: Mapping[str, str] | None = None) -> InputError:

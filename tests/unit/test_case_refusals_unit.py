@@ -300,3 +300,14 @@ def test_as_many_combinations_as_are_said_are_taken_and_not_one_more(part, one, 
     assert (limit + 1) % more == 0
     with pytest.raises(ValueError, match=rf" = {limit + 1:,} [a-z ]+, above the limit"):
         read(more, (limit + 1) // more)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        (["scale", "scale"], '["scale", "scale"]'), ([{"on": True, "at": [1, 2.5]}], "[{ on = true, at = [1, 2.5] }]"),
+        ({}, "{}"), ([], "[]"), ((1,), "[1]"), (True, "True"), ("a\nb", "a b"),
+    ],
+)  # fmt: skip
+def test_a_refused_list_is_written_as_in_a_case_file(value, said):
+    assert str(InputError("a.fit", value, "must be")) == f"a.fit = {said}: must be."
