@@ -99,9 +99,9 @@ class CutterSections:
     """Normal sections of both cutters over the u that both flanks need."""
 
     u: Array = shown("mm", "along the straight profile from the reference line towards the pinion's root")
-    x_pinion: Array = shown("mm", "pinion cutter in its own frame (A.5.6)")
+    x_pinion: Array = shown("mm", "pinion cutter, cutter coordinates (A.5.6)")
     y_pinion: Array = shown("mm", "second coordinate")
-    x_gear: Array = shown("mm", "gear cutter in its own frame (A.5.1)")
+    x_gear: Array = shown("mm", "gear cutter, cutter coordinates (A.5.1)")
     y_gear: Array = shown("mm", "second coordinate")
     departure: Array = shown("um", "departure of the pinion cutter from the straight profile")
 

@@ -268,8 +268,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "planet_root_stress_{name}", "Root stress of a planet's tooth in set {name}",
-            "Set {name}: stress at the most pulled places of both fillets of a planet's tooth over a turn in the "
-            "carrier: it meets the sun at 0 deg and the ring half a turn later.",
+            "Set {name}: stress at the points of maximum tension of both fillets of a planet's tooth over a revolution "
+            "in the carrier; contact with the sun at 0 deg, with the ring half a revolution later.",
             (
                 Over(
                     "angle",
