@@ -142,7 +142,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
     "step": Format(
         "flanks", "solid of the gear, or of a rack", "fegear.output.step:written_step", "*.step",
         "CAD, printing: the solid gear, spur or helical, with its bore and its relief, as a disc (a `body` is "
-        "neglected, with a note), mm; the axis is z, the middle of the face z = 0",
+        "neglected, with a note), or rack, mm; the axis is z, the middle of the face z = 0",
         seconds="fegear.output.step:seconds_of", asymmetric=True, racks="fegear.output.rack_step:written_rack",
     ),
     "relief": Format(

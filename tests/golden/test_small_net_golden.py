@@ -248,6 +248,7 @@ ELSEWHERE = {
     "fillet-design": "cases/test_fillet_design_cases.py",
     "gauge": "closed_form/test_dynamic_strain_closed_form.py",
     "gearbox": "cases/test_gearbox_overview_cases.py",
+    "idler-root-stress": "closed_form/test_asymmetric_idlers_closed_form.py",
     "lead-correction": "cases/test_lead_correction_cases.py",
     "measured-transmission-error": "unit/test_measured_error_unit.py",
     "rack-geometry": "unit/test_racks_unit.py",
