@@ -1,4 +1,4 @@
-"""Hook of mkdocs: the tables of "How right is it?", from the page's run of ``fegear verify`` and the papers' cases."""
+"""Hook of mkdocs: the tables of "Verification", from the page's run of ``fegear verify`` and the papers' cases."""
 
 from __future__ import annotations
 

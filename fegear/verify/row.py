@@ -1,4 +1,4 @@
-"""A row of the page "How right is it?": a capability, what it is compared with, and the function that compares.
+"""A row of the page "Verification": a capability, what it is compared with, and the function that compares.
 
 A row is a function whose name is the row's and whose first sentence says what is compared; it gives `Compared` numbers.
 Nothing of a row's other side may come from fegear: it is printed, another program's, or computed by the row itself.
