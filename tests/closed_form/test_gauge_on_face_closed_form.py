@@ -10,6 +10,7 @@ import pytest
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.contact.wide.compliance import places_of
+from fegear.contact.wide.gauge_on_face import _between_positions
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.plane.gauge import Grid
@@ -166,3 +167,19 @@ def test_what_mirrors_mirrors_and_finer_gears_lie_within_the_stated_error():
     fine = ran(case_of(tolerance=0.04, r=gauges["r"]))["r"]
     assert abs(fine.peak_strain[0] - found["r"].peak_strain[0]) < found["r"].peak_error[0] + fine.peak_error[0]
     assert found["r"].peak_error[0] < 0.1 * found["r"].peak_strain[0]
+
+
+def test_a_straight_line_between_positions_misses_no_more_than_stated():
+    x = np.linspace(0.0, 1.0, 13)
+    curve = np.stack([np.sin(3.0 * x), x], axis=1)
+    stated = _between_positions(x, curve)
+    fine = np.linspace(x[1], x[-2], 1001)
+    missed = np.abs(np.interp(fine, x, curve[:, 0]) - np.sin(3.0 * fine))
+    assert missed.max() == pytest.approx(stated[:, 0].max(), rel=0.05)
+    assert stated[:, 1].max() < 1e-15
+    assert _between_positions(x[:2], curve[:2]).max() == 0.0
+    # a jump of which both sides are known is no error, and its sides err as their neighbours
+    jumping, place = np.insert(x, 7, x[6] + 1e-6), np.arange(14) > 6
+    beside = _between_positions(jumping, (np.sin(3.0 * jumping) + 5.0 * place)[:, None])[:, 0]
+    assert beside.max() < 1.3 * stated[:, 0].max()
+    assert beside.min() > 0.0

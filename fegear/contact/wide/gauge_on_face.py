@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.geometry.pair import Member
 
+#: Steps between positions below this share of the usual one are the two sides of a jump.
+_JUMP = 0.1
+
 
 def wide_gauge_history(
     loaded: LoadedWidePair,
@@ -31,8 +34,8 @@ def wide_gauge_history(
 ) -> GaugeHistory:
     """Follow a gauge over all positions of its tooth at which the pair is loaded.
 
-    The estimated error is what the coarser solution changes of the strain at any place within the displacements;
-    slices state a share.
+    The estimated error is what the coarser solution changes of the strain at any place within the displacements (slices
+    state a share), and what straight lines between the positions miss of the curve.
 
     Parameters
     ----------
@@ -71,6 +74,10 @@ def wide_gauge_history(
             share * np.abs(_between(rooted.x, again.x, other_one) - one).max(axis=-1)
             for one, other_one in zip((strain, stress), pair, strict=True)
         )
+    off, off_stress = (
+        error + _between_positions(rooted.x, one[..., at])
+        for error, one in ((off, strain), (off_stress, stress))
+    )  # fmt: skip
     sense = 1.0 if side == "tension" else -1.0
     if grid.strain_per_stress(loaded.pair.gear(member).material, "stress") < 0.0:
         sense = -sense
@@ -115,3 +122,24 @@ def _between(x: Array, at: Array, values: Array) -> Array:
     """Values at other positions, shape (T, L, G)."""
     flat = values.reshape(at.size, -1)
     return np.stack([np.interp(x, at, one) for one in flat.T], axis=1).reshape(x.size, *values.shape[1:])
+
+
+def _between_positions(x: Array, values: Array) -> Array:
+    """What a straight line between two positions misses of a curve about each, shape (T, L).
+
+    Of a parabola, a quarter of how far a point lies off the line through those beside it. Both sides of a jump are
+    among the positions: a point there has what the one beside it has on its own side.
+    """
+    missed = np.zeros(values.shape)
+    if x.size > 2:
+        step = np.diff(x)
+        share = (step[:-1] / np.maximum(step[:-1] + step[1:], np.finfo(float).tiny))[:, None]
+        off = 0.25 * np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
+        smooth = np.minimum(step[:-1], step[1:]) > _JUMP * np.median(step)
+        missed[1:-1][smooth] = off[smooth]
+        beside = np.zeros(values.shape)
+        beside[1:] = missed[:-1]
+        beside[:-1] = np.maximum(beside[:-1], missed[1:])
+        inner = np.concatenate([[False], smooth, [False]])
+        missed[~inner] = beside[~inner]
+    return missed
