@@ -12,6 +12,7 @@ from mutations import changed_value, processor_seconds
 from fegear.base.errors import FegearError, InputError
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
+from fegear.geometry.curves import Arc
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_curves import ArcsFillet, EllipseFillet, SplineFillet
 from fegear.geometry.outline import gear_outline
@@ -171,3 +172,15 @@ def test_mutated_keys_of_fillets_end_in_one_sentence(seed):
             assert len(text) < 500
             continue
         assert math.isfinite(tooth.root_radius)
+
+
+def test_arcs_one_behind_the_other_end_where_their_last_does_and_a_last_bit_beyond():
+    arcs = Arc((0.0, 8.0), -1.0, 3.0, 2.0), Arc((0.3, 7.0), -0.5, 2.0, 1.2)
+    fillet = ArcsFillet(arcs)
+    assert fillet.end == pytest.approx(1.4)
+    u = np.array([0.0, 1.0, 1.0 + 1e-12, 1.2, fillet.end, np.nextafter(fillet.end, 2.0)])
+    wanted = np.column_stack([arcs[0].points(3.0), arcs[0].points(2.0), arcs[1].points(2.0), arcs[1].points(1.6),
+                              arcs[1].points(1.2), arcs[1].points(1.2)])  # fmt: skip
+    assert fillet.points(u) == pytest.approx(wanted, abs=1e-9)
+    assert np.hypot(*fillet.normals(u)) == pytest.approx(np.ones(6))
+    assert np.abs(fillet.curvatures(u)) == pytest.approx([1.0, 1.0, 2.0, 2.0, 2.0, 2.0])

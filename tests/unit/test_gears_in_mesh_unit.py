@@ -17,7 +17,7 @@ from fegear.engine.stage import Task
 from fegear.fem.plane.imported_mesh import read_sector_mesh
 from fegear.fem.plane.outline_motion import _outline, half_plane_dent
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.outline import tool_in_space, tooth_outline
+from fegear.geometry.outline import rack_tooth, tool_in_space, tooth_outline
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.rack import BasicRack
 from fegear.results.catalogue import STAGES
@@ -367,3 +367,18 @@ def test_the_page_knows_beforehand_what_of_a_pair_is_shown_in_vain():
         # A pair without a load is refused for that.
         assert [task.stage for task in tasks] == (["stress-in-mesh", "deformed-in-mesh"] if case is CASE else [])
         assert all("load" in one["refused"] for one in answers if one["kind"] not in told)
+
+
+@pytest.mark.parametrize("helix", [0.0, 25.0])
+def test_the_tool_across_the_axis_is_half_a_transverse_pitch_thick_where_it_rolls_without_shift(helix):
+    """Lengths along the rack over cos beta; its flanks lean by the transverse pressure angle, heights stay."""
+    lean = math.cos(math.radians(helix))
+    tooth = Tooth(30, BasicRack(1.0, 1.25, 0.3), 0.2, helix_angle=math.radians(helix))
+    x, y = rack_tooth(tooth)
+    half = x.size // 2
+    for side in (np.s_[:half], np.s_[half:]):
+        order = np.argsort(y[side])
+        at = np.interp([0.2, 1.2], y[side][order], np.abs(x[side])[order])
+        assert at[0] == pytest.approx(0.25 * math.pi / lean)
+        assert at[1] - at[0] == pytest.approx(math.tan(tooth.rack.pressure_angle) / lean)
+    assert (y.max(), y.min()) == (pytest.approx(1.2), pytest.approx(0.2 - 1.25))
