@@ -18,12 +18,17 @@ from fegear.case.built.solid_influence import seconds_of_solid_gear
 from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene, read_scene
 from fegear.case.studies import CostPart
+from fegear.contact.compared import crosscheck
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.formulas.hertz import relative_curvature
 from fegear.formulas.iso6336.part3_root_stress import tooth_root_stress
 from fegear.formulas.sources import SOURCES
 from fegear.formulas.sources import pair_compliance as formula_pair
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.output.cost import cheapest_lines, cost_page
 from fegear.output.tables import write_table
 from fegear.studies.cost import knobs, measure, study
@@ -895,3 +900,16 @@ class SolvedGear:
 )  # fmt: skip
 def test_effects_of_what_is_studied_are_those_of_its_stages(quantities, stages):
     assert CostPart(quantities=quantities).stages == stages
+
+
+@pytest.mark.parametrize(("width", "fits"), [(0.1, True), (6.0, False)])
+def test_contacts_that_are_wider_than_any_place_of_the_flanks_are_refused(monkeypatch, width, fits):
+    """Half-widths in modules, the same at every position."""
+    tooth = Tooth(25, BasicRack(1.0, 1.25, 0.25))
+    pair = GearPair(*(Gear(tooth, 2e-3, 10e-3, 20e-3) for _ in range(2)))
+    monkeypatch.setattr(crosscheck, "contact_half_width", lambda _pair, x, _load: np.full(x.shape, 2e-3 * width))
+    if fits:
+        crosscheck.refuse_wide_contacts(pair, 2e5, "pair.I.load")
+    else:
+        with pytest.raises(InputError, match=r"pair.I.load = 200 N/mm: gives a contact half-width of at least 12 mm"):
+            crosscheck.refuse_wide_contacts(pair, 2e5, "pair.I.load")

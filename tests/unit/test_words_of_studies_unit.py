@@ -226,3 +226,21 @@ def test_a_study_of_effects_ends_after_the_seconds_that_it_took(monkeypatch, tmp
     commands.effects(Path("c.toml"), out=tmp_path / "new")
     assert ended == [3.5]
     assert said == ["one.", f"Wrote {tmp_path / 'new'} in 4.25 s."]
+
+
+def test_a_sweep_says_how_long_it_has_still_to_run(monkeypatch, tmp_path):
+    asked = []
+
+    def watcher(**given):
+        asked.append(given)
+        return contextlib.nullcontext(SimpleNamespace(begin=lambda *_: None, advance=None))
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(commands, "Voice", lambda *_: SimpleNamespace(watcher=watcher))
+    monkeypatch.setattr("fegear.studies.sweep.sweep_case", interrupted)
+    with pytest.raises(SystemExit) as end:
+        commands.sweep(Path("c.toml"), over=["gear.a.teeth=20,21"], out=tmp_path / "new")
+    assert end.value.code == 130
+    assert asked == [{"remaining": True}]
