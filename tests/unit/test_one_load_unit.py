@@ -2,6 +2,7 @@
 
 import copy
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from fegear.case.built.pair_surface import pair_surface
 from fegear.case.built.rated_pair import pair_to_rate
 from fegear.case.reading import build_scene
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.load_factors import iso_face_load_factor
+from fegear.contact.wide.load_factors import iso_face_load_factor, straight_gap
 from fegear.formulas.friction import MEAN_LAWS, law_load
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 from fegear.formulas.iso6336.safety import rate_pair
@@ -99,3 +100,19 @@ def test_laws_of_friction_take_their_own_load():
     crowded = at["iso-6336-22"][2] / 400e3
     assert crowded > 1.0
     assert at["iso-6336-21"] == pytest.approx([0.0, 150e3 * crowded, 400e3 * cos * crowded])
+
+
+def test_the_straight_part_of_a_gap_is_read_over_the_whole_face_between_its_ends():
+    """A bulge that is even about the middle leaves it, and so does a constant."""
+    seen = []
+
+    def at(_pair, lines):
+        seen.append(lines)
+        return 4e-6 + 3e-4 * lines.z + 2e-2 * lines.z**2
+
+    pair = SimpleNamespace(face_width=0.03)
+    assert straight_gap(pair, SimpleNamespace(at=at)) == pytest.approx(3e-4 * 0.03)
+    (lines,) = seen
+    assert (lines.low, lines.high) == (-0.015, 0.015)
+    assert (lines.z.min(), lines.z.max()) == (-0.015, 0.015)
+    assert not lines.at_edge.any()
