@@ -4,6 +4,7 @@ import copy
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -271,3 +272,16 @@ def test_the_rounding_of_a_cutter_touches_both_of_its_flanks_and_its_tip_circle(
         length, normal, centre = ring.cutter_rounding(flank)
         assert math.hypot(base, length - radius) == pytest.approx(0.5 * teeth + 1.1 - radius, rel=1e-12)
         assert centre - normal == pytest.approx(math.atan2(length - radius, base), rel=1e-12)
+
+
+@pytest.mark.parametrize(("flank", "key"), [("drive", "cutter.tip_radius"), ("coast", "cutter.coast_tip_radius")])
+def test_a_fillet_with_a_cusp_is_refused_by_the_key_of_its_own_flank(flank, key):
+    fillet = SimpleNamespace(start=0.0, end=1.0, speed=lambda u: u - 0.5)
+    side = SimpleNamespace(
+        root_land_half_angle=0.0, teeth=30, fillet=fillet, flank=flank,
+        tooth=SimpleNamespace(rounding={"drive": 0.3, "coast": 0.4}.get),
+    )  # fmt: skip
+    with pytest.raises(GeometryError, match="loop or cusp") as refused:
+        type(RING.drive).check(side)
+    assert refused.value.key == key
+    assert float(refused.value.value) == {"drive": 0.3, "coast": 0.4}[flank]

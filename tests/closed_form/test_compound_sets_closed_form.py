@@ -1,5 +1,6 @@
 """Planetary sets described as data: Willis in fractions, today's simple set, flanks unwound, bodies on springs."""
 
+import dataclasses
 import math
 from dataclasses import replace
 from fractions import Fraction
@@ -22,6 +23,7 @@ from fegear.dynamics.planetary.kinematics import running
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
 from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
 from fegear.dynamics.planetary.set_modes import set_modes
+from fegear.results.planetary import compound_set
 from tests.helpers import compound_sets
 
 
@@ -449,3 +451,14 @@ def test_planets_miss_the_nearest_angle_that_fits_and_nothing_where_any_does():
     step = 2.0 * math.pi / 12
     assert found == pytest.approx([0.0, 1.0 - 2.0 * step, 2.1 - 4.0 * step, 4.0 - 8.0 * step])
     assert max(map(abs, found)) <= 0.5 * step
+
+
+def test_a_row_of_ratios_names_what_is_held_drives_and_is_loaded():
+    row = compound_set._ratio(("a", "b"), "c", "d", "both turn freely")
+    drive = SimpleNamespace(ratio=3.0, torque={"d": -2.5, "a": 1.5}, efficiency=0.97, rolling=[0.2, -0.7])
+    known = compound_set._ratio(("a",), "c", "d", drive)
+    fields = [field.name for field in dataclasses.fields(row)]
+    first, second = ([getattr(one, name) for name in fields] for one in (row, known))
+    assert first[:3] + first[-1:] == ["a, b", "c", "d", "both turn freely"]
+    assert np.isnan(first[3:-1]).all()
+    assert second == ["a", "c", "d", 3.0, -2.5, 1.5, 0.97, 0.7, ""]
