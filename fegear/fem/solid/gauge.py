@@ -17,7 +17,7 @@ import numpy as np
 from fegear.fem.plane.gauge import FilletProfile, Grid, grid_weights
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Index
     from fegear.fem.solid.fillet import SolidFillet
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.gear import Gear, Material
@@ -52,7 +52,7 @@ class GridOnFace:
     solution: SolidSolution
     direction: float
     zeta: Array
-    at: Array
+    at: Index
     weights: Array
 
     def means(self, surface: Array, material: Material, *, plane_strain: bool) -> tuple[Array, Array]:
