@@ -16,8 +16,9 @@ from fegear.fem.solid.bands import bands
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.extruded import extruded
 from fegear.fem.solid.influence import contact_line
+from fegear.fem.solid.sector import section_mesh
 from fegear.fem.solid.settings import SolidSettings, solid_settings
-from fegear.fem.solid.solution import section_mesh, solve_solid
+from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.gear_body import GearBody

@@ -18,8 +18,9 @@ from fegear.fem.solid.dissection import _smallest
 from fegear.fem.solid.face import face_functions
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.section import make_section
+from fegear.fem.solid.sector import flank_nodes
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.solution import flank_nodes, solve_solid
+from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack

@@ -16,8 +16,9 @@ from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.holed_web import Waves, lost_stiffness, wave_weights
 from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.section import make_section
+from fegear.fem.solid.sector import section_mesh
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.solution import section_mesh, solve_solid
+from fegear.fem.solid.solution import solve_solid
 from fegear.fem.solid.tooth_over_holes import as_if_all_were, tooth_over_holes
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear_body import GearBody, WebHoles

@@ -18,9 +18,10 @@ from fegear.fem.solid.face import face_functions, function_counts, solid_unknown
 from fegear.fem.solid.pinned_rim import pins_on
 from fegear.fem.solid.rim import solid_rim
 from fegear.fem.solid.section import make_section
+from fegear.fem.solid.sector import flank_nodes, section_mesh
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slices import solve_slices
-from fegear.fem.solid.solution import flank_nodes, section_mesh, solve_solid
+from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.rack import BasicRack

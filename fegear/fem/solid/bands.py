@@ -29,7 +29,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.base.errors import RangeError
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.face import FaceFunctions
@@ -81,7 +81,7 @@ class Bands(ReadOnlyArrays):
         step = np.diff(self.zeta)
         return self.profile == "hat" and bool((self.after[:-1] == step).all() and (self.before[1:] == step).all())
 
-    def part(self, span: slice) -> Bands:
+    def part(self, span: slice | Index) -> Bands:
         """Some of the bands."""
         return Bands(
             self.radius[span], self.zeta[span], self.before[span], self.after[span], self.half_width[span],

@@ -21,8 +21,8 @@ from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
 from fegear.fem.solid.section import Section, make_section, turned_matrices
+from fegear.fem.solid.sector import section_mesh
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.solution import section_mesh
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_tooth import InvoluteTooth

@@ -27,6 +27,7 @@ from fegear.fem.solid.bands import (
     profiles_at,
     quick_band_spectrum,
 )
+from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,6 +60,8 @@ class PressedLines:
         (`SolidSolution.band_half_width`), with their lines' own slope (`SolidSolution.line_slope`).
     spans : sequence of slice
         Where each line stands among them.
+    teeth : sequence of int
+        The tooth that each line is on, by its number.
 
     Attributes
     ----------
@@ -66,14 +69,22 @@ class PressedLines:
         Of each line the integrals of products of its bands' profiles [1/module].
     """
 
-    def __init__(self, solution: SolidFlank, line: Bands, spans: Sequence[slice]) -> None:
-        self._solution, self._line, self._spans = solution, line, spans
+    def __init__(self, solution: SolidFlank, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> None:
+        self._solution, self._line, self._spans, self._teeth = solution, line, spans, teeth
         self.common = [overlap(line.part(span)) for span in spans]
 
     @cached_property
-    def _loads(self) -> Array:
-        """Loads on the flank's ports, shape (n, all P)."""
-        return loads_of(self._line, self._solution.flank, self._solution.face)
+    def _loads(self) -> list[Array]:
+        """Loads of each line on its flank's ports, shape (n, P) each."""
+        flanks = [self._solution.flank_of(tooth) for tooth in self._teeth]
+        found: list[Array] = [np.zeros((0, 0))] * len(flanks)
+        for lines in together(id(flank) for flank in flanks):
+            chosen = [self._spans[line] for line in lines]
+            columns = np.concatenate([np.arange(span.start, span.stop) for span in chosen])
+            loads = loads_of(self._line.part(columns), flanks[int(lines[0])], self._solution.face)
+            for line, own in zip(lines, _parted(loads, chosen), strict=True):
+                found[line] = own
+        return found
 
     def own(self) -> list[Array]:
         """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) each [1/(E module)]."""
@@ -81,10 +92,11 @@ class PressedLines:
         seen, moments = self._as_the_functions_see_them()
         bend = solution.bend(line.radius) * line.half_width
         logs = np.log(line.half_width) / solution.width
-        found = []
-        for span, common, answer in zip(self._spans, self.common, self._answered(0, self._spans), strict=True):
+        found, every = [], range(len(self._spans))
+        answers = self._answered([(tooth, tooth) for tooth in self._teeth], every)
+        for span, common, loads, answer in zip(self._spans, self.common, self._loads, answers, strict=True):
             taken = seen[span] @ moments[:, span] - 2.0 * logs[span, None]
-            block = self._loads[:, span].T @ answer + solution.contact_slope * (
+            block = loads.T @ answer + solution.contact_slope * (
                 _narrow(solution, line.part(span)) + 0.5 * common
             )
             block -= 0.5 * (slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
@@ -104,19 +116,21 @@ class PressedLines:
                 for span, block, mean in zip(self._spans, found, means, strict=True)]  # fmt: skip
 
     def between(self, i: int, j: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
-        """c_k, k = i - j, between lines on teeth i and j: seen on the first, pressed on the second."""
-        answers = self._answered(i - j, [self._spans[pressed] for _, pressed in pairs])
-        return [self._loads[:, self._spans[seen]].T @ answer
-                for (seen, _), answer in zip(pairs, answers, strict=True)]  # fmt: skip
+        """c_ij between lines on teeth i and j, or on teeth like these: seen on the first, pressed on the second."""
+        answers = self._answered([(i, j)] * len(pairs), [pressed for _, pressed in pairs])
+        return [self._loads[seen].T @ answer for (seen, _), answer in zip(pairs, answers, strict=True)]
 
-    def _answered(self, k: int, spans: Sequence[slice]) -> list[Array]:
-        """Deflections of tooth k's ports under each line's bands, solved for all lines together."""
-        if not spans:
-            return []
-        columns = np.concatenate([np.arange(span.start, span.stop) for span in spans])
-        found = self._solution.compliance[k] @ self._loads[:, columns]
-        ends = np.cumsum([span.stop - span.start for span in spans])
-        return np.split(found, ends[:-1], axis=1)
+    def _answered(self, teeth: Sequence[tuple[int, int]], pressed: Sequence[int]) -> list[Array]:
+        """Deflections of the ports of teeth i under lines on teeth j, solved for all lines of like teeth together."""
+        matrices = [self._solution.coupling(i, j) for i, j in teeth]
+        found: list[Array] = [np.zeros((0, 0))] * len(matrices)
+        for group in together(id(matrix) for matrix in matrices):
+            loads = [self._loads[pressed[n]] for n in group]
+            ends = np.cumsum([one.shape[1] for one in loads])
+            answers = np.split(matrices[int(group[0])] @ np.hstack(loads), ends[:-1], axis=1)
+            for n, answer in zip(group, answers, strict=True):
+                found[n] = answer
+        return found
 
     def _as_the_functions_see_them(self) -> tuple[Array, Array]:
         """A half-space's answer to the wide bands as far as the functions resolve them, and the bands' moments.
@@ -133,6 +147,12 @@ class PressedLines:
             here = line.half_width == a
             seen[here] = moments[:, here].T @ galerkin_compliance(face, solution.normal_length, count, a)
         return seen, moments
+
+
+def _parted(columns: Array, spans: Sequence[slice]) -> list[Array]:
+    """Columns of each span, which stand one after the other."""
+    ends = np.cumsum([span.stop - span.start for span in spans])
+    return np.split(columns, ends[:-1], axis=1)
 
 
 def line_compliance(solution: SolidFlank, line: Bands, half_width: ArrayLike) -> Array:
@@ -159,7 +179,7 @@ def line_compliance(solution: SolidFlank, line: Bands, half_width: ArrayLike) ->
     """
     b = np.broadcast_to(np.asarray(half_width, dtype=float), (line.count,))
     check_half_width(b, solution.flank)
-    lines = PressedLines(solution, line, (slice(0, line.count),))
+    lines = PressedLines(solution, line, (slice(0, line.count),), (0,))
     width = np.log(b)
     return lines.own()[0] + lines.widened(b)[0] - solution.contact_slope * (width[:, None] + width) * lines.common[0]
 

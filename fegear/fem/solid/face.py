@@ -292,6 +292,7 @@ def solid_unknowns(
     all_waves: bool = False,
     teeth: tuple[FaceFunctions, float] | None = None,
     bore_held: bool = True,
+    beside: Section | None = None,
 ) -> Unknowns:
     """Unknowns of the solid sector, its bore held.
 
@@ -310,12 +311,14 @@ def solid_unknowns(
         Functions, behind those of the face, that nodes beyond a radius [modules] have in their place.
     bore_held : bool
         Not the outer circle of a ring that has another support.
+    beside : Section, optional
+        The ordinary one, next to which one whose tooth differs stands.
 
     Returns
     -------
     Unknowns
     """
-    few = function_counts(section, face, settings)
+    few = function_counts(section, face, settings, beside)
     counts = np.full_like(few, face.count) if all_waves else few
     has = np.arange(face.count) < np.repeat(counts, 3)[:, None]
     if len(section.spans) > 1:  # where web and hub are no material no function of theirs is any use
@@ -336,7 +339,7 @@ def solid_unknowns(
     has[bore.ravel()] &= free | (not bore_held)
     if teeth is not None:
         beyond = np.repeat(np.hypot(*section.places) > teeth[1], 3)[:, None]
-        own = np.arange(teeth[0].count) < np.repeat(function_counts(section, teeth[0], settings), 3)[:, None]
+        own = np.arange(teeth[0].count) < np.repeat(function_counts(section, teeth[0], settings, beside), 3)[:, None]
         has = np.hstack([has & ~beyond, own & beyond])
     if plane_strain:
         has[2::3] = False
@@ -353,28 +356,34 @@ def own_of_teeth(face: FaceFunctions, body: GearBody | None, root_radius: float)
     return body.rim_radius + _FELT
 
 
-def function_counts(section: Section, face: FaceFunctions, settings: SolidSettings) -> Index:
+def function_counts(
+    section: Section, face: FaceFunctions, settings: SolidSettings, beside: Section | None = None
+) -> Index:
     """Functions along the face of each node, shape (N,).
 
     What varies along the face with a wavelength l decays within about l from where it is loaded. A node at a distance
-    d from the flank has all functions of degree below `wave_reach` times (width / 2 d), and a few more.
+    d from the flank has all functions of degree below `wave_reach` times (width / 2 d), and a few more. In a sector
+    `beside` ordinary ones the ordinary flank counts, whatever is left of it, and its sides are theirs.
     """
-    distance = np.maximum(flank_distance(section), 1e-9 * face.width)
+    distance = np.maximum(flank_distance(section, beside), 1e-9 * face.width)
     wanted = settings.wave_reach * 0.5 * face.width / distance + settings.fewest_waves * (
         1.0 + _PIECE * (len(face.breaks) - 2)
     )
     counts = face.full_counts[np.minimum(np.ceil(np.minimum(wanted, face.count)).astype(np.int64), face.count)]
     # Sides meet those of the neighbours: both have the functions of the one that is nearer to its flank.
     more = np.maximum(counts[section.side_a], counts[section.side_b])
+    if beside is not None:
+        more = function_counts(beside, face, settings)[beside.side_a]
     counts[section.side_a] = counts[section.side_b] = more
     return np.asarray(counts)
 
 
-def flank_distance(section: Section) -> Array:
-    """Distance of every node from the loaded flank, shape (N,) [modules]."""
-    line, _ = upward(section, "flank")
+def flank_distance(section: Section, of: Section | None = None) -> Array:
+    """Distance of every node from the loaded flank, of its own or another section, shape (N,) [modules]."""
+    owner = section if of is None else of
+    line, _ = upward(owner, "flank")
     run = np.concatenate([line[:-1].T.ravel(), line[-1:, -1]])
-    start, end = section.places[:, run[:-1], None], section.places[:, run[1:], None]
+    start, end = owner.places[:, run[:-1], None], owner.places[:, run[1:], None]
     chord = end - start
     way = section.places[:, None, :] - start
     share = np.clip((way * chord).sum(axis=0) / (chord * chord).sum(axis=0), 0.0, 1.0)

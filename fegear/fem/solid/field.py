@@ -19,8 +19,8 @@ from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of, with_stations
 from fegear.fem.solid.face import face_functions, solid_unknowns
 from fegear.fem.solid.section import HUB, Section, make_section
+from fegear.fem.solid.sector import flank_nodes, section_flank, section_mesh
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.solution import flank_nodes, section_flank, section_mesh
 from fegear.geometry.body_along import BodyAlong
 from fegear.geometry.gear_body import GearBody
 from fegear.geometry.involute_side import InvoluteSide

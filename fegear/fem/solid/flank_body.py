@@ -136,6 +136,14 @@ class SolidFlank(TwistedFlank):
     fillets: Mapping[Side, SolidFillet]
     displacement: Mapping[tuple[int, Side], Array]
 
+    def flank_of(self, tooth: int) -> LoadedFlank:  # noqa: ARG002  (all are alike)
+        """The loaded flank of a tooth."""
+        return self.flank
+
+    def coupling(self, i: int, j: int) -> Array:
+        """Approach of the flank of tooth i under forces on that of tooth j, port by port, shape (n_i, n_j)."""
+        return self.compliance[i - j]
+
     if TYPE_CHECKING:
 
         def root_end(self, k: int, side: Side, pressed: Bands) -> Array:

@@ -4,35 +4,35 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Mapping, MutableSequence, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array, Index, Mask
+from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
-from fegear.fem.plane.body import RING, with_body
+from fegear.fem.plane.body import RING
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring_closure import closed_ring
 from fegear.fem.plane.root_stress import extreme, search_end
-from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.tooth_meshing import mesh_sector
-from fegear.fem.plane.trace import LoadedFlank, loaded_flank
+from fegear.fem.plane.sector_sides import BetweenSides
+from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands, bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
-from fegear.fem.solid.face import FaceFunctions, JoinedFunctions, face_functions, own_of_teeth, solid_unknowns
-from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
+from fegear.fem.solid.face import FaceFunctions
+from fegear.fem.solid.fillet import SolidFillet, surface_stress
 from fegear.fem.solid.flank_body import SolidFlank
 from fegear.fem.solid.holed_teeth import HoledHalf, HoledTeeth, holed_teeth
 from fegear.fem.solid.holed_web import holes_of
 from fegear.fem.solid.pinned_rim import pinned_response, pins_on
 from fegear.fem.solid.rim import free_ring, solid_rim, splined_response
-from fegear.fem.solid.section import Section, make_section, upward
+from fegear.fem.solid.sector import FILLETS, SolidSector, section_mesh, solid_sector
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.uneven_teeth import UnevenTeeth, teeth_apart
 from fegear.geometry.gear_body import GearBody
@@ -41,7 +41,6 @@ from fegear.geometry.rim_support import RimSupport
 
 #: How far below the edge of a pressed band root tension begins [modules].
 _CLEARANCE = 0.25
-_FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
 @dataclass(frozen=True)
@@ -122,9 +121,9 @@ class SolidSolution(SolidFlank):
         own = loads if watched is pressed else loads_of(watched, self.flank, self.face)
         return np.asarray(own.T @ self.compliance[k] @ loads)
 
-    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> PressedLines:  # noqa: ARG002  (as of every solution)
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> PressedLines:
         """Contact lines on the flank, one after the other: see `contact.PressedLines`."""
-        return PressedLines(self, line, spans)
+        return PressedLines(self, line, spans, teeth)
 
     def _check_tooth(self, k: int) -> None:
         if k not in self.compliance:
@@ -290,70 +289,78 @@ def solve_solid(
     with one_thread():
         return _solve(
             tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, body, mesh, sector_teeth,
-            plane_strain, support, compared,
+            plane_strain, support, compared, deque(maxlen=0),
+        )[0]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SolvedSector:
+    """A solid ring, and its sector by itself: what a ring is made of in which other sectors stand, too.
+
+    Parameters
+    ----------
+    solution : SolidSolution
+    sector : SolidSector
+    parts : tuple of BetweenSides
+        The sector between its sides, of each of `SolidSector.halves`.
+    """
+
+    solution: SolidSolution
+    sector: SolidSector
+    parts: tuple[BetweenSides, ...]
+
+
+def solve_with_sector(
+    tooth: InvoluteSide, tau: float, width: float, poisson_ratio: float, bore_radius: float, settings: SolidSettings,
+    *, reach: int, body: GearBody | None = None, mesh: SectorMesh | None = None, plane_strain: bool = False,
+) -> SolvedSector:  # fmt: skip
+    """As `solve_solid`, of a whole ring whose bore is held, with its sector."""
+    parts: list[BetweenSides] = []
+    with one_thread():
+        solution, sector = _solve(
+            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, None, body, mesh, 0, plane_strain, None,
+            None, parts,
         )  # fmt: skip
+    return SolvedSector(solution, sector, tuple(parts))
 
 
 def _solve(
     tooth: InvoluteSide, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
     held: tuple[float, float] | None, body: GearBody | None, mesh: SectorMesh | None, sector_teeth: int,
-    plane_strain: bool, support: RimSupport | None, compared: Bands | None,
-) -> SolidSolution:  # fmt: skip
+    plane_strain: bool, support: RimSupport | None, compared: Bands | None, parts: MutableSequence[BetweenSides],
+) -> tuple[SolidSolution, SolidSector]:  # fmt: skip
     started = time.perf_counter()
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
     if mesh is None:
         mesh = section_mesh(tooth, bore_radius, settings.section, body, frontal=True, fewest=settings.body_layers)
-    along = None if body is None else body.along(width)
-    section = make_section(
-        mesh, settings.section.order, tau, nu, tooth.base_radius, body,
-        side=tooth.side, along=along, solver=settings.section.solver,
-    )  # fmt: skip
-    held = held if along is None else along.hub
-    cuts = (held or ()) if along is None else along.ends
-    symmetric = tau == 0.0 and (held is None if body is None else body.even)
-    face = face_functions(
-        width, settings.degree(width), cuts, settings.least_piece_degree, settings.fewer_on_pieces, mirrored=symmetric
+    sector = solid_sector(
+        tooth, tau, width, nu, mesh, settings, body, held, plane_strain=plane_strain, bore_held=support is None
     )
-    beyond = own_of_teeth(face, body, tooth.root_radius)
-    own = face_functions(width, settings.degree(width)) if math.isfinite(beyond) else face
-    joined, columns = (face, slice(None)) if own is face else (JoinedFunctions(face, own), slice(face.count, None))
-    known = solid_unknowns(
-        section,
-        face,
-        settings,
-        held,
-        plane_strain=plane_strain,
-        teeth=None if own is face else (own, beyond),
-        bore_held=support is None,
-    )
-    flank = section_flank(mesh, section, tooth)
-    fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
+    section, known, own, flank, fillets = sector.section, sector.known, sector.face, sector.flank, sector.fillets
+    face, columns = sector.body_face, sector.columns
     integrated = time.perf_counter()
-    every = np.arange(3)
-    sides = [(3 * nodes[:, None] + every).ravel() for nodes in (section.side_a, section.side_b)]
-    ports = 3 * flank_nodes(section)
-    seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
+    sides, ports, seen = sector.sides, sector.ports, list(sector.seen.values())
     counts = (known.number[::3] >= 0).sum(axis=1)
     rim = None if support is None else solid_rim(section, face, counts, plane_strain=plane_strain)
     pins = pins_on(section, face, counts, support, tooth.teeth) if support is not None and support.pins else None
     band = _half_height(tooth, flank, own, settings, tau) if compared is None else compared
     holes = holes_of(body, section, face, settings, tooth.root_radius, nu)
     reference = np.zeros(0) if pins is None and holes is None else loads_of(band, flank, own)[:, 0]
-    others = (3 * section.nodes_of(*(RING if rim is None else ("bore",)))[:, None] + every).ravel()
+    others = (3 * section.nodes_of(*(RING if rim is None else ("bore",)))[:, None] + np.arange(3)).ravel()
     inner = np.setdiff1d(np.concatenate([ports, *seen, others]), np.concatenate(sides))
     on_flank = known.number[ports] >= 0
     size = int(on_flank.sum())
     compliance = {k: np.zeros((size, size)) for k in range(-reach, reach + 1)}
     local = {(k, side): np.zeros((part.size, own.count, size))
-             for k in compliance for side, part in zip(_FILLETS, seen, strict=True)}  # fmt: skip
+             for k in compliance for side, part in zip(FILLETS, seen, strict=True)}  # fmt: skip
     teeth = 1 if pins is None else pins.different
-    each = {side: np.zeros((part.size, own.count, teeth)) for side, part in zip(_FILLETS, seen, strict=True)}
+    each = {side: np.zeros((part.size, own.count, teeth)) for side, part in zip(FILLETS, seen, strict=True)}
     approach = np.zeros(teeth)
     halves: list[HoledHalf] = []
     seconds = {"section": integrated - started, "condensation": 0.0, "ring": 0.0, "influence": 0.0}
-    for alone in known.split(_mirrored(section, joined)) if symmetric else (known,):
+    for alone in sector.halves():
         begun = time.perf_counter()
-        condensed = condense_solid(section, joined, alone, np.concatenate([*sides, inner]))
+        condensed = condense_solid(section, sector.joined, alone, np.concatenate([*sides, inner]))
         joint, loaded = alone.of(sides[0]).size, alone.of(ports)
         watch = np.concatenate([loaded, *(alone.of(part) for part in seen)])
         mine = np.flatnonzero((alone.number[ports] >= 0)[on_flank])
@@ -377,33 +384,32 @@ def _solve(
         for k, u in response.items():
             compliance[k][np.ix_(mine, mine)] = u[: loaded.size]
             row = loaded.size
-            for side, part in zip(_FILLETS, seen, strict=True):
+            for side, part in zip(FILLETS, seen, strict=True):
                 node, function = np.nonzero(alone.number[part][:, columns] >= 0)
                 local[k, side][node[:, None], function[:, None], mine] = u[row : row + node.size]
                 if k == 0 and apart is not None:
                     each[side][node, function] = apart[:, row : row + node.size].T
                 row += node.size
+        parts.append(ring.part)
         after = time.perf_counter() - begun - sum(ring.seconds.values())
         for what, spent in {**ring.seconds, "influence": after}.items():
             seconds[what] += spent
 
-    def in_space(side: Side, moved: Array) -> Array:
-        of_nodes = moved.reshape(-1, 3, *moved.shape[1:])
-        return np.asarray(np.einsum("ncd,ndkr->nckr", section.axes[fillets[side].nodes], of_nodes, optimize=True))
-
-    displacement = {(k, side): in_space(side, moved) for (k, side), moved in local.items()}
+    displacement = {(k, side): sector.in_space(side, moved) for (k, side), moved in local.items()}
     found = SolidSolution(
-        tooth, tau, width, bore_radius, held if body is None else body.hub, body, nu, plane_strain, own, flank,
+        tooth, tau, width, bore_radius, sector.held if body is None else body.hub, body, nu, plane_strain, own, flank,
         compliance, fillets, displacement,
         reach, known.size, settings, seconds, support,
     )  # fmt: skip
-    moved = {side: in_space(side, apart) for side, apart in each.items()}
+    moved = {side: sector.in_space(side, apart) for side, apart in each.items()}
     if halves:
-        shapes = {side: (part.size, own.count) for side, part in zip(_FILLETS, seen, strict=True)}
-        holed = holed_teeth(halves, size, shapes, in_space)
+        shapes = {side: (part.size, own.count) for side, part in zip(FILLETS, seen, strict=True)}
+        holed = holed_teeth(halves, size, shapes, sector.in_space)
         approach, moved = holed.apart(reference)
         found = replace(found, holed=holed)
-    return replace(found, uneven=teeth_apart(found, band, reference, approach, moved)) if reference.size else found
+    if reference.size:
+        found = replace(found, uneven=teeth_apart(found, band, reference, approach, moved))
+    return found, sector
 
 
 def _half_height(
@@ -424,62 +430,3 @@ def _check_support(support: RimSupport, tooth: InvoluteSide, *, alone: bool) -> 
             "is available for complete internal rings only, without a body or a fixed part",
             "specify rim and web of a 3D external gear in body",
         )  # fmt: skip
-
-
-def _mirrored(section: Section, face: FaceFunctions | JoinedFunctions) -> Mask:
-    """Unknowns of a motion that mirrors itself at the middle of the face, shape (size of the section, functions).
-
-    A body that does so and has no twist moves in such motions and in those of all other unknowns, each by itself:
-    an eighth of the work twice.
-    """
-    axial = np.arange(section.size) % 3 == 2
-    return axial[:, None] == face.odd
-
-
-def section_mesh(
-    tooth: InvoluteSide,
-    bore_radius: float,
-    settings: MeshSettings,
-    body: GearBody | None,
-    *,
-    frontal: bool = False,
-    layer: float | None = None,
-    fewest: int = 2,
-) -> SectorMesh:
-    """The section of one tooth, down to the bore, whose edges follow the circles of rim and hub if it has a body.
-
-    `layer` is the largest share of web and hub that one layer of elements spans, by default the settings'; there are
-    `fewest` at least.
-    """
-    if body is None:
-        return mesh_sector(tooth, bore_radius, settings, frontal=frontal)
-    rim = mesh_sector(tooth, body.rim_radius, settings, frontal=frontal)
-    return with_body(rim, body, bore_radius, settings.rim_fraction if layer is None else layer, fewest)
-
-
-def flank_nodes(section: Section) -> Index:
-    """Nodes of the loaded flank from its lower end to the tip, shape (n,)."""
-    line, _ = upward(section, "flank")
-    return np.concatenate([line[0, :1], line[1:].T.ravel()])
-
-
-def section_flank(mesh: SectorMesh, section: Section, tooth: InvoluteSide) -> LoadedFlank:
-    """The loaded flank of a section; nothing presses on fillet or tip rounding."""
-    return loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
-
-
-@dataclass(frozen=True)
-class _Plane:
-    """The section's boundary with plane unknowns, as the trace of the flank wants them."""
-
-    section: Section
-
-    @property
-    def order(self) -> int:
-        """Order of the elements."""
-        return self.section.order
-
-    @property
-    def edge_dofs(self) -> dict[str, Index]:
-        """Unknowns x and y of the nodes along each boundary edge, shape (2, order + 1, edges)."""
-        return {name: 2 * nodes + np.array([0, 1])[:, None, None] for name, nodes in self.section.edge_nodes.items()}

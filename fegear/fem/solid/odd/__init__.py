@@ -1,0 +1,1 @@
+"""Solid gears some of whose teeth differ from the others."""

@@ -1,0 +1,234 @@
+"""A solid gear some of whose teeth differ: what pairs ask of its flanks and fillets, tooth by tooth; E = 1, module 1.
+
+Odd teeth far from each other are in rings of their own: a tooth more than two teeth away from every odd one answers as
+an ordinary one does (a crack half of the way through changes it by less than 5e-4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.fem.plane.root_stress import extreme
+from fegear.fem.solid.bands import Bands, loads_of
+from fegear.fem.solid.contact import PressedLines
+from fegear.fem.solid.fillet import SolidFillet, surface_stress
+from fegear.fem.solid.flank_body import SolidFlank
+from fegear.fem.solid.odd.odd_window import OddWindow
+from fegear.fem.solid.solution import SolidSolution
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.plane.trace import LoadedFlank
+    from fegear.fem.solid.face import FaceFunctions
+    from fegear.fem.solid.settings import SolidSettings
+    from fegear.geometry.involute_tooth import InvoluteTooth
+
+
+@dataclass(frozen=True)
+class OddSolid(SolidFlank):
+    """A solid gear with odd teeth.
+
+    Parameters
+    ----------
+    ordinary : SolidSolution
+        The same gear, all its teeth alike.
+    windows : tuple of OddWindow
+        Around its odd teeth, which have the numbers of the gear.
+    seconds : mapping of str to float
+    """
+
+    ordinary: SolidSolution
+    windows: tuple[OddWindow, ...]
+    seconds: Mapping[str, float] = field(compare=False)
+
+    @property
+    def tooth(self) -> InvoluteTooth:  # type: ignore[override]  # as of every flank, read-only
+        """The ordinary transverse section."""
+        return self.ordinary.tooth
+
+    @property
+    def tau(self) -> float:  # type: ignore[override]
+        """Twist [rad/module]."""
+        return self.ordinary.tau
+
+    @property
+    def width(self) -> float:  # type: ignore[override]
+        """[modules]."""
+        return self.ordinary.width
+
+    @property
+    def poisson_ratio(self) -> float:  # type: ignore[override]
+        """Of the material."""
+        return self.ordinary.poisson_ratio
+
+    @property
+    def plane_strain(self) -> bool:  # type: ignore[override]
+        """Whether nothing moves along the axis."""
+        return self.ordinary.plane_strain
+
+    @property
+    def flank(self) -> LoadedFlank:  # type: ignore[override]
+        """The loaded flank of ordinary teeth."""
+        return self.ordinary.flank
+
+    @property
+    def face(self) -> FaceFunctions:  # type: ignore[override]
+        """Functions along the face."""
+        return self.ordinary.face
+
+    @property
+    def fillets(self) -> Mapping[Side, SolidFillet]:  # type: ignore[override]
+        """Of ordinary teeth."""
+        return self.ordinary.fillets
+
+    @property
+    def compliance(self) -> Mapping[int, Array]:  # type: ignore[override]
+        """Of ordinary teeth."""
+        return self.ordinary.compliance
+
+    @property
+    def displacement(self) -> Mapping[tuple[int, Side], Array]:  # type: ignore[override]
+        """Of ordinary teeth."""
+        return self.ordinary.displacement
+
+    @property
+    def settings(self) -> SolidSettings:  # type: ignore[override]
+        """Of its section's mesh and of the pressed bands."""
+        return self.ordinary.settings
+
+    @property
+    def reach(self) -> int:  # type: ignore[override]
+        """K: neighbours -K..K are known."""
+        return self.ordinary.reach
+
+    @property
+    def period(self) -> int:  # type: ignore[override]
+        """The gear's teeth."""
+        return self.tooth.teeth
+
+    def same_as(self, first: int, count: int) -> int:
+        """Those from `first` on by themselves where one of them answers otherwise than ordinary teeth."""
+        z = self.period
+        if any(self._touched(first + n) is not None for n in range(min(count, z))):
+            return first % z
+        return self._usual
+
+    @cached_property
+    def _usual(self) -> int:
+        """The first tooth that answers as an ordinary one; -1 where there is none."""
+        return next((tooth for tooth in range(self.period) if self._touched(tooth) is None), -1)
+
+    def _touched(self, tooth: int) -> OddWindow | None:
+        return next((window for window in self.windows if window.near(tooth) in window.touched), None)
+
+    def _window(self, i: int, j: int) -> tuple[OddWindow, int, int] | None:
+        """Where two teeth are known by number and one of them is touched, or one between them."""
+        for window in self.windows:
+            near = window.near(i)
+            other = near + j - i
+            if not window.known(near):
+                other = window.near(j)
+                near = other + i - j
+            low, high = min(near, other), max(near, other)
+            touched = window.touched
+            if window.known(near) and window.known(other) and low <= touched[-1] and high >= touched[0]:
+                return window, near, other
+        return None
+
+    def kind_of(self, tooth: int) -> tuple[LoadedFlank, Mapping[Side, SolidFillet]]:
+        """Flank and fillets of a tooth."""
+        found = self._window(tooth, tooth)
+        if found is None:
+            return self.ordinary.flank, self.ordinary.fillets
+        kind = found[0].kind(found[1])
+        return kind.flank, kind.fillets
+
+    def flank_of(self, tooth: int) -> LoadedFlank:
+        """The loaded flank of a tooth."""
+        return self.kind_of(tooth)[0]
+
+    def coupling(self, i: int, j: int) -> Array:
+        """Approach of the flank of tooth i under forces on that of tooth j, port by port, shape (n_i, n_j)."""
+        found = self._window(i, j)
+        if found is None:
+            return self.ordinary.compliance[i - j]
+        window, near, other = found
+        if near in window.missing or other in window.missing:  # nothing loads it: what it answers must only be sound
+            return self.ordinary.compliance[0] if i == j else self._nothing
+        return window.coupling(near, other)
+
+    @cached_property
+    def _nothing(self) -> Array:
+        return np.zeros_like(self.ordinary.compliance[0])
+
+    def deflection(self, i: int, j: int, watched: Bands, pressed: Bands) -> Array:
+        """c_ij: mean approach of bands on tooth i under a unit force on bands of tooth j, (P, Q) [1/(E module)].
+
+        c_ij(p, q) = c_ji(q, p) exactly.
+        """
+        there, here = (
+            loads_of(one, self.flank_of(k), self.face) for one, k in ((watched, i), (pressed, j))
+        )  # fmt: skip
+        return np.asarray(there.T @ self.coupling(i, j) @ here)
+
+    def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> PressedLines:
+        """Press contact lines on its teeth, by their numbers: see `contact.PressedLines`."""
+        return PressedLines(self, line, spans, teeth)
+
+    def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
+        """As of ordinary teeth."""
+        return self.ordinary.root_end(k, side, pressed)
+
+    def fillet_stress(self, i: int, j: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
+        """Surface stress of a fillet of tooth i per unit force on bands of tooth j, (3, points, Z, P) [1/module^2].
+
+        As of `SolidSolution.fillet_stress`.
+
+        Raises
+        ------
+        RangeError
+            If a place lies off the face, or tooth i is missing.
+        """
+        z = np.atleast_1d(np.asarray(zeta, dtype=float))
+        loads = loads_of(pressed, self.flank_of(j), self.face)
+        found = self._window(i, j)
+        if found is None:
+            return self.ordinary.surface_stress(side, self.ordinary.moved(i - j, side, loads), z)
+        window, near, other = found
+        if near in window.missing or other in window.missing:
+            raise RangeError("tooth", i if near in window.missing else j, "is missing")
+        if (off := z[~(np.abs(z) <= 0.5 * self.width * (1.0 + 1e-9))]).size:
+            half = 0.5 * self.width
+            raise RangeError("zeta", f"{off[0]:.6g} modules", f"is outside the face width, {-half:.6g} to {half:.6g}")
+        moved = window.moved(near, other, side, loads)
+        fillet = window.kind(near).fillets[side]
+        return surface_stress(fillet, self.tau, self.poisson_ratio, moved, *self.face.at(z))
+
+    def largest_root_stress(
+        self, i: int, j: int, side: Side, pressed: Bands, zeta: ArrayLike
+    ) -> tuple[Array, Array]:
+        """Largest tension (or compression) up a fillet of tooth i at places along the face, shape (Z, P) each.
+
+        On either side of the mouth of a crack; value [1/module^2] and arc [modules].
+        """
+        stress = self.fillet_stress(i, j, side, pressed, zeta)[0]
+        shape, sign = stress.shape[1:], 1.0 if side == "tension" else -1.0
+        flat, end = stress.reshape(stress.shape[0], -1), np.tile(self.root_end(i - j, side, pressed), shape[0])
+        found = self._window(i, i)
+        fillet = self.kind_of(i)[1][side]
+        pieces = [(0.0, fillet.length, slice(None))] if found is None else found[0].kind(found[1]).pieces(side)
+        best, place = np.full(flat.shape[1], -np.inf), np.zeros(flat.shape[1])
+        for start, stop, points in pieces:
+            value, arc = extreme(flat[points], fillet.arc[points] - start, sign, np.minimum(end, stop) - start)
+            better = (sign * value > best) & (end > start)
+            best, place = np.where(better, sign * value, best), np.where(better, arc + start, place)
+        return (sign * best).reshape(shape), place.reshape(shape)

@@ -1,0 +1,130 @@
+"""One kind of sector of a solid ring with odd teeth: how its flank and fillets follow its sides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.base.errors import InputError
+from fegear.fem.plane.sector_sides import BetweenSides, between_sides, ports_of
+from fegear.fem.plane.trace import LoadedFlank
+from fegear.fem.solid.dissection import condense_solid
+from fegear.fem.solid.fillet import SolidFillet
+
+if TYPE_CHECKING:
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.solid.sector import SolidSector
+    from fegear.fem.solid.unknowns import Unknowns
+
+#: Nodes of two sides this near to each other are the same [modules].
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class KindOfMotion(ReadOnlyArrays):
+    """Flank and fillets of a sector in motions that are solved apart from others, or in all of them.
+
+    Parameters
+    ----------
+    flank : ndarray of int, shape (n,)
+        Which of the flank's ports.
+    flank_follows : ndarray, shape (n, 2 m)
+        Their motion under that of sides A and B.
+    flank_own : ndarray, shape (n, n)
+        The same under forces on themselves, the sides held.
+    fillets : mapping of {"tension", "compression"} to (ndarray of int, ndarray of int)
+        Which unknowns of a fillet, and with which functions along the face.
+    fillet_follows, fillet_own : mapping of side to ndarray, shape (., 2 m) and (., n)
+        Their motion likewise.
+    """
+
+    flank: Index
+    flank_follows: Array
+    flank_own: Array
+    fillets: Mapping[Side, tuple[Index, Index]]
+    fillet_follows: Mapping[Side, Array]
+    fillet_own: Mapping[Side, Array]
+
+
+@dataclass(frozen=True)
+class SolidKind(ReadOnlyArrays):
+    """What stands in sectors of one kind.
+
+    Parameters
+    ----------
+    flank : LoadedFlank
+    ports : int
+        Of the flank.
+    fillets : mapping of {"tension", "compression"} to SolidFillet
+    axes : mapping of side to ndarray, shape (nodes, 3, 3)
+        Of the fillets' nodes.
+    motions : tuple of KindOfMotion
+    mouth : float
+        Where its crack starts, arc length up the fillet [modules]; NaN without a crack.
+    back : bool
+        Whether that is the fillet of the flank that is not loaded.
+    """
+
+    flank: LoadedFlank
+    ports: int
+    fillets: Mapping[Side, SolidFillet]
+    axes: Mapping[Side, Array]
+    motions: tuple[KindOfMotion, ...]
+    mouth: float = float("nan")
+    back: bool = False
+
+    def pieces(self, side: Side) -> list[tuple[float, float, slice]]:
+        """Start, end and points of the pieces of a fillet: two where a crack starts in it."""
+        fillet = self.fillets[side]
+        if np.isnan(self.mouth) or self.back != (side == "compression"):
+            return [(0.0, fillet.length, slice(None))]
+        n = int(np.searchsorted(fillet.arc, self.mouth))
+        return [(0.0, self.mouth, slice(0, n)), (self.mouth, fillet.length, slice(n, None))]
+
+
+def between(sector: SolidSector, alone: Unknowns) -> BetweenSides:
+    """Condense a sector onto its sides and ports, in motions that are solved apart."""
+    sides = sector.sides
+    inner = np.setdiff1d(np.concatenate([sector.ports, *sector.seen.values()]), np.concatenate(sides))
+    condensed = condense_solid(sector.section, sector.joined, alone, np.concatenate([*sides, inner]))
+    return between_sides(condensed, alone.of(sides[0]).size, None)
+
+
+def motion(sector: SolidSector, alone: Unknowns, part: BetweenSides) -> KindOfMotion:
+    """Flank and fillets of a sector that is condensed between its sides."""
+    follow, ports = np.hstack([part.follow_a, part.follow_b]), sector.ports
+    run = ports_of(part.sector, alone.of(ports))
+    rows = {side: ports_of(part.sector, alone.of(seen)) for side, seen in sector.seen.items()}
+    on_flank = sector.known.number[ports] >= 0
+    return KindOfMotion(
+        np.flatnonzero((alone.number[ports] >= 0)[on_flank]), follow[run], part.own[np.ix_(run, run)],
+        sector.fillet_unknowns(alone), {side: follow[row] for side, row in rows.items()},
+        {side: part.own[np.ix_(row, run)] for side, row in rows.items()},
+    )  # fmt: skip
+
+
+def solid_kind(
+    sector: SolidSector, motions: tuple[KindOfMotion, ...], mouth: float = float("nan"), *, back: bool = False
+) -> SolidKind:
+    """The kind of a sector with a tooth; parameters as of `SolidKind`."""
+    ports = int((sector.known.number[sector.ports] >= 0).sum())
+    axes = {side: sector.section.axes[fillet.nodes] for side, fillet in sector.fillets.items()}
+    return SolidKind(sector.flank, ports, sector.fillets, axes, motions, mouth, back)
+
+
+def refuse_other_sides(sector: SolidSector, ordinary: SolidSector) -> None:
+    """Refuse a sector whose sides are not those of the ordinary one.
+
+    Raises
+    ------
+    InputError
+    """
+    for name in ("side_a", "side_b"):
+        nodes = getattr(sector.section, name), getattr(ordinary.section, name)
+        places = [one.section.places[:, found] for one, found in zip((sector, ordinary), nodes, strict=True)]
+        if places[0].shape != places[1].shape or np.abs(places[0] - places[1]).max() > _SAME:
+            raise InputError("mesh", name, "of an odd sector has other nodes than the ordinary sector's")
