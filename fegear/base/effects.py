@@ -164,10 +164,10 @@ SPACING_ERRORS = Effect(
 ODD_TEETH = Effect(
     "odd_teeth", "Include teeth that differ (`odd_tooth`: crack, missing, hole, pits) over a revolution and in trains.",
     "identical teeth",
-    '`odd_tooth` on a spur gear of a plane (2D) pair with compliance source "fe"', "revolution",
+    '`odd_tooth` on a gear of a plane (2D) pair with compliance source "fe" or of a 3D pair', "revolution",
     {"odd sectors": "gear with odd teeth solved by FE"},
     lambda pair: pair.has("odd_tooth"),
-    ("cracked_tooth", 'results=["mesh-stiffness-revolution"]', "accuracy.tolerance=2e-2"), wide=False,
+    ("cracked_tooth", 'results=["mesh-stiffness-revolution"]', "accuracy.tolerance=2e-2"),
 )  # fmt: skip
 CONTACT_LOSS = Effect(
     "contact_loss", "Loss of contact, backlash and impacts in the time domain.", "teeth always in contact",

@@ -105,8 +105,6 @@ def check_odd_teeth(part: GearKeys) -> None:
     """Refuse odd teeth of gears that are not solved with them, that are no teeth of theirs, and twice given."""
     if not part.odd_tooth:
         return
-    if part.has_helix:
-        raise refuse("is not available for helical gears yet (spur gears only)", "remove it", key="odd_tooth")
     for n, one in enumerate(part.odd_tooth if part.internal else []):
         outline = next((key for key in OUTLINES if getattr(one, key)), None)
         if outline is not None:

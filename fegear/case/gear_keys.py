@@ -147,7 +147,7 @@ class GearKeys(TeethPart):
     odd_tooth: Annotated[list[Table[OddToothPart]], several(OddToothPart)] = Field(
         default_factory=list,
         description="Teeth that differ (crack, missing, broken, shorter, hole, pits), a table for each "
-        "([[gear.NAME.odd_tooth]]); spur gears in plane (2D) pairs; active with effects.odd_teeth.",
+        "([[gear.NAME.odd_tooth]]); active with effects.odd_teeth over a revolution.",
     )
     roughness: Table[RoughnessPart] | None = Field(
         default=None,

@@ -95,9 +95,14 @@ class PitPart(Part):
         description="Share of the face width over which the flank is damaged. Below 1 the remaining face carries the "
         "load of the contact (Hertz). Default: 1.",
     )
+    face_position: Length = Field(
+        default=0.0,
+        description="Face position of the middle of the damage, from mid-face (3D pairs). Default: 0 mm.",
+    )
     depth: LengthOrZero | None = Field(
         default=None,
-        description="Depth normal to the flank, a gap; required with face_share = 1, without effect below 1.",
+        description="Depth normal to the flank, a gap; required with face_share = 1. Below 1 without effect in plane "
+        "(2D) pairs; in 3D pairs a damage without a depth carries no load.",
     )
 
     @property

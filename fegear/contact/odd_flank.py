@@ -13,6 +13,8 @@ from fegear.base.errors import InputError
 from fegear.geometry.relief import UNMODIFIED, Relief
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from fegear.geometry.pair import GearPair, Member
     from fegear.geometry.relief_spec import ReliefSpec
 
@@ -29,12 +31,15 @@ class Pit:
         Share of the face width over which it is gone, 0 to 1.
     depth : float
         Normal to the flank [m].
+    face_position : float
+        Of its middle, from the middle of the gear's face [m]: of teeth with a width.
     """
 
     low: float
     high: float
     face_share: float = 1.0
     depth: float = 0.0
+    face_position: float = 0.0
 
     def at(self, radius: Array) -> Array:
         """Whether contacts at radii lie in it."""
@@ -83,6 +88,20 @@ class OddFlank:
         whole = (np.where(pit.at(radius), pit.depth, 0.0) for pit in self.pits if pit.face_share >= 1.0)
         return np.max([np.zeros(radius.shape), *whole], axis=0)
 
+    def gap_over_face(self, radius: Array, z: Array, face_width: float) -> Array:
+        """What is missing of the flank normal to it at radii and heights on the gear's own face [m].
+
+        Infinite where there is no flank: at pits over a part of the face without a depth, and of a missing tooth.
+        """
+        if self.missing:
+            return np.full(radius.shape, np.inf)
+        found = np.zeros(radius.shape)
+        for pit in self.pits:
+            depth = pit.depth if pit.depth > 0.0 or pit.face_share >= 1.0 else np.inf
+            inside = np.abs(z - pit.face_position) <= 0.5 * pit.face_share * face_width * (1.0 + 1e-9)
+            found = np.where(np.logical_and(pit.at(radius), inside), np.maximum(found, depth), found)
+        return found
+
     def bearing_share(self, radius: Array) -> Array:
         """Share of the face width that is left at radii."""
         part = (np.where(pit.at(radius), 1.0 - pit.face_share, 1.0) for pit in self.pits if pit.face_share < 1.0)
@@ -130,3 +149,23 @@ class ToothProfile:
                 raise error.under(self.prefix, {error.key: named}) from None
         relief, deviation = found
         return replace(flank, relief=relief, deviation=UNMODIFIED if deviation is None else deviation)
+
+
+def odd_flanks(
+    odd: Iterable[tuple[int, OddFlank]],
+    profiles: Iterable[tuple[int, ToothProfile]],
+    pair: GearPair,
+    member: Member,
+    delta: float = math.nan,
+) -> dict[int, OddFlank]:
+    """Flanks of single teeth of a gear of a pair with their profiles, by the number of the tooth in meshing order.
+
+    Raises
+    ------
+    InputError
+        If a profile does not fit the gear.
+    """
+    found = dict(odd)
+    for tooth, profile in profiles:
+        found[tooth] = profile.built_on(found.get(tooth, OddFlank()), pair, member, delta)
+    return found

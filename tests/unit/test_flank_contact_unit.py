@@ -161,10 +161,10 @@ def test_what_lines_do_to_each_other_depends_on_how_many_teeth_lie_between_them(
     """Not on what the pairs are numbered."""
     flanks, _ = known
     lines = contact_lines(flanks.pair, flanks.roll, flanks.panel * MODULE)
-    beside = compliance._beside(flanks.pair, flanks.gears, lines, 0)
+    beside = compliance._beside(flanks.pair, flanks.gears, lines)
     assert np.abs(beside).max() > 0.0
     further = replace(lines, pair=np.where(lines.present, lines.pair + 7, lines.pair))
-    np.testing.assert_allclose(compliance._beside(flanks.pair, flanks.gears, further, 0), beside, rtol=1e-12)
+    np.testing.assert_allclose(compliance._beside(flanks.pair, flanks.gears, further), beside, rtol=1e-12)
 
 
 def test_compliances_are_symmetric_and_forces_sum_to_the_load(known):

@@ -36,20 +36,12 @@ class OddLines:
     lines: ThinLines
     factors: list
 
-    @property
-    def common(self):
-        return self.lines.common
-
-    def own(self):
-        return [f * block for f, block in zip(self.factors, self.lines.own(), strict=True)]
-
-    def widened(self, half_width):
-        return self.lines.widened(half_width)
-
     def between(self, i, j, pairs):
         blocks = self.lines.between(i, j, pairs)
+        own = self.lines.own()
         return [
-            math.sqrt(self.factors[a] * self.factors[b]) * block for (a, b), block in zip(pairs, blocks, strict=True)
+            block + (self.factors[a] - 1.0) * own[a] if a == b else math.sqrt(self.factors[a] * self.factors[b]) * block
+            for (a, b), block in zip(pairs, blocks, strict=True)
         ]
 
 
@@ -64,6 +56,13 @@ class Odd:
         if name.startswith("__"):
             raise AttributeError(name)
         return getattr(self.base, name)
+
+    @property
+    def usual(self):
+        return self.base
+
+    def differ(self, i, j):
+        return bool({i % self.period, j % self.period} & SOFTER.keys())
 
     def same_as(self, first, count):
         window = {(first + n) % self.period for n in range(count)}

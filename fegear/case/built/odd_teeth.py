@@ -15,6 +15,7 @@ from fegear.case.built.odd_gears import odd_gears_of, on_other_flank
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
 from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
+from fegear.fem.plane.odd.crack import Crack
 from fegear.fem.plane.odd.hole import Hole, hole_at, refuse_hole
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 from fegear.fem.teeth import meshing_order
@@ -22,7 +23,6 @@ from fegear.fem.teeth import meshing_order
 if TYPE_CHECKING:
     from fegear.case.odd_tooth import CrackPart, HolePart, OddToothPart, PitPart
     from fegear.case.reading import Scene
-    from fegear.fem.plane.odd.crack import Crack
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import Member
 
@@ -56,6 +56,10 @@ class OddTeeth:
     def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing | Hole]:
         """Cracks and outlines by the tooth's own number, as of `fegear.fem.teeth`."""
         return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
+
+    def in_solid(self, teeth: int) -> dict[int, Crack | Missing]:
+        """Cracked and missing teeth by the tooth's own number: those of which a 3D gear's body differs."""
+        return {number: one for number, one in self.by_number(teeth).items() if isinstance(one, Crack | Missing)}
 
     def on_other_flank(self) -> OddTeeth:
         """The same teeth as the gear that they drive loads them, on the flank that is not said to be loaded.
@@ -188,7 +192,7 @@ def _pit(gear: Gear, part: PitPart, prefix: str) -> Pit:
             f"{prefix}.{key}", f"{low * scale:.6g} to {high * scale:.6g} mm",
             f"is outside the flank, {start * scale:.6g} to {end * scale:.6g} mm",
         )  # fmt: skip
-    return Pit(low, high, part.face_share, part.depth or 0.0)
+    return Pit(low, high, part.face_share, part.depth or 0.0, part.face_position)
 
 
 def crack_of(gear: Gear, part: CrackPart, prefix: str) -> Crack:

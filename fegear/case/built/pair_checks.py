@@ -156,15 +156,10 @@ def check_wide_pair(scene: Scene, name: str) -> None:
     refuse_unloaded(_bare(scene, name, over_face=True))
     if effects.misalignment:
         _check_misalignment(scene, name)
-    odd = [gear for gear in (part.driver, part.driven) if scene.case.gear[gear].odd_tooth]
-    if effects.odd_teeth and odd:
-        raise InputError(
-            f"gear.{odd[0]}.odd_tooth", "(given)", f"is not available for 3D pairs yet (pair {name})",
-            f'set pair.{name}.width = "plane", or switch effects.odd_teeth off',
-        )  # fmt: skip
     spec = pair_spec(scene, name, over_face=True)
     gears = scene.case.gear.values()
-    if effects.relief and not (spec.face.cutter or any(gear.relieved or gear.over_face for gear in gears)):
+    own = effects.odd_teeth and any(tooth.profiled for gear in gears for tooth in gear.odd_tooth)
+    if effects.relief and not (own or spec.face.cutter or any(gear.relieved or gear.over_face for gear in gears)):
         raise InputError(
             "effects.relief", "true", "has no effect: no gear of this case has relief, lead, bias or topography",
             f"specify gear.{part.driver}.relief or lead, or switch the effect off",

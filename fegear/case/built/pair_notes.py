@@ -26,6 +26,26 @@ def pair_notes(scene: Scene, spec: PairSpec) -> tuple[str, ...]:
     return notes
 
 
+def odd_teeth_notes(scene: Scene, name: str) -> tuple[str, ...]:
+    """Where the odd teeth of a 3D pair count."""
+    gears = dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS)
+    return tuple(note for gear in gears for note in _odd_teeth(scene, gear, wide=True))
+
+
+def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
+    if not scene.case.gear[gear].odd_tooth:
+        return []
+    if not scene.case.effects.odd_teeth:
+        return [neglecting(f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth).")]
+    where = (
+        "results over a revolution only (mesh-stiffness-revolution)"
+        if wide
+        else "results over a revolution, of the train and of the gear only (mesh-stiffness-revolution, "
+        "stress-intensity, odd-tooth-stiffness, planet-revolution, FMU)"
+    )
+    return [neglecting(f"Gear {gear}: odd_tooth counts in {where}; here all teeth are identical.")]
+
+
 def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
@@ -41,6 +61,7 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
             )
         if part.spacing_errors is not None and not effects.spacing_errors:
             notes.append(neglecting(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch)."))
+<<<<<<< HEAD
         if part.odd_tooth:
             notes.append(
                 neglecting(
@@ -51,6 +72,9 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
                     else f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth)."
                 )
             )
+=======
+        notes += _odd_teeth(scene, gear, wide=False)
+>>>>>>> 590a3d19 (3D pairs with cracked, missing, pitted and reprofiled teeth over a revolution: odd solid gears as flank bodies, gaps by tooth, results by the keys of plane pairs)
         if part.over_face:
             notes.append(
                 neglecting(

@@ -192,8 +192,8 @@ def check_solid_gear(scene: Scene, name: str) -> None:
         )  # fmt: skip
     from fegear.fem.solid.settings import check_solid
 
-    with _keys_of_the_case(name):
-        check_solid(*_in_modules(scene.gears[name]), solid_settings_of(scene, name), None, 0)
+    with keys_of_the_case(name):
+        check_solid(*parts_in_modules(scene.gears[name]), solid_settings_of(scene, name), None, 0)
 
 
 def check_ends(scene: Scene, name: str, pairs: Iterable[str]) -> None:
@@ -238,14 +238,14 @@ def _uneven(part: GearBodyPart) -> tuple[str, str]:
     return key, f"{getattr(part, key) * 1e3:.6g} mm"
 
 
-def _in_modules(gear: Gear) -> tuple[InvoluteSide, float, float, float]:
+def parts_in_modules(gear: Gear) -> tuple[InvoluteSide, float, float, float]:
     """Tooth, twist, width and Poisson's ratio of a gear of module 1, what its solid is made of."""
     tau, width = gear.flank_twist * gear.module, gear.face_width / gear.module
     return gear.tooth, tau, width, gear.material.poisson_ratio
 
 
 @contextmanager
-def _keys_of_the_case(name: str) -> Iterator[None]:
+def keys_of_the_case(name: str) -> Iterator[None]:
     """What the solid of a gear refuses, under the gear's keys."""
     try:
         yield
@@ -265,9 +265,9 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     from fegear.fem.solid.influence import solid_influence
 
     gear, cache = asked.gear, cache or SolutionCache()
-    with _keys_of_the_case(asked.name):
+    with keys_of_the_case(asked.name):
         found = solid_influence(
-            *_in_modules(gear),
+            *parts_in_modules(gear),
             gear.bore_radius / gear.module,
             asked.settings,
             reach=asked.reach,

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.contact.odd_flank import OddFlank
+from fegear.contact.odd_flank import odd_flanks
 from fegear.contact.plane.engagement import Engagement
 from fegear.geometry.pair import MEMBERS
 
@@ -74,11 +74,12 @@ def relieved(spec: PairSpec, engagement: Engagement) -> Engagement:
     driver, driven = (flank.profile(pair, member, delta) for member, flank in zip(MEMBERS, spec.both, strict=True))
     found = replace(engagement, driver_relief=driver, driven_relief=driven)
     if any(flank.profiles for flank in spec.both):
-        odd = [dict(engagement.driver_odd), dict(engagement.driven_odd)]
-        for flanks, member, flank in zip(odd, MEMBERS, spec.both, strict=True):
-            for tooth, profile in flank.profiles:
-                flanks[tooth] = profile.built_on(flanks.get(tooth, OddFlank()), pair, member, delta)
-        found = replace(found, driver_odd=odd[0], driven_odd=odd[1])
+        odd = (engagement.driver_odd, engagement.driven_odd)
+        first, second = (
+            odd_flanks(flanks.items(), flank.profiles, pair, member, delta)
+            for flanks, member, flank in zip(odd, MEMBERS, spec.both, strict=True)
+        )
+        found = replace(found, driver_odd=first, driven_odd=second)
     return found
 
 

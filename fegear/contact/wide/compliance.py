@@ -166,11 +166,14 @@ def flank_compliance(
     mean = _line_means(lines, b)
     # Apart, so that a changed load has little to find anew, and changed gaps nothing.
     known = cache or SolutionCache()
-    first = like_cycle(gears, lines, cycle)
-    own = known.call_kept(_PLAIN, _own, pair, gears, lines, first).value
-    matrix = own + known.call_kept(_PLAIN, _widened, pair, gears, lines, b, mean, first).value
+    usual = {member: gears[member].usual for member in MEMBERS}
+    own = known.call_kept(_PLAIN, _own, pair, usual, lines).value
+    matrix = own + known.call_kept(_PLAIN, _widened, pair, usual, lines, b, mean).value
     if coupling:
-        matrix += known.call_kept(_PLAIN, _beside, pair, gears, lines, first).value
+        matrix += known.call_kept(_PLAIN, _beside, pair, usual, lines).value
+    if any(usual[member] is not gears[member] for member in MEMBERS):
+        first = like_cycle(gears, lines, cycle)
+        matrix += known.call(_by_odd_teeth, pair, gears, lines, first, coupling=coupling).value
     index = np.arange(lines.x.shape[1])
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
     log_slope = sum(gears[m].contact_slope / pair.gear(m).material.young_modulus for m in MEMBERS)
@@ -198,13 +201,13 @@ def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]
     return places, [slice(a, b) for a, b in itertools.pairwise(ends)]
 
 
-def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> Array:
+def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
     """What each line does to itself under contacts of half-width one metre, less what `_widened` adds, (P, M, M)."""
     module = pair.driver.module
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
         softer, log = _softer(pair, member), 2.0 * math.log(module) * gears[member].contact_slope
-        for places, pressed in _pressed(pair, gears, member, lines, cycle):
+        for places, pressed in _pressed(pair, gears, member, lines):
             for (p, s), own, common in zip(places, pressed.own(), pressed.common, strict=True):
                 matrix[p, s, s] += softer * (own + log * common)
     return matrix
@@ -216,13 +219,12 @@ def _widened(
     lines: ContactLines,
     half_width: Array,
     mean: Array,
-    cycle: int,
 ) -> Array:
     """What half-widths change, those of the stations and of their lines, (P, M) [m]; cheap, shape (P, M, M)."""
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
         softer, slope = _softer(pair, member), gears[member].contact_slope
-        for places, pressed in _pressed(pair, gears, member, lines, cycle):
+        for places, pressed in _pressed(pair, gears, member, lines):
             width = np.concatenate([half_width[p, s] for p, s in places]) / pair.driver.module
             for (p, s), wider, common in zip(places, pressed.widened(width), pressed.common, strict=True):
                 matrix[p, s, s] += softer * (wider - 2.0 * math.log(mean[p, s.start]) * slope * common)
@@ -230,29 +232,54 @@ def _widened(
 
 
 @tallied("neighbours")
-def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> Array:
+def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
     """What the lines of each roll position do to each other, shape (P, M, M); its transpose by Maxwell."""
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
         body, softer = gears[member], _softer(pair, member)
-        for places, pressed in _pressed(pair, gears, member, lines, cycle):
-            tooth = _teeth(member, lines, places, cycle)
-            found: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for places, pressed in _pressed(pair, gears, member, lines):
+            tooth = _teeth(member, lines, places)
+            found: dict[int, list[tuple[int, int]]] = {}
             for _, group in itertools.groupby(range(len(places)), key=lambda line: places[line][0]):
                 for a, b in itertools.combinations(group, 2):
                     if abs(k := tooth[a] - tooth[b]) <= body.reach:
-                        like = body.same_as(min(tooth[a], tooth[b]), abs(k) + 1)
-                        found.setdefault((k, like), []).append((a, b))
-            for pairs in found.values():
-                i, j = (tooth[line] for line in pairs[0])
-                for (a, b), block in zip(pairs, pressed.between(i, j, pairs), strict=True):
+                        found.setdefault(k, []).append((a, b))
+            for k, pairs in found.items():
+                for (a, b), block in zip(pairs, pressed.between(k, 0, pairs), strict=True):
                     (p, first), (_, second) = places[a], places[b]
                     matrix[p, first, second] += softer * block
                     matrix[p, second, first] += softer * block.T
     return matrix
 
 
-def _teeth(member: Member, lines: ContactLines, places: Sequence[tuple[int, slice]], cycle: int) -> list[int]:
+def _by_odd_teeth(
+    pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int, *, coupling: bool
+) -> Array:
+    """What teeth that differ change of both, shape (P, M, M): what is near the contacts stays as it is."""
+    matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
+    for member in MEMBERS:
+        body, softer = gears[member], _softer(pair, member)
+        line, (places, spans) = line_bands(pair, member, body, lines), places_of(lines)
+        tooth = _teeth(member, lines, places, cycle)
+        found: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for _, group in itertools.groupby(range(len(places)), key=lambda number: places[number][0]):
+            for a, b in itertools.combinations_with_replacement(group, 2):
+                i, j = tooth[a], tooth[b]
+                if (i == j or (coupling and abs(i - j) <= body.reach)) and body.differ(i, j):
+                    found.setdefault((i, j), []).append((a, b))
+        odd, usual = (one.pressed(line, spans, tooth) for one in (body, body.usual))
+        for (i, j), pairs in found.items():
+            blocks = odd.between(i, j, pairs), usual.between(i, j, pairs)
+            for (a, b), new, old in zip(pairs, *blocks, strict=True):
+                (p, first), (_, second) = places[a], places[b]
+                change = softer * (new - old)
+                matrix[p, first, second] += change
+                if a != b:
+                    matrix[p, second, first] += change.T
+    return matrix
+
+
+def _teeth(member: Member, lines: ContactLines, places: Sequence[tuple[int, slice]], cycle: int = 0) -> list[int]:
     """Numbers of a gear's teeth on contact lines in a base pitch."""
     forward = 1 if member == "driver" else -1
     return [forward * (int(lines.pair[p, s.start]) - cycle) for p, s in places]
@@ -264,7 +291,7 @@ def _softer(pair: GearPair, member: Member) -> float:
 
 
 def _pressed(
-    pair: GearPair, gears: Mapping[Member, FlankBody], member: Member, lines: ContactLines, cycle: int
+    pair: GearPair, gears: Mapping[Member, FlankBody], member: Member, lines: ContactLines
 ) -> Iterator[tuple[list[tuple[int, slice]], FlankLines]]:
     """Press the lines on one gear, those of some roll positions at a time: where they stand, and what they answer."""
     body = gears[member]
@@ -276,7 +303,7 @@ def _pressed(
         start, stop = spans[some[0]].start, spans[some[-1]].stop
         moved = [slice(spans[i].start - start, spans[i].stop - start) for i in some]
         here = [places[i] for i in some]
-        yield here, body.pressed(line.part(slice(start, stop)), moved, _teeth(member, lines, here, cycle))
+        yield here, body.pressed(line.part(slice(start, stop)), moved, _teeth(member, lines, here))
 
 
 def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:

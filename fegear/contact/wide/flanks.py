@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from fegear.contact.odd_flank import odd_flanks
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.geometry.pair import MEMBERS
 
@@ -36,4 +37,8 @@ def open_gaps(spec: PairSpec) -> FlankGaps:
             apart, driver_spacing=spec.driver.spacing, driven_spacing=spec.driven.spacing,
             base_pitch=spec.face.base_pitch,
         )  # fmt: skip
-    return apart
+    first_odd, second_odd = (
+        tuple(odd_flanks(flank.odd, flank.profiles if spec.relief else (), pair, member).items())
+        for member, flank in zip(MEMBERS, spec.both, strict=True)
+    )
+    return replace(apart, driver_odd=first_odd, driven_odd=second_odd) if first_odd or second_odd else apart

@@ -6,7 +6,9 @@ unmodified, aligned flanks touch.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +21,9 @@ from fegear.geometry.flank_modification import FlankModification
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.geometry.shaft_tilt import PARALLEL, ShaftTilt
+
+if TYPE_CHECKING:
+    from fegear.contact.odd_flank import OddFlank
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,9 @@ class FlankGaps(ReadOnlyArrays):
         Which teeth meet: pair j is on teeth base_pitch - j.
     shafts : ShaftGaps
         What the shafts of a gearbox open as its meshes load them.
+    driver_odd, driven_odd : tuple of (int, OddFlank)
+        Flanks of single teeth that differ, by their number in the order of meshing. Gaps are infinite where there is
+        no flank: of a missing tooth, and at pits over a part of the face without a depth.
     """
 
     driver_relief: Relief = UNMODIFIED
@@ -55,6 +63,8 @@ class FlankGaps(ReadOnlyArrays):
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     base_pitch: int = 0
     shafts: ShaftGaps = RIGID
+    driver_odd: tuple[tuple[int, OddFlank], ...] = ()
+    driven_odd: tuple[tuple[int, OddFlank], ...] = ()
 
     def under(self, load: float) -> FlankGaps:
         """The same with the shafts as they are under one load [N]."""
@@ -77,6 +87,8 @@ class FlankGaps(ReadOnlyArrays):
         gap = self.of_pair(lines.pair, lines.z)
         for member in MEMBERS:
             gap = gap + self.removed(member, lines.roll_angle(pair, member), lines.z + pair.face_height(member))
+        for member in MEMBERS if self.driver_odd or self.driven_odd else ():
+            gap = gap + self._of_odd_teeth(pair, member, lines)
         if self.tilt != PARALLEL:
             note("misaligned flanks")
             gap = gap + self.tilt.gap(pair, lines.x, lines.z)
@@ -87,6 +99,25 @@ class FlankGaps(ReadOnlyArrays):
             bent = self.shafts.at(lines.x, lines.z, load)
             gap = bent + (gap if load is None else gap[..., None])
         return np.asarray(gap)
+
+    def _of_odd_teeth(self, pair: GearPair, member: Member, lines: ContactLines) -> Array:
+        """What single teeth of a gear have of gaps besides, shape (P, M) [m]."""
+        gear, found = pair.gear(member), np.zeros(lines.x.shape)
+        usual, flanks = (
+            (self.driver_relief, self.driver_odd) if member == "driver" else (self.driven_relief, self.driven_odd)
+        )
+        for order, flank in flanks:
+            on = lines.present & (np.mod(self.base_pitch - lines.pair, gear.teeth) == order)
+            if not on.any():
+                continue
+            note("odd flanks")
+            roll = lines.roll_angle(pair, member)[on]
+            if flank.relief is not None:
+                found[on] += flank.relief.removal(roll) - usual.removal(roll)
+            z, lean = lines.z[on] + pair.face_height(member), math.cos(gear.base_helix_angle)
+            found[on] += flank.deviation.removal(roll)
+            found[on] += flank.gap_over_face(lines.radius(pair, member)[on], z, gear.face_width) / lean
+        return found
 
     def removed(self, member: Member, roll: Array, z: Array) -> Array:
         """What is missing from a gear's flank at roll angles [rad] and heights on its own face [m]."""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
-from fegear.base.errors import ConvergenceError
+from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.tally import note, tallied
 from fegear.contact.wide.averages import GAUSS, LocalMatrix
 
@@ -103,7 +103,7 @@ def solve_contact(
     known : FlankCompliance
     gap : ndarray, shape (P, M) or (P, M, L)
         Distance of the unloaded flanks at the stations along the line of action [m], removal positive; the last of
-        them one for each load.
+        them one for each load. Infinite where a flank is missing.
     load : ndarray, shape (L,) or (P, L)
         Total loads along the transverse line of action [N], positive: the same at all roll positions, or each its own.
     most_steps : int
@@ -117,25 +117,34 @@ def solve_contact(
 
     Raises
     ------
+    InputError
+        If no flank is left at some roll position.
     ConvergenceError
         If the compliances are not positive definite.
     """
     lines = known.lines
     positions, most = lines.x.shape
     cases = load.shape[-1]
+    there = lines.present & np.isfinite(gap if gap.ndim == 2 else gap[..., 0])
+    if not there.any(axis=1).all():
+        raise InputError(
+            "odd_tooth", "(given)", "leaves no tooth pair in contact at some roll positions",
+            "set effects.corner_contact = true",
+        )  # fmt: skip
+    gap = gap if there.sum() == lines.present.sum() else _as_beside(there, lines.present, gap)
     averaged = np.moveaxis(averaged_gaps(lines, gap, cases), 2, 1).reshape(-1, most)
     place = np.repeat(np.arange(positions), cases)
     total = np.broadcast_to(load, (positions, cases)).ravel()
-    nearest = np.where(lines.present[place], averaged, np.inf).min(axis=1)
+    nearest = np.where(there[place], averaged, np.inf).min(axis=1)
     found = _Found(
         np.zeros((place.size, most)), np.zeros(place.size), np.zeros(place.size), np.zeros(place.size)
     )  # fmt: skip
     at_a_time, steps = max(1, _ENTRIES // most**2), 0
     for start in range(0, place.size, at_a_time):
         part = slice(start, start + at_a_time)
-        apart = np.where(lines.present[place[part]], averaged[part] - nearest[part, None], 0.0)
+        apart = np.where(there[place[part]], averaged[part] - nearest[part, None], 0.0)
         own = _Found(*(one[part] for one in found))
-        steps = max(steps, _solve(known, place[part], apart, total[part], own, most_steps))
+        steps = max(steps, _solve(known, there, place[part], apart, total[part], own, most_steps))
         own.approach[:] += nearest[part]
         if progress is not None:
             progress(min(1.0, (start + at_a_time) / place.size))
@@ -144,6 +153,15 @@ def solve_contact(
     return Contact(
         forces, found.approach.reshape(shape), found.stiffness.reshape(shape), found.residual.reshape(shape), steps
     )
+
+
+def _as_beside(there: Mask, present: Mask, gap: Array) -> Array:
+    """Gaps where flanks are missing as at the stations beside them, whose averages stay what they are."""
+    found = gap.copy()
+    for p in np.flatnonzero((present & ~there).any(axis=1)):
+        own, at = np.flatnonzero(there[p]), np.flatnonzero(present[p] & ~there[p])
+        found[p, at] = gap[p, own[np.abs(at[:, None] - own).argmin(axis=1)]]
+    return found
 
 
 class _Found(NamedTuple):
@@ -156,12 +174,15 @@ class _Found(NamedTuple):
 
 
 def _solve(
-    known: FlankCompliance, place: Index, apart: Array, total: Array, found: _Found, most_steps: int
+    known: FlankCompliance, there: Mask, place: Index, apart: Array, total: Array, found: _Found, most_steps: int
 ) -> int:  # fmt: skip
-    """Solve problems at once: place, gaps beyond the nearest and load of each; returns the steps of the slowest."""
+    """Solve problems at once: place, gaps beyond the nearest and load of each; returns the steps of the slowest.
+
+    `there` says where flanks are, shape (P, M).
+    """
     lines = known.lines
     index = np.arange(place.size)
-    active = lines.present[place]
+    active = there[place]
     v = lines.support[place] / lines.length[place][:, None] * total[:, None]
     steps = 0
     while index.size:
@@ -178,13 +199,13 @@ def _solve(
         distance = np.einsum("bij,bj->bi", matrix, np.where(active, new, 0.0)) + constant + apart[index] - z[:, None]
         leaves = active & (new <= 0.0)
         scale = np.abs(z)[:, None] + apart[index]
-        enters = lines.present[here] & ~active & (distance < -1e-13 * scale)
+        enters = there[here] & ~active & (distance < -1e-13 * scale)
         close = (np.abs(kept - v) <= 1e-9 * np.abs(v) + 1e-12 * w[:, None]).all(axis=1)
         changes = leaves | enters
         done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
         at = index[done]
         found.force[at], found.approach[at], found.stiffness[at] = kept[done], z[done], rate[done]
-        wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * lines.present[here]
+        wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * there[here]
         found.residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
         if steps > _MANY_AT_ONCE:
             least = np.argmax(changes, axis=1)

@@ -265,6 +265,8 @@ def _plain(item: object, kinds: tuple[type, ...]) -> object:
         return {"kind": type(item).__name__, "fields": fields}
     if isinstance(item, dict):
         return {key: _plain(value, kinds) for key, value in item.items()}
+    if isinstance(item, tuple):
+        return tuple(_plain(value, kinds) for value in item)
     return item
 
 
@@ -274,6 +276,8 @@ def _restored(data: bytes | memoryview, tooth: InvoluteSide, kinds: tuple[type, 
     of_tooth = {kind for kind in kinds if any(one.name == "tooth" for one in dataclasses.fields(kind))}
 
     def build(item: object) -> object:
+        if isinstance(item, tuple):
+            return tuple(build(value) for value in item)
         if not isinstance(item, dict):
             return item
         if set(item) == {"kind", "fields"}:

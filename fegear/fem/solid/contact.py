@@ -96,9 +96,7 @@ class PressedLines:
         answers = self._answered([(tooth, tooth) for tooth in self._teeth], every)
         for span, common, loads, answer in zip(self._spans, self.common, self._loads, answers, strict=True):
             taken = seen[span] @ moments[:, span] - 2.0 * logs[span, None]
-            block = loads.T @ answer + solution.contact_slope * (
-                _narrow(solution, line.part(span)) + 0.5 * common
-            )
+            block = loads.T @ answer + solution.contact_slope * (_narrow(solution, line.part(span)) + 0.5 * common)
             block -= 0.5 * (slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
             found.append(block)
         return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -69,6 +69,10 @@ class FlankBody(Teeth, Protocol):
     def contact_slope(self) -> float:
         """What of a line load's approach goes with -2 ln b, b its half-width."""
 
+    @property
+    def usual(self) -> FlankBody:
+        """The same gear, all its teeth alike: itself where they are."""
+
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]."""
 
@@ -77,6 +81,9 @@ class FlankBody(Teeth, Protocol):
 
     def pressed(self, line: Bands, spans: Sequence[slice], teeth: Sequence[int]) -> FlankLines:
         """Press contact lines on its teeth, by their numbers."""
+
+    def differ(self, i: int, j: int) -> bool:
+        """Whether forces on tooth j move tooth i otherwise than in the `usual` gear."""
 
 
 class TwistedFlank(AlikeTeeth):
@@ -90,6 +97,15 @@ class TwistedFlank(AlikeTeeth):
     compliance: Mapping[int, Array]
     reach: int
     settings: SolidSettings
+
+    @property
+    def usual(self) -> Self:
+        """Itself: all teeth are alike."""
+        return self
+
+    def differ(self, i: int, j: int) -> bool:  # noqa: ARG002  (all are alike)
+        """Never."""
+        return False
 
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""

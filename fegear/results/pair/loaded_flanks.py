@@ -11,6 +11,7 @@ from fegear.base.notes import exceeding, failing, neglecting
 from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
+from fegear.case.built.pair_notes import odd_teeth_notes
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import on_shafts
 from fegear.case.built.table_ends import table_end_notes
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.on_shafts import LoadedShafts
 
 #: Where the shafts of a case come from (`fegear.results.shafts.loaded_shafts`).
-_SHAFTS = Task("loaded-shafts", "all")
+SHAFTS = Task("loaded-shafts", "all")
 #: Share of the mean transmission error that gaps may be off by without a remark.
 _UNREMARKED = 0.02
 #: So many loaded places at a roll position tell too little of the load along a contact line.
@@ -58,15 +59,16 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
 
 def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
     spec = pair_spec(scene, name, over_face=True)
-    return AskedOfTeeth.of(scene, spec, (*half_notes(scene.case, name), *table_end_notes(spec)))
+    notes = (*half_notes(scene.case, name), *table_end_notes(spec), *odd_teeth_notes(scene, name))
+    return AskedOfTeeth.of(scene, spec, notes)
 
 
 def _compute(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedWidePair:
     from fegear.contact.wide.maker import load_wide
 
     spec = asked.spec
-    if _SHAFTS in upstream:
-        spec = spec.on(cast("LoadedShafts", upstream[_SHAFTS]).gaps_of(spec.name))
+    if SHAFTS in upstream:
+        spec = spec.on(cast("LoadedShafts", upstream[SHAFTS]).gaps_of(spec.name))
     solved = [solid_solution_of(upstream, gear) for gear in spec.gears]
     pair = load_wide(spec, solved, cache=work.cache, progress=work.progress, estimates=asked.estimates)
     return replace(pair, neglected=pair.neglects(asked.answers, asked.loads)) if asked.neglected else pair
@@ -142,7 +144,7 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     gears = needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
-    return (*gears, _SHAFTS) if scene.case.effects.misalignment and on_shafts(scene, name) else gears
+    return (*gears, SHAFTS) if scene.case.effects.misalignment and on_shafts(scene, name) else gears
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -160,6 +162,9 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 _SHEET = Sheet(remarks=(_remarks,), settings=_settings)
 
 
+cites = citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2"))
+
+
 LOADED_FLANKS = Stage(
     subjects=wide_pairs,
     inputs=_inputs,
@@ -167,6 +172,6 @@ LOADED_FLANKS = Stage(
     present=_SHEET.present,
     needs=_needs,
     check=check_wide_pair,
-    cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
+    cites=cites,
     forecast=_forecast,
 )

@@ -102,6 +102,11 @@ def wide_pairs(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in flank_pairs(scene) if name in scene.wide_pairs) or tuple(scene.wide_pairs)
 
 
+def solid_pairs(scene: Scene) -> tuple[str, ...]:
+    """Those of solid gears."""
+    return tuple(name for name in wide_pairs(scene) if scene.width_of(name) == "solid")
+
+
 def _fine(_scene: Scene, _name: str) -> None:
     return None
 
@@ -131,6 +136,8 @@ class Kind:
 PLANE = Kind("loaded-pair", (*PLANE_EFFECTS, *ROOT_EFFECTS), needs_solution, check_relief)
 #: Stage of plane pairs with odd teeth, whose results go over a revolution.
 ODD = "odd-pair"
+#: That of 3D pairs, with or without odd teeth.
+ODD_WIDE = "odd-flanks"
 WIDE = Kind("loaded-flanks", WIDE_EFFECTS, needs_solid_solution)
 
 
@@ -151,6 +158,8 @@ def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def over_revolution_task(scene: Scene, name: str) -> Task:
     """The task that loads a pair with the odd teeth of its gears, if they have any."""
+    if name in scene.wide_pairs:
+        return Task(ODD_WIDE, name)
     return Task(ODD if odd_gears_of(scene, name) else kind_of(scene, name).stage, name)
 
 

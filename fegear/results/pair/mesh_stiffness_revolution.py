@@ -6,20 +6,22 @@ stress of every tooth; orders and condition indicators.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index
-from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS
+from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS, WIDE_EFFECTS
 from fegear.base.notes import neglecting
 from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
-from fegear.case.built.odd_gears import odd_gears_of
+from fegear.case.built.odd_gears import odd_gears_in
+from fegear.case.built.odd_solid_teeth import check_odd_wide_pair
 from fegear.case.built.odd_teeth import odd_teeth_in
 from fegear.case.built.pair_checks import check_odd_teeth
+from fegear.case.built.pair_spec import pair_spec
 from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
 from fegear.contact.plane.odd_compliance import OddCompliance
 from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
@@ -42,13 +44,14 @@ from fegear.fem.teeth import meshing_order
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS
-from fegear.results.pair.loaded_teeth import check_teeth, over_revolution_task, plane_pairs
+from fegear.results.pair.loaded_teeth import ODD_WIDE, check_teeth, over_revolution_task, plane_pairs, solid_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.contact.wide.over_revolution import RevolvingFlanks
     from fegear.engine.sheet.seen import Seen
 
 #: Even steps over a base pitch.
@@ -57,8 +60,8 @@ POSITIONS = 100
 INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor")
 #: Changes of deflections so small beside the transmission error are none.
 _EXACT = 1e-6
-#: Seconds of a base pitch.
-_PITCH = 0.04
+#: Seconds of a base pitch of plane teeth; of a station of 3D pairs at a roll position, and again in each base pitch.
+_PITCH, _STATION, _AGAIN = 0.04, 2.5e-3, 3e-4
 
 
 @dataclass(frozen=True)
@@ -114,6 +117,7 @@ class RevolutionData:
     indicators: ConditionIndicators
     stress: tuple[StressByTooth, ...]
     faces: tuple[FacesInMesh, ...] = ()
+    positions: int = POSITIONS
 
     @cached_property
     def along(self) -> AlongRevolution:
@@ -193,7 +197,7 @@ class RevolutionData:
 
 def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     """Odd teeth and names of a pair's gears."""
-    part, odd = scene.case.pair[name], odd_gears_of(scene, name)
+    part, odd = scene.case.pair[name], odd_gears_in(scene, name)
     gears = part.driver, part.driven
     known = [(m, odd_teeth_in(scene, name, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
     cracked = tuple((member, tuple(sorted(tooth for tooth, _ in one.cracks))) for member, one in known)
@@ -202,7 +206,9 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
 
 
 def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> RevolutionData:
-    (found,) = upstream.values()
+    ((task, found),) = upstream.items()
+    if task.stage == ODD_WIDE:
+        return _of_wide(asked, cast("RevolvingFlanks", found), work)
     loaded = cast("LoadedPair", found)
     pair = loaded.pair
     over = over_revolution(loaded.engagement, loaded.nominal, POSITIONS, loaded.shifted, pair.driver.teeth)
@@ -212,9 +218,26 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
         for member, gear in zip(MEMBERS, asked.gears, strict=True)
         if loaded.spec.compliance == "fe" and loaded.spec.table is None
     )
+    return _data(asked, pair, over, stress, tuple(_faces(asked, loaded, over)))
+
+
+def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) -> RevolutionData:
+    from fegear.contact.wide.over_revolution import wide_over_revolution
+
+    over = wide_over_revolution(revolving, revolving.pair.driver.teeth, work.progress)
+    return replace(_data(asked, revolving.pair, over), positions=revolving.flanks.positions)
+
+
+def _data(
+    asked: RevolutionInputs,
+    pair: GearPair,
+    over: OverRevolution,
+    stress: tuple[StressByTooth, ...] = (),
+    faces: tuple[FacesInMesh, ...] = (),
+) -> RevolutionData:
     odd = [pair.gear(member).teeth for member, _ in asked.odd] or [pair.driver.teeth]
     orders, indicators = revolution_orders(over), condition_indicators(over, odd)
-    return RevolutionData(pair, over, orders, indicators, stress, tuple(_faces(asked, loaded, over)))
+    return RevolutionData(pair, over, orders, indicators, stress, faces)
 
 
 def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) -> Iterator[FacesInMesh]:
@@ -356,13 +379,19 @@ _SHEET = Sheet(
         _closing,
         _not_listed,
     ),
-    settings={"positions": lambda _seen: POSITIONS, "base_pitches_solved": "found.solved"},
+    settings={"positions": "positions", "base_pitches_solved": "found.solved"},
 )  # fmt: skip
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     pair = scene.pairs[name]
-    odd = len(odd_gears_of(scene, name))
+    odd = len(odd_gears_in(scene, name))
+    if name in scene.wide_pairs:
+        from fegear.contact.wide.over_revolution import POSITIONS as PLACES
+
+        pitches = int(np.ceil(pair.total_contact_ratio)) + 6 if odd else 1
+        stations = pair_spec(scene, name).panel_count * pair.total_contact_ratio
+        return Forecast({"positions": PLACES}, PLACES * stations * (_STATION + _AGAIN * pitches ** max(odd, 1)))
     pitches = int(np.ceil(pair.contact_ratio)) + 5 if odd else 1
     return Forecast({"positions": POSITIONS}, _PITCH * pitches ** max(odd, 1))
 
@@ -370,23 +399,25 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 def _check(scene: Scene, name: str) -> None:
     check_teeth(scene, name)
     check_odd_teeth(scene, name)
+    if name in scene.wide_pairs:
+        check_odd_wide_pair(scene, name)
 
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:
-    if odd_gears_of(scene, name):
+    if odd_gears_in(scene, name):
         yield from CRACKS
     yield HERTZ
     yield Citation("zakrajsek-townsend-decker", "condition indicators FM0, FM4, energy ratio")
 
 
 MESH_STIFFNESS_REVOLUTION = Stage(
-    subjects=plane_pairs,
+    subjects=lambda scene: (*plane_pairs(scene), *solid_pairs(scene)),
     needs=lambda scene, name: (over_revolution_task(scene, name),),
     inputs=inputs_of,
     compute=_compute,
     present=_SHEET.present,
     check=_check,
-    effects_of=lambda _scene, _name: (*PLANE_EFFECTS, ODD_TEETH.name),
+    effects_of=lambda scene, name: (*(WIDE_EFFECTS if name in scene.wide_pairs else PLANE_EFFECTS), ODD_TEETH.name),
     cites=_cites,
     forecast=_forecast,
 )

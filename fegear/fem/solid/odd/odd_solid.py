@@ -111,6 +111,16 @@ class OddSolid(SolidFlank):
         return self.ordinary.reach
 
     @property
+    def usual(self) -> SolidSolution:  # type: ignore[override]
+        """The same gear, all its teeth alike."""
+        return self.ordinary
+
+    def differ(self, i: int, j: int) -> bool:
+        """Whether forces on tooth j move tooth i otherwise than in the `usual` gear."""
+        found = self._window(i, j)
+        return found is not None and not {found[1], found[2]} & set(found[0].missing)
+
+    @property
     def period(self) -> int:  # type: ignore[override]
         """The gear's teeth."""
         return self.tooth.teeth
@@ -162,13 +172,9 @@ class OddSolid(SolidFlank):
         if found is None:
             return self.ordinary.compliance[i - j]
         window, near, other = found
-        if near in window.missing or other in window.missing:  # nothing loads it: what it answers must only be sound
-            return self.ordinary.compliance[0] if i == j else self._nothing
+        if near in window.missing or other in window.missing:  # nothing loads it: its answers must only be sound
+            return self.ordinary.compliance[i - j]
         return window.coupling(near, other)
-
-    @cached_property
-    def _nothing(self) -> Array:
-        return np.zeros_like(self.ordinary.compliance[0])
 
     def deflection(self, i: int, j: int, watched: Bands, pressed: Bands) -> Array:
         """c_ij: mean approach of bands on tooth i under a unit force on bands of tooth j, (P, Q) [1/(E module)].
@@ -213,9 +219,7 @@ class OddSolid(SolidFlank):
         fillet = window.kind(near).fillets[side]
         return surface_stress(fillet, self.tau, self.poisson_ratio, moved, *self.face.at(z))
 
-    def largest_root_stress(
-        self, i: int, j: int, side: Side, pressed: Bands, zeta: ArrayLike
-    ) -> tuple[Array, Array]:
+    def largest_root_stress(self, i: int, j: int, side: Side, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
         """Largest tension (or compression) up a fillet of tooth i at places along the face, shape (Z, P) each.
 
         On either side of the mouth of a crack; value [1/module^2] and arc [modules].

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
@@ -88,22 +86,17 @@ def solve_odd_solid(
     with one_thread():
         kinds: dict[int, SolidKind] = {}
         parts: dict[int, tuple[BetweenSides, ...]] = {}
-        known: list[tuple[SolidOddity, int]] = []
         for number, one in odd.items():
-            like = next((other for what, other in known if what == one), None) if isinstance(one, Missing | Crack) else None
-            if like is not None:
-                parts[number] = parts[like]
-                if like in kinds:
-                    kinds[number] = kinds[like]
-                continue
-            known.append((one, number))
-            section, mouth, back = _section(tooth, bore_radius, settings, body, one)
-            sector = sector_of(section)
-            halves = sector.halves()
-            parts[number] = tuple(between(sector, alone) for alone in halves)
-            if not isinstance(one, Missing):
-                each = _motions(sector, parts[number])
-                kinds[number] = solid_kind(sector, each, mouth, back=back)
+            first = next(other for other, what in odd.items() if what is one or what == one)
+            if first not in parts:
+                section, mouth, back = _section(tooth, bore_radius, settings, body, one)
+                sector = sector_of(section)
+                parts[first] = tuple(between(sector, alone) for alone in sector.halves())
+                if not isinstance(one, Missing):
+                    kinds[first] = solid_kind(sector, _motions(sector, parts[first]), mouth, back=back)
+            parts[number] = parts[first]
+            if first in kinds:
+                kinds[number] = kinds[first]
         condensed = time.perf_counter()
         ordinary = solid_kind(usual.sector, _motions(usual.sector, usual.parts))
         windows = tuple(_window(usual, ordinary, kinds, parts, group, z) for group in _groups(list(odd), z))

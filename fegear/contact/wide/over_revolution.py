@@ -1,0 +1,199 @@
+"""A pair with a width of whose gears some teeth differ, over all base pitches until the same teeth meet again.
+
+As of plane teeth (`fegear.contact.plane.over_revolution`): base pitches in which the same teeth meet are solved once.
+What all teeth have in common is found once for all of them (`compliance`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.contact.plane.over_revolution import MOST_PITCHES, OverRevolution
+from fegear.contact.wide.compliance import like_cycle
+from fegear.contact.wide.flanks import as_specified, open_gaps
+from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.tip_edges import usual_gap
+from fegear.contact.wide.transmission_error import secant_stiffness
+from fegear.fem.teeth import together
+from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Index
+    from fegear.contact.odd_flank import OddFlank
+    from fegear.contact.pair_spec import PairSpec
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.fem.solid.flank_body import FlankBody
+
+#: Roll positions over a base pitch.
+POSITIONS = 32
+#: How often contact lines may be continued farther along tip edges that turn out to be loaded.
+_LONGER_EDGES = 4
+#: Panels are so many times longer than over one base pitch, unless their number is given: what they leave open of loads
+#: of whole teeth is stated with them.
+_OVER_ALL = 2.0
+#: By how much panels are longer that show what theirs leave open.
+_LONGER = 1.5
+
+
+@dataclass(frozen=True)
+class RevolvingFlanks:
+    """A pair with a width whose teeth may differ, ready to be followed.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    gaps : FlankGaps
+    coarse : mapping of {"driver", "driven"} to FlankBody, or None
+        Coarser solutions of the gears, which show their error; None where none is estimated.
+    load : float
+        Along the transverse line of action [N].
+    """
+
+    flanks: FlankPair
+    gaps: FlankGaps
+    coarse: Mapping[Member, FlankBody] | None
+    load: float
+
+    @property
+    def pair(self) -> GearPair:
+        """Both gears in mesh."""
+        return self.flanks.pair
+
+    @property
+    def cycles(self) -> int:
+        """Base pitches until the same teeth meet again; 1 where all teeth are alike."""
+        periods = [self.flanks.gears[member].period for member in MEMBERS]
+        for member, spacing, odd in zip(MEMBERS, *_of_teeth(self.gaps), strict=True):
+            if spacing.size or odd:
+                periods.append(self.pair.gear(member).teeth)
+        return math.lcm(*periods)
+
+
+def revolving_flanks(
+    spec: PairSpec,
+    fine: Mapping[Member, FlankBody],
+    coarse: Mapping[Member, FlankBody] | None,
+    cache: SolutionCache | None = None,
+    positions: int = POSITIONS,
+) -> RevolvingFlanks:
+    """Make a pair ready to be followed over all base pitches.
+
+    Parameters
+    ----------
+    spec : PairSpec
+    fine, coarse : mapping of {"driver", "driven"} to FlankBody
+    cache : SolutionCache, optional
+        Of compliances.
+    positions : int
+        Over a base pitch.
+    """
+    most_gap = usual_gap(spec.placed, spec.nominal) if spec.corner_contact else 0.0
+    panel = spec.panel if spec.face.panels else _OVER_ALL * spec.panel
+    bare = FlankPair(
+        spec.placed, fine, panel=panel, positions=positions, most_gap=most_gap,
+        cache=SolutionCache() if cache is None else cache,
+    )  # fmt: skip
+    return RevolvingFlanks(as_specified(spec, bare), open_gaps(spec), coarse, spec.nominal)
+
+
+def wide_over_revolution(
+    revolving: RevolvingFlanks, base_pitches: int = 1, progress: Callable[[float], None] | None = None
+) -> OverRevolution:
+    """Follow a pair with a width over all base pitches until the same teeth meet again.
+
+    Parameters
+    ----------
+    revolving : RevolvingFlanks
+    base_pitches : int
+        How many there are where all teeth are alike.
+    progress : callable, optional
+        Receives the fraction that is done.
+
+    Raises
+    ------
+    InputError
+        If the same teeth meet again after more than `MOST_PITCHES` base pitches only, or no pair is left in contact.
+    """
+    cycles = revolving.cycles
+    if cycles > MOST_PITCHES:
+        raise InputError(
+            "pair", f"{cycles} base pitches until the same teeth meet again",
+            f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
+        )  # fmt: skip
+    count, report = cycles if cycles > 1 else base_pitches, progress or (lambda _fraction: None)
+    flanks, found = _far_enough(revolving, count)
+    report(0.4)
+    if revolving.coarse is None:
+        return found
+    longer, _ = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count)
+    report(0.7)
+    coarser, _ = _followed(revolving, replace(flanks, gears=revolving.coarse), count)
+    return replace(found, others=(longer, coarser))
+
+
+def _far_enough(revolving: RevolvingFlanks, count: int) -> tuple[FlankPair, OverRevolution]:
+    """The pair over all base pitches, along tip edges as far as these carry load."""
+    flanks = revolving.flanks
+    for left in range(_LONGER_EDGES, -1, -1):
+        try:
+            found, reached = _followed(revolving, flanks, count)
+        except InputError as error:  # beside a missing tooth the edges of the next ones carry all of the load
+            if error.key != "odd_tooth" or not flanks.most_gap or not left:
+                raise
+        else:
+            if not (reached and left):
+                break
+        flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
+    return flanks, found
+
+
+def _followed(revolving: RevolvingFlanks, flanks: FlankPair, count: int) -> tuple[OverRevolution, bool]:
+    """The pair over all base pitches, and whether tip edges are loaded that are as far off as any."""
+    pair, gaps, load = revolving.pair, revolving.gaps, revolving.load
+    lines = contact_lines(pair, flanks.roll, flanks.panel * pair.driver.module, most_gap=flanks.most_gap)
+    number = np.unique(lines.pair[lines.present])
+    alike = together(_teeth_in(flanks, gaps, lines, number, cycle) for cycle in range(count))
+    shape = count, flanks.roll.size
+    error, stiffness, tangent = (np.empty(shape) for _ in range(3))
+    loads, reached = np.empty((count, number.size, flanks.roll.size)), False
+    for pitches in alike:
+        state = _loaded(flanks, replace(gaps, base_pitch=int(pitches[0])), load)
+        error[pitches], tangent[pitches] = state.transmission_error[:, 0], state.contact.stiffness[:, 0]
+        stiffness[pitches] = secant_stiffness(state.known, state.contact.force)[:, 0]
+        loads[pitches] = state.pair_load[:, :, 0]
+        reached |= state.reaches_the_last_edges
+    found = OverRevolution(
+        flanks.roll, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, len(alike),
+        tangent,
+    )  # fmt: skip
+    return found, reached
+
+
+def _loaded(flanks: FlankPair, gaps: FlankGaps, load: float) -> LoadedFlanks:
+    return flanks.solve([load], gaps, flanks.compliance(load, cycle=gaps.base_pitch))
+
+
+def _of_teeth(gaps: FlankGaps) -> tuple[tuple[Array, Array], tuple[tuple[tuple[int, OddFlank], ...], ...]]:
+    """Spacing errors of both gears, and their odd flanks."""
+    return (gaps.driver_spacing, gaps.driven_spacing), (gaps.driver_odd, gaps.driven_odd)
+
+
+def _teeth_in(flanks: FlankPair, gaps: FlankGaps, lines: ContactLines, number: Index, cycle: int) -> tuple[object, ...]:
+    """What tells the teeth in a base pitch from those in others."""
+    orders = cycle - number
+    flank: list[object] = []
+    for member, spacing, odd in zip(MEMBERS, *_of_teeth(gaps), strict=True):
+        known = {order for order, _ in odd}
+        z = flanks.pair.gear(member).teeth
+        flank += [order % z if order % z in known else -1 for order in orders.tolist()] if known else []
+        flank += spacing[np.mod(orders, spacing.size)].tolist() if spacing.size else []
+    return (like_cycle(flanks.gears, lines, cycle), *flank)
