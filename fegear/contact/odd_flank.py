@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from fegear.geometry.relief_spec import ReliefSpec
 
 
+#: A part of a face as far below the rest as this share of its radius is out of reach of any load.
+_DEEP = 1e-3
+
+
 @dataclass(frozen=True)
 class Pit:
     """Material that is gone from a flank between two radii.
@@ -91,13 +95,15 @@ class OddFlank:
     def gap_over_face(self, radius: Array, z: Array, face_width: float) -> Array:
         """What is missing of the flank normal to it at radii and heights on the gear's own face [m].
 
-        Infinite where there is no flank: at pits over a part of the face without a depth, and of a missing tooth.
+        Infinite where nothing carries: of a missing tooth, and at pits over a part of the face that have no depth or
+        one that no load closes.
         """
         if self.missing:
             return np.full(radius.shape, np.inf)
         found = np.zeros(radius.shape)
         for pit in self.pits:
-            depth = pit.depth if pit.depth > 0.0 or pit.face_share >= 1.0 else np.inf
+            shallow = pit.face_share >= 1.0 or 0.0 < pit.depth < _DEEP * 0.5 * (pit.low + pit.high)
+            depth = pit.depth if shallow else np.inf
             inside = np.abs(z - pit.face_position) <= 0.5 * pit.face_share * face_width * (1.0 + 1e-9)
             found = np.where(np.logical_and(pit.at(radius), inside), np.maximum(found, depth), found)
         return found

@@ -302,7 +302,7 @@ def mesh_stiffness_revolution(
     Parameters
     ----------
     pair : Pair
-        Of spur gears; a crack is given by `Gear.with_crack`.
+        A crack is given by `Gear.with_crack`; of helical gears it runs along the helix.
     torque, load, effects, tolerance, progress, cache
         As in `transmission_error`.
 
@@ -310,8 +310,8 @@ def mesh_stiffness_revolution(
     -------
     Results
         Tables ``mesh_stiffness_revolution_<pair>``, ``tooth_loads_revolution_<pair>``,
-        ``root_stress_teeth_<pair>_<gear>``, ``mesh_stiffness_orders_<pair>``. Values ``<pair>.mesh_stiffness_min``,
-        ``<pair>.te_residual_max``, ...
+        ``root_stress_teeth_<pair>_<gear>`` (2D), ``mesh_stiffness_orders_<pair>``. Values
+        ``<pair>.mesh_stiffness_min``, ``<pair>.te_residual_max``, ...
     """
     return ask_of_pair(
         "mesh-stiffness-revolution", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache,

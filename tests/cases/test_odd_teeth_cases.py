@@ -141,6 +141,8 @@ def test_other_results_say_that_they_have_ordinary_teeth():
     assert any("here all teeth are identical" in said for said in found.remarks)
 
 
+CLOSING = ("gear.pinion.odd_tooth=[{ crack = { depth = '1 mm', crack_faces = 'closing' } }]",)
+LOWER = ("gear.pinion.odd_tooth=[{ tip_diameter = '53 mm' }]",)
 TWICE = "gear.pinion.odd_tooth=[{ crack = { arc = '0 mm', depth = '1 mm' } }, { crack = { depth = '1 mm' } }]"
 
 
@@ -219,7 +221,8 @@ def test_what_is_no_crack_is_refused_in_a_sentence(change, said):
     [
         ((TWICE,), "specified twice"),
         (("gear.pinion.tooth_mesh=own.msh",), "requires the generated mesh"),
-        (('pair.I.width="solid"', 'results=["load-sharing"]'), "is not available for 3D pairs yet"),
+        (('pair.I.width="solid"', *CLOSING), r'odd_tooth\[0\].crack.crack_faces = "closing": is available for plane'),
+        (('pair.I.width="solid"', *LOWER), r"odd_tooth\[0\].tip_diameter = 53 mm: is available for plane"),
         (('pair.I.compliance={ source = "weber-banaschek" }', "effects.neighbour_coupling=false"), "is not available"),
         (("gear.pinion.odd_tooth=[]",), "has no effect: no gear of this case has odd_tooth"),
         (("effects.corner_contact=false", "gear.pinion.odd_tooth=[{ missing = true }]"), "beside a missing tooth"),
@@ -288,6 +291,34 @@ def test_profiles_of_a_case(tmp_path):
     assert found.on_other_flank().profiles == ()
     (said,) = odd_remarks(read_scene(CASE, (*COARSE, changes[0], REVOLUTION)))
     assert "profiles of single teeth ignored because effects.relief is off" in said
+
+
+@pytest.mark.dear
+def test_a_3d_pair_has_its_odd_teeth_over_a_revolution():
+    narrow = ('pair.I.width="solid"', "gear.pinion.face_width=5 mm", "gear.wheel.face_width=5 mm")
+    found = run(REVOLUTION, *narrow, "pair.I.torque=15 N*m", "load_distribution.panels=5")
+    assert pitches(found).shape[0] == 25
+    ordinary = np.median(pitches(found), axis=0)
+    assert np.abs(pitches(found) - ordinary).max(axis=1).argmax() in (0, 1, 24)
+    assert 0.2 < number(found, "I.mesh_stiffness_loss") < 0.45  # 0.314 in the plane
+    loss = next(value for value in found.values if value.name == "I.mesh_stiffness_loss")
+    assert 0.0 < loss.error_si < 0.02
+    load, angle = (column(found, "tooth_loads_revolution_I", name) for name in ("share", "driver_angle"))
+    for at in np.unique(angle)[::100]:
+        assert load[angle == at].sum() == pytest.approx(1.0)
+    assert not any(table.name.startswith("root_stress_teeth") for table in found.tables)
+    assert any("contact of the crack faces of tooth 0 is neglected (3D pair)" in said for said in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (('pair.I.width="slices"',), "no pair"),
+    ],
+)
+def test_slices_have_no_revolution(changes, said):
+    with pytest.raises(InputError, match=said):
+        planned(REVOLUTION, *changes)
 
 
 def odd_remarks(scene):

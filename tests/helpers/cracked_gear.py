@@ -29,7 +29,7 @@ def turned(points, angle):
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=None):
+def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=None, factor=1.0):
     """Six-node triangles of the whole gear.
 
     Parameters
@@ -48,6 +48,8 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=Non
         Edges along their fillets.
     hole : (float, float, float), optional
         Radius, and centre in the frame of tooth 0, of a round hole.
+    factor : float
+        Of all edges.
 
     Returns
     -------
@@ -59,6 +61,7 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=Non
     z, marked, loop = tooth.teeth, {}, []
     with gmsh_session("cracked gear") as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)
+        gmsh.option.setNumber("Mesh.MeshSizeFactor", factor)
         geo = gmsh.model.geo
         first = last = None
         halves = [(k, right) for k in range(0, -z, -1) for right in (True, False)]  # counterclockwise

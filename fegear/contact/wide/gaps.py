@@ -49,7 +49,7 @@ class FlankGaps(ReadOnlyArrays):
         What the shafts of a gearbox open as its meshes load them.
     driver_odd, driven_odd : tuple of (int, OddFlank)
         Flanks of single teeth that differ, by their number in the order of meshing. Gaps are infinite where there is
-        no flank: of a missing tooth, and at pits over a part of the face without a depth.
+        no flank: see `OddFlank.gap_over_face`.
     """
 
     driver_relief: Relief = UNMODIFIED
@@ -110,7 +110,6 @@ class FlankGaps(ReadOnlyArrays):
             on = lines.present & (np.mod(self.base_pitch - lines.pair, gear.teeth) == order)
             if not on.any():
                 continue
-            note("odd flanks")
             roll = lines.roll_angle(pair, member)[on]
             if flank.relief is not None:
                 found[on] += flank.relief.removal(roll) - usual.removal(roll)

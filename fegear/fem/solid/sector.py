@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, Index, Mask
+from fegear.base.errors import InputError
 from fegear.fem.plane.body import with_body
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.tooth_meshing import mesh_sector
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from fegear.geometry.gear_body import GearBody
     from fegear.geometry.involute_side import InvoluteSide
 
+#: Nodes of two sides this near to each other are the same [modules].
+_SAME = 1e-9
 FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
@@ -151,12 +154,19 @@ def solid_sector(
         Not the outer circle of a ring that has another support.
     beside : SolidSector, optional
         The ordinary one, next to which one whose tooth differs stands: with its functions at the sides.
+
+    Raises
+    ------
+    InputError
+        If its sides are not those of the ordinary one.
     """
     along = None if body is None else body.along(width)
     section = make_section(
         mesh, settings.section.order, tau, poisson_ratio, tooth.base_radius, body,
         side=tooth.side, along=along, solver=settings.section.solver,
     )  # fmt: skip
+    if beside is not None:
+        _refuse_other_sides(section, beside.section)
     held = held if along is None else along.hub
     cuts = (held or ()) if along is None else along.ends
     symmetric = tau == 0.0 and (held is None if body is None else body.even)
@@ -182,6 +192,13 @@ def solid_sector(
         {side: solid_fillet(section, name) for side, name in FILLETS.items()} if there else {},
         symmetric, held,
     )  # fmt: skip
+
+
+def _refuse_other_sides(section: Section, ordinary: Section) -> None:
+    for name in ("side_a", "side_b"):
+        here, there = (one.places[:, getattr(one, name)] for one in (section, ordinary))
+        if here.shape != there.shape or np.abs(here - there).max() > _SAME:
+            raise InputError("mesh", name, "of an odd sector has other nodes than the ordinary sector's")
 
 
 def section_mesh(

@@ -19,7 +19,7 @@ from fegear.fem.plane.odd.other_outline import Missing
 from fegear.fem.plane.odd.other_sector import empty_sector
 from fegear.fem.solid.odd.odd_solid import OddSolid
 from fegear.fem.solid.odd.odd_window import TOUCHED, OddWindow
-from fegear.fem.solid.odd.solid_kind import KindOfMotion, SolidKind, between, motion, refuse_other_sides, solid_kind
+from fegear.fem.solid.odd.solid_kind import KindOfMotion, SolidKind, between, motion, solid_kind
 from fegear.fem.solid.sector import SolidSector, solid_sector
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import SolvedSector, solve_with_sector
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 
 @tallied("tooth shapes")
+@tallied("odd sectors")
 def solve_odd_solid(
     tooth: InvoluteTooth,
     tau: float,
@@ -77,11 +78,9 @@ def solve_odd_solid(
     solved = time.perf_counter()
 
     def sector_of(mesh: SectorMesh) -> SolidSector:
-        found = solid_sector(
+        return solid_sector(
             tooth, tau, width, poisson_ratio, mesh, settings, body, plane_strain=plane_strain, beside=usual.sector
         )
-        refuse_other_sides(found, usual.sector)
-        return found
 
     with one_thread():
         kinds: dict[int, SolidKind] = {}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
-from fegear.base.errors import InputError
 from fegear.fem.plane.sector_sides import BetweenSides, between_sides, ports_of
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.dissection import condense_solid
@@ -19,9 +18,6 @@ if TYPE_CHECKING:
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.sector import SolidSector
     from fegear.fem.solid.unknowns import Unknowns
-
-#: Nodes of two sides this near to each other are the same [modules].
-_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -114,17 +110,3 @@ def solid_kind(
     ports = int((sector.known.number[sector.ports] >= 0).sum())
     axes = {side: sector.section.axes[fillet.nodes] for side, fillet in sector.fillets.items()}
     return SolidKind(sector.flank, ports, sector.fillets, axes, motions, mouth, back)
-
-
-def refuse_other_sides(sector: SolidSector, ordinary: SolidSector) -> None:
-    """Refuse a sector whose sides are not those of the ordinary one.
-
-    Raises
-    ------
-    InputError
-    """
-    for name in ("side_a", "side_b"):
-        nodes = getattr(sector.section, name), getattr(ordinary.section, name)
-        places = [one.section.places[:, found] for one, found in zip((sector, ordinary), nodes, strict=True)]
-        if places[0].shape != places[1].shape or np.abs(places[0] - places[1]).max() > _SAME:
-            raise InputError("mesh", name, "of an odd sector has other nodes than the ordinary sector's")
