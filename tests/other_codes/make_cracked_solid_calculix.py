@@ -18,7 +18,7 @@ from tests.helpers.cracked_gear import cracked_gear
 from tests.other_codes.test_cracked_gear_other_codes import gear
 
 NAME, NU = "19 teeth", 0.3
-SIZE, TIP, FACTOR = 0.15, 0.04, 1.5
+SIZE, TIP, FACTOR = 0.15, 0.06, 2.0
 #: Half of the face width, and heights of the layers from its middle [modules].
 HALF, LAYERS = 1.5, (0.0, 0.7, 1.2, 1.5)
 LOADED = ((0, 1),)

@@ -28,8 +28,14 @@ def couplings(settings):
 
 @pytest.mark.dear
 def test_couplings_are_those_of_calculix():
-    """15-node wedges, some 50,000 nodes, the crack's front along the whole face; loads even along it."""
+    """15-node wedges, some 50,000 nodes, the crack's front along the whole face; loads even along it.
+
+    Quadratic wedges at the crack's tip are too stiff by what is left on the cracked tooth itself: finer sections and
+    more functions along the face change these numbers by 3e-4.
+    """
     places, found, expected, largest = couplings(SolidSettings())
-    off = np.abs(found - expected) / largest
-    assert off.max() < 1e-3
-    assert max(x for x, (i, _, j, _) in zip(off, places, strict=True) if i != j) < 3e-4
+    off = (found - expected) / largest
+    beside = np.array([i != j for i, _, j, _ in places])
+    assert np.abs(off[beside]).max() < 1.5e-4
+    assert np.abs(off).max() < 1.6e-3
+    assert (off[~beside] > 0.0).all()
