@@ -43,7 +43,7 @@ def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
         else "results over a revolution, of the train and of the gear only (mesh-stiffness-revolution, "
         "stress-intensity, odd-tooth-stiffness, planet-revolution, FMU)"
     )
-    return [neglecting(f"Gear {gear}: odd_tooth counts in {where}; here all teeth are identical.")]
+    return [neglecting(f"Gear {gear}: odd_tooth is included in {where}; here all teeth are identical.")]
 
 
 def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
@@ -61,20 +61,7 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
             )
         if part.spacing_errors is not None and not effects.spacing_errors:
             notes.append(neglecting(f"Gear {gear}: spacing_errors ignored because the effect is off (uniform pitch)."))
-<<<<<<< HEAD
-        if part.odd_tooth:
-            notes.append(
-                neglecting(
-                    f"Gear {gear}: odd_tooth is included in results over a revolution, of the train and of the gear "
-                    "only (mesh-stiffness-revolution, stress-intensity, odd-tooth-stiffness, planet-revolution, FMU); "
-                    "here all teeth are identical."
-                    if effects.odd_teeth
-                    else f"Gear {gear}: odd_tooth ignored because effects.odd_teeth is off (identical teeth)."
-                )
-            )
-=======
         notes += _odd_teeth(scene, gear, wide=False)
->>>>>>> 590a3d19 (3D pairs with cracked, missing, pitted and reprofiled teeth over a revolution: odd solid gears as flank bodies, gaps by tooth, results by the keys of plane pairs)
         if part.over_face:
             notes.append(
                 neglecting(
