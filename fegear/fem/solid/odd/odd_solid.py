@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.trace import LoadedFlank
     from fegear.fem.solid.face import FaceFunctions
     from fegear.fem.solid.settings import SolidSettings
-    from fegear.geometry.involute_tooth import InvoluteTooth
+    from fegear.geometry.involute_side import InvoluteSide
 
 
 @dataclass(frozen=True)
@@ -51,67 +51,67 @@ class OddSolid(SolidFlank):
     seconds: Mapping[str, float] = field(compare=False)
 
     @property
-    def tooth(self) -> InvoluteTooth:  # type: ignore[override]  # as of every flank, read-only
+    def tooth(self) -> InvoluteSide:  # type: ignore[override]  # as of every flank, read-only
         """The ordinary transverse section."""
         return self.ordinary.tooth
 
     @property
-    def tau(self) -> float:  # type: ignore[override]
+    def tau(self) -> float:  # type: ignore[override]  # read-only
         """Twist [rad/module]."""
         return self.ordinary.tau
 
     @property
-    def width(self) -> float:  # type: ignore[override]
+    def width(self) -> float:  # type: ignore[override]  # read-only
         """[modules]."""
         return self.ordinary.width
 
     @property
-    def poisson_ratio(self) -> float:  # type: ignore[override]
+    def poisson_ratio(self) -> float:  # type: ignore[override]  # read-only
         """Of the material."""
         return self.ordinary.poisson_ratio
 
     @property
-    def plane_strain(self) -> bool:  # type: ignore[override]
+    def plane_strain(self) -> bool:  # type: ignore[override]  # read-only
         """Whether nothing moves along the axis."""
         return self.ordinary.plane_strain
 
     @property
-    def flank(self) -> LoadedFlank:  # type: ignore[override]
+    def flank(self) -> LoadedFlank:  # type: ignore[override]  # read-only
         """The loaded flank of ordinary teeth."""
         return self.ordinary.flank
 
     @property
-    def face(self) -> FaceFunctions:  # type: ignore[override]
+    def face(self) -> FaceFunctions:  # type: ignore[override]  # read-only
         """Functions along the face."""
         return self.ordinary.face
 
     @property
-    def fillets(self) -> Mapping[Side, SolidFillet]:  # type: ignore[override]
+    def fillets(self) -> Mapping[Side, SolidFillet]:  # type: ignore[override]  # read-only
         """Of ordinary teeth."""
         return self.ordinary.fillets
 
     @property
-    def compliance(self) -> Mapping[int, Array]:  # type: ignore[override]
+    def compliance(self) -> Mapping[int, Array]:  # type: ignore[override]  # read-only
         """Of ordinary teeth."""
         return self.ordinary.compliance
 
     @property
-    def displacement(self) -> Mapping[tuple[int, Side], Array]:  # type: ignore[override]
+    def displacement(self) -> Mapping[tuple[int, Side], Array]:  # type: ignore[override]  # read-only
         """Of ordinary teeth."""
         return self.ordinary.displacement
 
     @property
-    def settings(self) -> SolidSettings:  # type: ignore[override]
+    def settings(self) -> SolidSettings:  # type: ignore[override]  # read-only
         """Of its section's mesh and of the pressed bands."""
         return self.ordinary.settings
 
     @property
-    def reach(self) -> int:  # type: ignore[override]
+    def reach(self) -> int:  # type: ignore[override]  # read-only
         """K: neighbours -K..K are known."""
         return self.ordinary.reach
 
     @property
-    def usual(self) -> SolidSolution:  # type: ignore[override]
+    def usual(self) -> SolidSolution:  # type: ignore[override]  # read-only
         """The same gear, all its teeth alike."""
         return self.ordinary
 
@@ -121,7 +121,7 @@ class OddSolid(SolidFlank):
         return found is not None and not {found[1], found[2]} & set(found[0].missing)
 
     @property
-    def period(self) -> int:  # type: ignore[override]
+    def period(self) -> int:  # type: ignore[override]  # read-only
         """The gear's teeth."""
         return self.tooth.teeth
 
