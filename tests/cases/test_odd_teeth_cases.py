@@ -225,7 +225,7 @@ def test_what_is_no_crack_is_refused_in_a_sentence(change, said):
         (('pair.I.width="solid"', *LOWER), r"odd_tooth\[0\].tip_diameter = 53 mm: is available for plane"),
         (('pair.I.compliance={ source = "weber-banaschek" }', "effects.neighbour_coupling=false"), "is not available"),
         (("gear.pinion.odd_tooth=[]",), "has no effect: no gear of this case has odd_tooth"),
-        (("effects.corner_contact=false", "gear.pinion.odd_tooth=[{ missing = true }]"), "beside a missing tooth"),
+        (("effects.corner_contact=false", "gear.pinion.odd_tooth=[{ missing = true }]"), "at a missing tooth"),
         (('pair.I.driven="pinion"',), "is driver and driven gear of pair I"),
     ],
 )

@@ -129,7 +129,7 @@ def check_odd_wide_pair(scene: Scene, name: str) -> None:
     if gone and not scene.case.effects.corner_contact and pair.total_contact_ratio < 2.0:
         raise InputError(
             "effects.corner_contact", "false",
-            "leaves no tooth pair in contact beside a missing tooth (total contact ratio "
+            "leaves no tooth pair in contact at a missing tooth (total contact ratio "
             f"{pair.total_contact_ratio:.3f})",
             "set effects.corner_contact = true",
         )  # fmt: skip
