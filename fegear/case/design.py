@@ -80,7 +80,7 @@ class RobustnessPart(Part):
 
 
 class TipTolerancePart(Part):
-    """``tolerances = { amount, length }``: by how much a tip relief that is ground may be off, to either side."""
+    """``tolerances = { amount, length, ... }``: by how much what is ground may be off, to either side."""
 
     amount: LengthOrZero | None = Field(
         default=None,
@@ -90,6 +90,16 @@ class TipTolerancePart(Part):
     length: LengthOrZero | None = Field(
         default=None,
         description="Tolerance of the length along the line of action. Default: a tenth of the length.",
+    )
+    helix_slope: LengthOrZero | None = Field(
+        default=None,
+        description="Tolerance of a ground helix slope, for `flank-design`. Default: helix slope deviation f_Hbeta of "
+        "the gear, by its `deviations` or its `tolerance_class` (5 without one).",
+    )
+    crowning: LengthOrZero | None = Field(
+        default=None,
+        description="Tolerance of crowning and end relief, for `flank-design`. Default: helix form deviation f_fbeta "
+        "of the gear's `tolerance_class` (5 without one).",
     )
 
 

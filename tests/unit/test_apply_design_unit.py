@@ -12,6 +12,7 @@ from fegear.base.errors import InputError
 from fegear.case.changed_text import with_values
 from fegear.case.reading import build_scene
 from fegear.cli import program
+from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.table import Column, Table
@@ -185,6 +186,9 @@ def test_a_lead_correction_of_flanks_whose_modifications_did_not_count_takes_the
     assert "bias" not in gears["p"]
 
 
+TOLERANCE = FlankTolerance((TipTolerance(4e-6, None, 0.0),) * 2, LeadTolerance(3e-6, 2e-6, 5e-6))
+
+
 @pytest.mark.parametrize("offset", [0.0, 3e-3])  # the driver bears lead and twist, or the driven gear does
 def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
     gears = [
@@ -193,7 +197,7 @@ def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
     ]
     pair, names = GearPair(*gears), {"driver": "p", "driven": "w"}
     relief = GroundRelief(18e-6, 3e-3, 12e-6, 2e-3, 3e-6, 6e-6, 2.5e-3, -4e-6, 8e-6)
-    rows = ground_rows(relief, pair, names, "profile", (TipTolerance(4e-6, None, 0.0),) * 2)
+    rows = ground_rows(relief, pair, names, "profile", TOLERANCE)
     units = {"amount": "um", "start_diameter": "mm", "end_diameter": "mm", "face_length": "mm"}
     columns = [
         Column(name, np.array([getattr(row, name) for row in rows]), units.get(name, ""))
@@ -209,6 +213,7 @@ def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
         assert number == pytest.approx(round(number / step) * step, abs=1e-9), key
     assert rows[0].length == pytest.approx(3e-3)
     assert rows[1].length_tolerance == pytest.approx(0.2e-3)
+    assert [row.amount_tolerance for row in rows] == [4e-6, 4e-6, 2e-6, 2e-6, 3e-6, 5e-6]
 
 
 @pytest.mark.parametrize(

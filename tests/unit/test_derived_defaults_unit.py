@@ -345,6 +345,7 @@ NOT_WRITTEN = {
     "StudyPart.pressure_angle", "StudyPart.rack_dedendum", "TolerancePart.deviations", "TolerancePart.pair",
     "TrainMeshPart.stiffness", "TransmissibilityPart.driven", "TransmissibilityPart.driver",
     "fegear__case__helical__ShaftPart.over", "TipTolerancePart.length",
+    "TipTolerancePart.crowning", "TipTolerancePart.helix_slope",
 }  # fmt: skip
 _DERIVED = re.compile(r"[Ww]ithout|[Dd]efault\b|unless specified")
 

@@ -17,10 +17,13 @@ from fegear.design.flanks.flank_design import (
     FlankState,
     design_flanks,
 )
+from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance, within_tolerances
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
 from fegear.design.flanks.scatter import NOMINAL, Scatter
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.results.relief import flank_design_sheet as sheet
+from fegear.results.relief.lead_charts import lead_chart
 
 PITCH, START = 8e-3, -3e-3
 
@@ -113,12 +116,27 @@ def steps(monkeypatch):
 
     def judge(gap):
         judged.append(gap(lines("judged")))
-        return SimpleNamespace(peak_to_peak=SimpleNamespace(value=10.0 - len(judged), error=1e-3))
+        number = SimpleNamespace(value=10.0 - len(judged), error=1e-3)
+        return SimpleNamespace(peak_to_peak=number, mean_over_scatter=number)
+
+    def left(gap):
+        """What is judged later leaves less."""
+        te = np.zeros((4, 2))
+        te[1] = 10.0 - len(judged)
+        return te, np.array([1e-3, 2e-3])
+
+    def under(loads, apart):
+        calls.update(under=(loads.tolist(), apart))
+        dense = SimpleNamespace(known=SimpleNamespace(lines=lines("dense", START + PITCH * np.arange(4) / 4.0)))
+        return SimpleNamespace(left=left, dense=dense)
 
     plain = Trials(
         pair, SimpleNamespace(lines=lines("plain", START + PITCH * np.arange(3) / 3.0)), "apart", np.array([1.0])
     )
-    put("flank_judge", lambda *given: calls.update(judge=given) or SimpleNamespace(judge=judge, plain=plain))
+    put(
+        "flank_judge",
+        lambda *given: calls.update(judge=given) or SimpleNamespace(judge=judge, plain=plain, under=under),
+    )
     apart = SimpleNamespace(
         under=lambda load: SimpleNamespace(at=lambda pair, lines, loads=None: ("aligned", load, lines.name)),
         at=lambda pair, lines, loads: ("apart", lines.name, loads.tolist()),
@@ -181,6 +199,8 @@ def test_states_are_judged_in_order_and_the_best_is_the_one_that_leaves_least(st
     assert state.mapped.of.scatter.weights.tolist() == pytest.approx([1.0 / 3.0] * 3)
     assert state.mapped.of.loads.tolist() == [600.0, 1200.0]
     assert state.over_peak_to_peak.shape == state.over_first.shape == (2,)
+    assert state.over_error.tolist() == [1e-3, 2e-3]
+    assert steps.calls["under"] == ([900.0, 1200.0], steps.apart)
 
 
 def test_scatter_has_a_relief_of_its_own_and_leads_the_freest_family_on(steps):
@@ -195,7 +215,6 @@ def test_scatter_has_a_relief_of_its_own_and_leads_the_freest_family_on(steps):
     assert len(starts) == len([one for one in (*flank_design.held_by(last), last) if one in FAMILIES])
     assert steps.calls["led_on"][0][0].scatter is NOMINAL
     assert [state.label for state in found.robust] == [ROBUST]
-    assert found.best.label != ROBUST
 
 
 def test_only_families_that_are_asked_for_are_searched_on_a_grid_that_is_given(steps):
@@ -223,6 +242,80 @@ def left_by(*found):
         alone, "station", np.zeros(1), np.zeros(1), np.zeros((1, 1)), np.zeros(1),
         (none, none, *(state(*one) for one in found)), {label: "best" for label, *_ in found}, "grid",
     )  # fmt: skip
+
+
+def test_modifications_below_their_tolerances_are_not_ground_for_what_they_gain():
+    given = FlankTolerance((TipTolerance(5e-6, None, 0.0),) * 2, LeadTolerance(6e-6, 4e-6, 5e-6))
+    design = left_by(("profile", TIPS, 0.40, 0.01), ("profile-and-lead", WITH_LEAD, 0.30, 0.01))
+    assert design.best.label == "profile-and-lead"
+    allowed = replace(design, task=replace(design.task, tolerance=given))
+    assert (allowed.best.label, allowed.least.label) == ("profile", "profile-and-lead")
+    # One amount that a shop can hold is worth it; so is all that is needed to be better than no relief.
+    large = left_by(("profile", TIPS, 0.40, 0.01), ("profile-and-lead", replace(WITH_LEAD, slope=-7e-6), 0.30, 0.01))
+    assert replace(large, task=allowed.task).best.label == "profile-and-lead"
+    worse = left_by(("profile", TIPS, 0.95, 0.01), ("profile-and-lead", WITH_LEAD, 0.30, 0.01))
+    assert replace(worse, task=allowed.task).best.label == "profile-and-lead"
+
+
+def test_where_misalignment_scatters_the_mean_over_it_decides():
+    design = left_by(("profile", TIPS, 0.40, 0.01), (ROBUST, WITH_LEAD, 0.45, 0.01))
+    assert [s.label for s in design.chosen] == ["profile", ROBUST]
+    means = {"profile": 0.9e-6, ROBUST: 0.6e-6}
+    states = tuple(
+        replace(s, judged=SimpleNamespace(**vars(s.judged), mean_over_scatter=SimpleNamespace(
+            value=means.get(s.label, 2e-6), error=1e-8)))
+        for s in design.states
+    )  # fmt: skip
+    scatter = Scatter(np.array([-1e-6, 0.0, 1e-6]), np.array([0.25, 0.5, 0.25]))
+    over = replace(design, states=states, task=replace(design.task, scatter=scatter))
+    assert (over.best.label, len(over.chosen)) == (ROBUST, 1)
+    assert sentences(sheet._scattered, over, [120.0], {"profile": [0.4e-6], ROBUST: [0.45e-6]}) == [
+        (
+            "Pair I: robust is chosen by the mean over the scatter of misalignment: 2 -> 0.6 µm at 120 N m; aligned as "
+            "specified profile leaves less, 0.4 µm at 120 N m."
+        )
+    ]
+
+
+class Valley:
+    """In place of trials: what is left grows with every amount and shrinks with every length, load by load."""
+
+    loads, tip_power = np.array([1.0, 2.0]), 1.0
+    slopes = np.array(
+        [[1.0, -1e-3, 1.0, -1e-3, 1.0, 1.0, 0.0, 1.0, 1.0], [-1.0, 1e-3, 1.0, -1e-3, -1.0, 1.0, 0.0, -1.0, 1.0]]
+    )
+
+    def of_numbers(self, numbers):
+        return SimpleNamespace(peak_to_peak=(self.slopes @ numbers)[None, :])
+
+
+def test_the_worst_within_tolerances_has_lead_and_tips_at_their_ends_and_nothing_that_is_not_ground():
+    gear = SimpleNamespace(base_radius=0.03)
+    pair = SimpleNamespace(
+        x_start=-5e-3, x_end=5e-3, path_length=10e-3, gear=lambda member: gear,
+        roll_angle=lambda x, member: (12e-3 + (x if member == "driver" else -x)) / 0.03,
+    )  # fmt: skip
+    given = FlankTolerance((TipTolerance(5e-6, 0.4e-3, 0.0),) * 2, LeadTolerance(6e-6, 4e-6, 5e-6))
+    numbers = np.array([20e-6, 3e-3, 10e-6, 2e-3, 8e-6, 0.0, 0.0, -2e-6, 0.0])
+    found = within_tolerances(Valley(), pair, numbers, given)
+    off = np.array([5e-6, -0.4e-3, 5e-6, -0.4e-3, 4e-6, 0.0, 0.0, 6e-6, 0.0])
+    np.testing.assert_allclose(found[0], numbers + off, atol=1e-12)
+    np.testing.assert_allclose(found[1], numbers + off * [-1, -1, 1, 1, -1, 1, 1, -1, 1], atol=1e-12)
+    none = FlankTolerance((TipTolerance(0.0, 0.0, 0.0),) * 2)
+    np.testing.assert_allclose(within_tolerances(Valley(), pair, numbers, none), [numbers, numbers], atol=1e-12)
+
+
+def test_a_lead_chart_has_the_amounts_and_the_band_of_their_tolerances():
+    pair = SimpleNamespace(face_width=20e-3, x_start=-5e-3, x_end=5e-3, path_length=10e-3,
+                           face_height=lambda member: 1e-3)  # fmt: skip
+    allowed = LeadTolerance(6e-6, 4e-6, 5e-6)
+    assert lead_chart("a", TIPS, pair, "driver", allowed) is None
+    chart = lead_chart("a", replace(TIPS, crowning=3e-6, slope=2e-6), pair, "driver", allowed)
+    assert chart.z[[0, -1]] == pytest.approx([-9e-3, 11e-3])
+    assert chart.lead[[0, 100, -1]] == pytest.approx([-2e-6, 0.0, -4e-6])
+    assert chart.upper[[0, 100, -1]] == pytest.approx([5e-6, 0.0, 3e-6])
+    assert chart.lower[[0, 100, -1]] == pytest.approx([-9e-6, 0.0, -11e-6])
+    assert chart.words == "crowning 3 ± 4 µm, helix slope 2 ± 6 µm"
 
 
 TIPS = GroundRelief(12.7e-6, 2.5e-3, 18.6e-6, 3e-3)
@@ -289,7 +382,3 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
             "error."
         ),
     ]
-    robust = replace(design.best, label=ROBUST, over_mean=np.array([0.34e-6, 0.8e-6]))
-    scattered = replace(design, states=(*design.states, robust), found={**design.found, ROBUST: "best"})
-    (said,) = sentences(sheet._robust, scattered, [120.0, 320.0])
-    assert "relative to the torque): 0.8 µm at 320 N m (profile 0.4 µm), 0.34 µm at 120 N m" in said

@@ -8,7 +8,7 @@ import pytest
 
 from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.design.charts import ReliefChart, unit_length
-from fegear.design.flanks import lead_correction, tip_bench, tip_chart, tip_design, tip_search
+from fegear.design.flanks import flank_tolerance, lead_correction, tip_bench, tip_chart, tip_design, tip_search
 from fegear.design.flanks.tip_bench import TipReader, TipTrials
 from fegear.design.load_range import LoadRange
 from fegear.geometry.external_tooth import Tooth
@@ -159,13 +159,13 @@ def test_tips_are_searched_about_the_forces_under_the_largest_load(monkeypatch):
 
 
 def test_reliefs_end_at_the_tips_and_begin_a_length_before():
-    driver, driven = tip_design.end_reliefs(np.array([5e-6, 2e-3, 8e-6, 3e-3, 0, 0, 0, 0, 0.0]), PAIR, 2.0)
+    driver, driven = flank_tolerance.end_reliefs(np.array([5e-6, 2e-3, 8e-6, 3e-3, 0, 0, 0, 0, 0.0]), PAIR, 2.0)
     for one, gear, amount, length in ((driver, GEAR, 5e-6, 2e-3), (driven, PAIR.driven, 8e-6, 3e-3)):
         assert (one.amount, one.power) == (amount, 2.0)
         tip = np.sqrt((gear.involute_tip_radius / gear.base_radius) ** 2 - 1.0)
         assert one.end == pytest.approx(tip, rel=1e-9)
         assert gear.base_radius * (one.end - one.start) == pytest.approx(length)
-    none, _ = tip_design.end_reliefs(np.array([0.0, 2e-3, 8e-6, 3e-3, 0, 0, 0, 0, 0.0]), PAIR, 1.0)
+    none, _ = flank_tolerance.end_reliefs(np.array([0.0, 2e-3, 8e-6, 3e-3, 0, 0, 0, 0, 0.0]), PAIR, 1.0)
     assert GEAR.base_radius * (none.end - none.start) == pytest.approx(0.5 * PAIR.path_length)
 
 
@@ -181,13 +181,19 @@ def test_the_worst_within_tolerances_is_of_all_ends_of_both_gears():
 
     numbers = np.array([5e-6, 1e-3, 8e-6, 2e-3, 0, 0, 0, 0, 9.0])
     # the higher the gap the more is left under the first load; under the second, too heavy for all, the less
-    found = tip_design.within_tolerances(
-        Trials(np.array([1.0, 1e6])), PAIR, numbers, (Allowed(1e-6, 1e-4), Allowed(2e-6, 3e-4))
+    found = flank_tolerance.within_tolerances(
+        Trials(np.array([1.0, 1e6])),
+        PAIR,
+        numbers,
+        flank_tolerance.FlankTolerance((Allowed(1e-6, 1e-4), Allowed(2e-6, 3e-4))),
     )
     assert found[0] == pytest.approx([6e-6, 1.1e-3, 10e-6, 2.3e-3, 0, 0, 0, 0, 9.0])
     assert found[1] == pytest.approx([4e-6, 0.9e-3, 6e-6, 1.7e-3, 0, 0, 0, 0, 9.0])
-    bare = tip_design.within_tolerances(
-        Trials(np.array([1.0])), PAIR, numbers * [0, 1, 1, 1, 1, 1, 1, 1, 1], (Allowed(1e-6, 1e-4), Allowed(0.0, 0.0))
+    bare = flank_tolerance.within_tolerances(
+        Trials(np.array([1.0])),
+        PAIR,
+        numbers * [0, 1, 1, 1, 1, 1, 1, 1, 1],
+        flank_tolerance.FlankTolerance((Allowed(1e-6, 1e-4), Allowed(0.0, 0.0))),
     )
     assert bare[0, 0] == 0.0
     assert bare[0, 1] == pytest.approx(0.5 * PAIR.path_length)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
+from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
@@ -41,6 +43,10 @@ UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
 _WORTH = 0.02
 #: Amounts below this are no modification [m].
 _NOTHING = 5e-9
+#: Relative differences below this are none.
+_ROUNDED = 1e-6
+#: Places of the amounts among the nine numbers of a ground relief: tips, crowning, end relief, slope, bias.
+_AMOUNTS = np.array([0, 2, 4, 5, 7, 8])
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,8 @@ class FlankDesignTask:
         Misalignments [m] and loads [N] of the maps.
     weights : tuple of float, optional
         What each of the loads counts; all the same by default.
+    tolerance : FlankTolerance, optional
+        Of what is ground; none by default.
     """
 
     loading: FlankLoading
@@ -83,6 +91,7 @@ class FlankDesignTask:
     map_over_face: tuple[float, ...]
     map_loads: tuple[float, ...]
     weights: tuple[float, ...] | None = None
+    tolerance: FlankTolerance | None = None
 
 
 @dataclass(frozen=True)
@@ -104,6 +113,10 @@ class FlankState(ReadOnlyArrays):
         Peak-to-peak value and amplitude of the first harmonic at each of the task's loads, aligned as given [m].
     over_mean : ndarray, shape (L,)
         Mean of the peak-to-peak value over the scatter at each of these loads [m].
+    over_error : ndarray, shape (L,), optional
+        Of `over_peak_to_peak` [m].
+    over_most : ndarray, shape (L,), optional
+        Largest peak-to-peak value within the task's tolerances, aligned as given [m]; None where nothing is ground.
     """
 
     label: str
@@ -114,13 +127,18 @@ class FlankState(ReadOnlyArrays):
     over_peak_to_peak: Array
     over_first: Array
     over_mean: Array
+    over_error: Array | None = None
+    over_most: Array | None = None
 
     @property
     def modifications(self) -> int:
         """How many a shop has to grind: amounts, of both gears."""
-        relief = self.relief or GroundRelief()
-        amounts = (relief.driver_tip, relief.driven_tip, relief.crowning, relief.end_relief, relief.slope, relief.bias)
-        return sum(abs(amount) > _NOTHING for amount in amounts)
+        return int((np.abs(self.amounts) > _NOTHING).sum())
+
+    @property
+    def amounts(self) -> Array:
+        """Of what is ground, in the order of `_AMOUNTS` [m]."""
+        return (self.relief or GroundRelief()).numbers[_AMOUNTS]
 
 
 @dataclass(frozen=True)
@@ -170,34 +188,77 @@ class FlankDesign(ReadOnlyArrays):
         return tuple(state for state in self.states if state.label == ROBUST)
 
     @property
+    def ground(self) -> tuple[FlankState, ...]:
+        """What can be ground."""
+        return tuple(state for state in self.states if state.label in self.found)
+
+    @property
     def least(self) -> FlankState:
-        """What can be ground and leaves the least, aligned as given: at the design load, or by the worst of several."""
-        return min((s for s in self.states if s.label in self.found and s.label != ROBUST), key=self.left_by)
+        """What can be ground and leaves the least: at the design load, or by the worst of several."""
+        return min(self.ground, key=self.left_by)
 
     @property
     def best(self) -> FlankState:
-        """The one to be ground: `least`, or one of fewer modifications that leaves no more within its error."""
+        """The one to be ground: `least`, or one of fewer modifications that leaves no more within its error.
+
+        So does one of fewer whose further modifications are smaller than their tolerances: no inspection finds these.
+        """
         least = self.least
-        left = self.left_by(least)
         like = [
-            s for s in self.states
-            if s.label in self.found and s.label != ROBUST and s.modifications <= least.modifications
-            and self.left_by(s) - left <= min(_WORTH * left, max(self.error_of(s), self.error_of(least)))
+            s for s in self.ground
+            if s.modifications <= least.modifications and (s is least or self.alike(s) or self.within_tolerance(s))
         ]  # fmt: skip
         return min(like, key=lambda s: (s.modifications, self.left_by(s)))
 
+    @property
+    def chosen(self) -> tuple[FlankState, ...]:
+        """The one to be ground, and the robust one where that is another."""
+        best = self.best
+        return (best, *(state for state in self.robust if state is not best))
+
+    def alike(self, state: FlankState) -> bool:
+        """Whether a way leaves as little as `least`, within its error."""
+        least = self.least
+        left = self.left_by(least)
+        return self.left_by(state) - left <= min(_WORTH * left, max(self.error_of(state), self.error_of(least)))
+
+    def within_tolerance(self, state: FlankState) -> bool:
+        """Whether `least` has all modifications of a way, and all others below their tolerances.
+
+        A way that leaves more than no relief under any load never counts.
+        """
+        tolerance, least = self.task.tolerance, self.least
+        if tolerance is None or least.relief is None or state.relief is None:
+            return False
+        ours, theirs = state.amounts, least.amounts
+        further = (np.abs(ours) <= _NOTHING) & (np.abs(theirs) > _NOTHING)
+        lost = (np.abs(theirs) <= _NOTHING) & (np.abs(ours) > _NOTHING)
+        if lost.any() or not further.any() or (state.over_peak_to_peak > self.unrelieved.over_peak_to_peak).any():
+            return False
+        allowed = tolerance.amounts[_AMOUNTS]
+        return bool((np.abs(theirs)[further] < (1.0 - _ROUNDED) * allowed[further]).all())
+
+    @property
+    def scattered(self) -> bool:
+        """Whether misalignment scatters: ways are then compared by their mean over it."""
+        return self.task.scatter.over_face.size > 1
+
     def error_of(self, state: FlankState) -> float:
         """Of `left_by` [m]; under several loads with the share of the value that it has at the design load."""
-        ripple = state.judged.peak_to_peak
+        ripple = state.judged.mean_over_scatter if self.scattered else state.judged.peak_to_peak
         return ripple.error if ripple.value == 0.0 else ripple.error / ripple.value * self.left_by(state)
 
     def left_by(self, state: FlankState) -> float:
-        """Peak-to-peak value that a way leaves: at the design load, or by the worst of several in proportion [m]."""
+        """Peak-to-peak value that a way leaves: at the design load, or by the worst of several in proportion [m].
+
+        Where misalignment scatters, its mean over the scatter.
+        """
         task = self.task
         if task.loads == (task.load,):
-            return state.judged.peak_to_peak.value
+            return (state.judged.mean_over_scatter if self.scattered else state.judged.peak_to_peak).value
         weights = None if task.weights is None else np.array(task.weights)
-        return float((state.over_peak_to_peak * proportions(np.array(task.loads), weights)).max())
+        left = state.over_mean if self.scattered else state.over_peak_to_peak
+        return float((left * proportions(np.array(task.loads), weights)).max())
 
 
 def design_flanks(
@@ -273,7 +334,7 @@ def design_flanks(
         **{label: one.relief for label, one in found.items()},
     }
     here = replace(few, loads=np.array([task.load]), apart=aligned.at(pair, known.lines), weights=None)
-    over = replace(more, weights=None)
+    over = _OverLoads(judge.under(loads, apart), replace(more, weights=None))
     states = tuple(_state(label, relief, here, judge, over, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
@@ -290,8 +351,15 @@ def _starts(held: Sequence[FamilyBest]) -> list[GroundRelief]:
     return [*found, *sums]
 
 
+class _OverLoads(NamedTuple):
+    """The pair under the task's loads: as what is left is judged, and as it is searched."""
+
+    judge: FlankJudge
+    searched: FlankTrials
+
+
 def _state(
-    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, over_loads: FlankTrials,
+    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, over_loads: _OverLoads,
     task: FlankDesignTask,
 ) -> FlankState:  # fmt: skip
     """Judge a relief, and map what it leaves."""
@@ -307,13 +375,21 @@ def _state(
     count = len(task.map_over_face)
     over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
     mapped = replace(judge.plain, scatter=over, loads=np.array(task.map_loads))
-    at_loads = over_loads.of_gap(gap(over_loads.known.lines))
-    mean = at_loads.peak_to_peak[0]
+    te, error = over_loads.judge.left(gap)
+    left = np.ptp(te, axis=0)
+    mean = left
     if task.scatter.over_face.size > 1:
-        mean = mean_over_scatter(over_loads, gap(over_loads.known.lines), task.deviation)
-    te, phase = at_loads.te[0], 2j * np.pi * over_loads.known.lines.roll / here.pair.base_pitch
+        dense = over_loads.judge.dense
+        mean = mean_over_scatter(dense, gap(dense.known.lines), task.deviation)
+    most = None
+    if task.tolerance is not None and isinstance(relief, GroundRelief) and label != UNRELIEVED:
+        dense = over_loads.judge.dense
+        off = within_tolerances(over_loads.searched, here.pair, relief.numbers, task.tolerance)
+        most = np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
+        most = np.maximum(most, left)
+    phase = 2j * np.pi * over_loads.judge.dense.known.lines.roll / here.pair.base_pitch
     first = 2.0 * np.abs(np.exp(-phase) @ (te - te.mean(axis=0))) / phase.size
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
-        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), at_loads.peak_to_peak[0], first, mean,
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most,
     )  # fmt: skip

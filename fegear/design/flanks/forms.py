@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.shown import shown
 from fegear.contact.wide.lines import ContactLines
-from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,16 @@ class GroundRelief:
         """Removal at points of the plane of action, not negative on the flank [m]."""
         base = 0.5 * abs(self.slope) + 0.25 * abs(self.bias)
         return np.asarray(FormsAt.over(pair, x, z, self.tip_power).removed(self.numbers) + base)
+
+
+def lead_bearer(pair: GearPair) -> Member:
+    """The gear that has the lead modifications of a pair: the first whose face is the common one, else the driver."""
+    slack = 1e-9 * pair.face_width
+    return next(
+        (m for m in MEMBERS
+         if abs(pair.gear(m).face_width - pair.face_width) <= slack and abs(pair.face_height(m)) <= slack),
+        "driver",
+    )  # fmt: skip
 
 
 LENGTHS = {

@@ -87,6 +87,28 @@ class FlankJudge:
     soft: FlankTrials
     deviation: float
 
+    def under(self, loads: Array, apart: FlankGaps) -> FlankJudge:
+        """The same under other loads [N], aligned as `apart` says."""
+        dense, plain, thin, soft = (
+            replace(one, loads=loads, apart=apart.at(one.pair, one.known.lines, loads))
+            for one in (self.dense, self.plain, self.thin, self.soft)
+        )
+        return FlankJudge(dense, plain, thin, soft, self.deviation)
+
+    def left(self, gap: Callable[[ContactLines], Array]) -> tuple[Array, Array]:
+        """Transmission error aligned as given, shape (`JUDGED`, L), and the error of its peak-to-peak value, (L,) [m].
+
+        Parameters
+        ----------
+        gap : callable
+            As that of `judge`.
+        """
+        dense, plain, thin, soft = (
+            replace(one, scatter=NOMINAL).of_gap(gap(one.known.lines)).te[0]
+            for one in (self.dense, self.plain, self.thin, self.soft)
+        )
+        return dense, _off(*(np.ptp(te, axis=0) for te in (dense, plain, thin, soft)))
+
     def judge(self, gap: Callable[[ContactLines], Array]) -> Judged:
         """Judge a relief, given by the gap that it leaves at the stations of contact lines [m]."""
         levels = Scatter(self.deviation * _CHANGED, _WEIGHTS) if self.deviation else NOMINAL
@@ -94,7 +116,7 @@ class FlankJudge:
             _numbers(replace(one, scatter=levels).of_gap(gap(one.known.lines)))
             for one in (self.dense, self.plain, self.thin, self.soft)
         )  # fmt: skip
-        off = _OF_FEWER * np.abs(dense - plain) + _OF_FEWER * np.abs(thin - plain) + np.abs(soft - plain)
+        off = _off(dense, plain, thin, soft)
         middle = levels.over_face.size // 2
         ripple, factor, pressure = (
             Number(float(v), float(e)) for v, e in zip(dense[:, middle], off[:, middle], strict=True)
@@ -107,6 +129,11 @@ class FlankJudge:
             ripple, factor, pressure, over_scatter(over, None, float(_WEIGHTS @ off[0])),
             over_scatter(over, PERCENTILE, float(off[0].max())), over_scatter(factors, PERCENTILE, float(off[1].max())),
         )  # fmt: skip
+
+
+def _off(dense: Array, plain: Array, thin: Array, soft: Array) -> Array:
+    """Errors of what is found on `FlankJudge.dense`."""
+    return _OF_FEWER * np.abs(dense - plain) + _OF_FEWER * np.abs(thin - plain) + np.abs(soft - plain)
 
 
 def _numbers(tried: Tried) -> Array:

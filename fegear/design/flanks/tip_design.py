@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -14,14 +13,13 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest
+from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
 from fegear.design.flanks.tip_bench import Read, tip_reader, tip_trials, without_tips
 from fegear.design.flanks.tip_search import best_tips
-from fegear.design.flanks.trials import FlankTrials
 from fegear.design.load_range import LoadRange
-from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.fem.solid.flank_body import FlankBody
-from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.geometry.relief import EndRelief, Shape
+from fegear.geometry.pair import Member
+from fegear.geometry.relief import Shape
 
 #: Exponents of the shapes.
 POWERS: Mapping[Shape, float] = {"linear": 1.0, "parabolic": 2.0}
@@ -39,8 +37,7 @@ class TipDesignTask:
         Loads that they are designed for together in place of this one.
     grind : tuple of str
         Shapes.
-    tolerances : tuple of TipTolerance
-        Of driver and driven gear.
+    tolerance : FlankTolerance
     map_loads : tuple of float
         Under which what is left is wanted besides [N].
     """
@@ -48,7 +45,7 @@ class TipDesignTask:
     load: float
     over: LoadRange | None
     grind: tuple[Shape, ...]
-    tolerances: tuple[TipTolerance, TipTolerance]
+    tolerance: FlankTolerance
     map_loads: tuple[float, ...]
 
     @property
@@ -88,41 +85,6 @@ class TipDesign(ReadOnlyArrays):
     for_one_load: Mapping[Shape, FamilyBest]
     left: Mapping[str, Read]
     most: Mapping[Shape, Array]
-
-
-def end_reliefs(numbers: Array, pair: GearPair, tip_power: float) -> tuple[EndRelief, EndRelief]:
-    """The tip reliefs of driver and driven gear over their roll angles."""
-    found = []
-    for member, amount, length in zip(MEMBERS, numbers[0:4:2].tolist(), numbers[1:4:2].tolist(), strict=True):
-        end = pair.x_end if member == "driver" else pair.x_start
-        start = end - length if member == "driver" else end + length
-        if amount == 0.0:
-            start = end - 0.5 * pair.path_length if member == "driver" else end + 0.5 * pair.path_length
-        first, last = (float(pair.roll_angle(x, member)) for x in (start, end))
-        found.append(EndRelief(amount, first, last, tip_power))
-    return found[0], found[1]
-
-
-def within_tolerances(
-    trials: FlankTrials, pair: GearPair, numbers: Array, tolerances: tuple[TipTolerance, TipTolerance]
-) -> Array:
-    """Nine numbers of the reliefs inside their tolerances that leave most under each load, shape (L, 9).
-
-    Amounts and lengths of both reliefs are at the ends of their tolerances and in their middle, each with each.
-    """
-    ends = end_reliefs(numbers, pair, trials.tip_power)
-    each: list[list[tuple[float, float]]] = []
-    for member, tip, allowed in zip(MEMBERS, ends, tolerances, strict=True):
-        gear = pair.gear(member)
-        off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else [tip]
-        each.append([(one.amount, gear.base_radius * (one.end - one.start)) for one in (tip, *off)])
-    combined = []
-    for (a, b), (c, d) in product(*each):
-        one = numbers.copy()
-        one[:4] = a, b, c, d
-        combined.append(one)
-    seen = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in combined])
-    return np.stack([combined[i] for i in seen.argmax(axis=0)])
 
 
 def design_tips(
@@ -170,7 +132,7 @@ def design_tips(
         found[shape] = best_tips(trials.over(task.over or task.one_load, power, apart))
         numbers = found[shape].relief.numbers
         left[f"{shape} tip relief"] = of_shape.read(numbers)
-        worst = within_tolerances(of_shape.plain, pair, numbers, task.tolerances)
+        worst = within_tolerances(of_shape.plain, pair, numbers, task.tolerance)
         most[shape] = np.array([
             np.ptp(of_shape.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)
         ])  # fmt: skip

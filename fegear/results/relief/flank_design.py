@@ -9,7 +9,7 @@ from fegear.base.errors import InputError
 from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
-from fegear.case.built.tip_tolerances import tip_tolerances
+from fegear.case.built.tip_tolerances import flank_tolerance
 from fegear.case.flank_design import FlankDesignPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
@@ -23,6 +23,7 @@ from fegear.results.relief.flank_design_sheet import FLANK_DESIGN_SHEET
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.design.flanks.flank_design import FlankDesignTask
+    from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.flanks.grid import ReliefGrid
     from fegear.design.load_range import LoadRange
 
@@ -63,7 +64,7 @@ def _check(scene: Scene, name: str) -> None:
 def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     over = None if _part(scene).loads else design_range(scene, name)
-    return FlankDesignInputs(_part(scene), name, gears, over, tip_tolerances(scene, name))
+    return FlankDesignInputs(_part(scene), name, gears, over, flank_tolerance(scene, name))
 
 
 def _grid(part: FlankDesignPart) -> ReliefGrid | None:
@@ -77,7 +78,8 @@ def _grid(part: FlankDesignPart) -> ReliefGrid | None:
 
 
 def _task(
-    part: FlankDesignPart, pair: GearPair, nominal: float, over: LoadRange | None = None
+    part: FlankDesignPart, pair: GearPair, nominal: float, over: LoadRange | None = None,
+    tolerance: FlankTolerance | None = None,
 ) -> FlankDesignTask:  # fmt: skip
     from fegear.design.flanks.flank_design import FlankDesignTask
     from fegear.design.flanks.scatter import NOMINAL, normal_scatter
@@ -111,7 +113,7 @@ def _task(
     return FlankDesignTask(
         loading, load, loads, tuple(part.families), _grid(part), part.largest_face_load_factor or math.inf, scatter,
         part.scatter.over_face if part.scatter else 0.0, part.positions, tuple(sorted(set(over_face))),
-        tuple(sorted({load * f for f in part.map.load_factors})), None if over is None else over.weights,
+        tuple(sorted({load * f for f in part.map.load_factors})), None if over is None else over.weights, tolerance,
     )  # fmt: skip
 
 
@@ -120,7 +122,7 @@ def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> Flank
 
     found = loaded_flanks(upstream, inputs.name)
     flanks, apart = found.flanks, found.unrelieved
-    task = _task(inputs.part, flanks.pair, found.nominal, inputs.over)
+    task = _task(inputs.part, flanks.pair, found.nominal, inputs.over, inputs.tolerance)
     solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
     coarse = {member: one.coarse or one.fine for member, one in solved.items()}
     design = design_flanks(flanks, coarse, found.known, apart, task, work.progress)

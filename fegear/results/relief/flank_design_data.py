@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,9 +12,12 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.case.flank_design import FlankDesignPart
+from fegear.design.flanks.forms import lead_bearer
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.relief.grinding import Grinding
 from fegear.results.relief.ground_flank_keys import ground_rows
+from fegear.results.relief.lead_charts import LeadChart, lead_chart
+from fegear.results.relief.profile_charts import ProfileChart, profile_chart
 from fegear.results.relief.relief_over_range import LeftOverRange
 
 if TYPE_CHECKING:
@@ -22,8 +25,8 @@ if TYPE_CHECKING:
 
     from fegear.design.flanks.families import FamilyBest
     from fegear.design.flanks.flank_design import FlankDesign, FlankState
+    from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.load_range import LoadRange
-    from fegear.design.tip_relief.tip_tolerance import TipTolerance
 
 #: Sections of the charts: heights over half the face, and parts of the path of contact.
 _HEIGHTS, _DEPTHS = (-0.9, 0.0, 0.9), (0.1, 0.5, 0.9)
@@ -52,15 +55,15 @@ class FlankDesignInputs:
         Names of driver and driven.
     over : LoadRange, optional
         Loads that what can be ground is chosen for together.
-    tolerances : tuple of TipTolerance
-        Of the tip reliefs of driver and driven gear, for the grinding table.
+    tolerance : FlankTolerance
+        Of what is ground.
     """
 
     part: FlankDesignPart
     name: str
     gears: Mapping[Member, str]
     over: LoadRange | None
-    tolerances: tuple[TipTolerance, TipTolerance] = field(compare=False)
+    tolerance: FlankTolerance
 
 
 @dataclass(frozen=True)
@@ -286,7 +289,8 @@ class FlanksShown:
         return {
             state.label: LeftOverRange(
                 load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
-                state.over_first, mean=state.over_mean if self.scattered else None,
+                state.over_first, state.over_most if state.label in self.design.found else None, state.over_error,
+                mean=state.over_mean if self.scattered else None,
             )
             for state in self.design.states
         }  # fmt: skip
@@ -303,9 +307,39 @@ class FlanksShown:
             row
             for state in ordered
             for row in ground_rows(
-                found[state.label].relief, self.data.pair, self.asked.gears, state.label, self.asked.tolerances
+                found[state.label].relief, self.data.pair, self.asked.gears, state.label, self.asked.tolerance
             )
         )  # fmt: skip
+
+    @cached_property
+    def profile_charts(self) -> dict[str, tuple[ProfileChart, ...]]:
+        """Of both gears for each design with tip relief, the one to be ground first."""
+        from fegear.design.flanks.flank_tolerance import end_reliefs
+
+        pair, found = self.data.pair, self.design.found
+        reliefs = {label: found[label].relief for label in dict.fromkeys(row.design for row in self.grinding)}
+        return {
+            label: tuple(
+                profile_chart(self.asked.gears[member], pair.gear(member), tip, allowed)
+                for member, tip, allowed in zip(
+                    MEMBERS, end_reliefs(relief.numbers, pair, relief.tip_power), self.asked.tolerance.tips, strict=True
+                )
+            )
+            for label, relief in reliefs.items()
+            if relief.driver_tip or relief.driven_tip
+        }
+
+    @cached_property
+    def lead_charts(self) -> dict[str, LeadChart]:
+        """Of the gear that has the lead, for each design with one."""
+        pair, found, lead = self.data.pair, self.design.found, self.asked.tolerance.lead
+        bearer = lead_bearer(pair)
+        charts = {
+            label: lead_chart(self.asked.gears[bearer], found[label].relief, pair, bearer, lead)
+            for label in dict.fromkeys(row.design for row in self.grinding)
+            if lead is not None
+        }
+        return {label: chart for label, chart in charts.items() if chart is not None}
 
     @cached_property
     def ways(self) -> list[WayToRelieve]:
@@ -316,8 +350,7 @@ class FlanksShown:
     @cached_property
     def drawn(self) -> list[WayToRelieve]:
         """The exact topography, and what is ground best."""
-        chosen = (self.design.exact, self.design.best, *self.design.robust)
-        return [next(way for way in self.ways if way.state is state) for state in chosen]
+        return [next(way for way in self.ways if way.state is s) for s in (self.design.exact, *self.design.chosen)]
 
     @property
     def mapped(self) -> list[WayToRelieve]:
@@ -336,7 +369,7 @@ class FlanksShown:
     @property
     def scattered(self) -> bool:
         """Whether misalignment scatters."""
-        return self.design.task.scatter.over_face.size > 1
+        return self.design.scattered
 
     @cached_property
     def left(self) -> Left:

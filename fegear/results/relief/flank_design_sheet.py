@@ -19,6 +19,8 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.results.relief.flank_design_data import FlanksShown
 from fegear.results.relief.grinding import grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
+from fegear.results.relief.lead_charts import lead_k_chart
+from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART
 
 if TYPE_CHECKING:
@@ -26,8 +28,8 @@ if TYPE_CHECKING:
     from fegear.design.flanks.flank_design import FlankState
     from fegear.engine.sheet.seen import Seen
 
-#: A transmission error below this is none [m].
-_NONE = 1e-12
+#: A transmission error below this is none [m]; by this share of it less is worth a word.
+_NONE, _CLEARLY = 1e-12, 0.05
 
 #: What is stated of every relief; the last three where misalignment scatters.
 _JUDGED = (
@@ -166,12 +168,33 @@ def _grind(seen: Seen) -> Iterator[str]:
         for i in dict.fromkeys(i % torque.size for i in (-1, 0))
     )
     yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
+    if best.over_most is not None and words:
+        within = best.over_most
+        i = int(np.argmax(within / np.maximum(none, _NONE)))
+        without = f"{'more than the ' if within[i] > none[i] else ''}{_microns(none[i])} µm without relief"
+        yield (
+            f"Pair {seen.name}: within the tolerances of the grinding table at most {_microns(within[i])} µm at "
+            f"{_torque(torque[i])} ({without})."
+        )
     if least is not best:
         gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
+        why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"
         yield (
             f"Pair {seen.name}: {least.label} ({least.modifications} modifications) is only {gain} better than "
-            f"{best.label} ({best.modifications}), within the estimated error."
+            f"{best.label} ({best.modifications}), {why}."
         )
+
+
+def _further(seen: Seen, best: FlankState, least: FlankState) -> str:
+    """What a way has besides the one to be ground, each below its tolerance."""
+    rows = seen.data.grinding
+    ours = {(row.gear, row.modification) for row in rows if row.design == best.label}
+    more = [
+        f"{_microns(row.amount)} ± {_microns(row.amount_tolerance)} µm {row.modification}"
+        for row in rows
+        if row.design == least.label and row.words and (row.gear, row.modification) not in ours
+    ]
+    return f"modifications below their tolerances ({', '.join(more)})"
 
 
 def _exact(seen: Seen) -> Iterator[str]:
@@ -193,25 +216,29 @@ def _exact(seen: Seen) -> Iterator[str]:
     yield f"{said}."
 
 
-def _robust(seen: Seen) -> Iterator[str]:
-    """What the relief for scattered misalignment is chosen by, which is not what is stated at the design load."""
-    data, best = seen.data, seen.data.design.best
+def _scattered(seen: Seen) -> Iterator[str]:
+    """By what a relief for scattered misalignment is chosen, and which leaves less aligned as specified."""
+    design = seen.data.design
+    if not design.scattered or not design.ground:
+        return
+    best, torque = design.best, _left(seen, design.best.label)[0]
 
     def means(state: FlankState) -> Array:
         """Over the scatter at each torque [m]; at the design load as it is stated."""
-        return state.over_mean if several else np.array([state.judged.mean_over_scatter.value])
+        return state.over_mean if torque.size > 1 else np.array([state.judged.mean_over_scatter.value])
 
-    for state in data.design.robust:
-        torque = data.over_range[state.label].torque
-        several = torque.size > 1
-        mean, of_best = means(state), means(best)
-        torque = torque if several else _left(seen, state.label)[0]
-        left = ", ".join(
-            f"{_microns(mean[i])} µm at {_torque(torque[i])} ({best.label} {_microns(of_best[i])} µm)"
-            for i in dict.fromkeys(i % torque.size for i in (-1, 0))
-        )
-        worst = " (maximum over the torques relative to the torque)" if several else ""
-        yield f"Pair {seen.name}: the robust modification has the minimum mean over the scatter{worst}: {left}."
+    before, after = means(design.unrelieved), means(best)
+    left = ", ".join(
+        f"{_microns(before[i])} -> {_microns(after[i])} µm at {_torque(torque[i])}"
+        for i in dict.fromkeys(i % torque.size for i in (-1, 0))
+    )
+    worst = " (maximum over the torques relative to the torque)" if torque.size > 1 else ""
+    said = f"Pair {seen.name}: {best.label} is chosen by the mean over the scatter of misalignment{worst}: {left}"
+    aligned = min(design.ground, key=lambda state: float(_left(seen, state.label)[1][-1]))
+    mine, other = (float(_left(seen, state.label)[1][-1]) for state in (best, aligned))
+    if other < (1.0 - _CLEARLY) * mine:
+        said += f"; aligned as specified {aligned.label} leaves less, {_microns(other)} µm at {_torque(torque[-1])}"
+    yield f"{said}."
 
 
 _UNDER = "{d.load:said}"
@@ -248,6 +275,8 @@ FLANK_DESIGN_SHEET = Sheet(
     values=("topography_depth", Each("ways", *map(_judged_value, _JUDGED))),
     figures=(
         RANGE_CHART,
+        k_chart("profile_charts"),
+        lead_k_chart("lead_charts"),
         Chart(
             "flank_topography_{name}", "Flank modification of pair {name}",
             "Pair {name}: total modification of both gears over roll angle of {d.driver} (driver, tip at right) "
@@ -319,13 +348,13 @@ FLANK_DESIGN_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        _grind, _exact, _robust,
+        _grind, _exact, _scattered,
         figure=lambda seen: seen.said(
             "relief_over_torque_{name}" if len(seen.data.design.task.loads) > 1 else "flank_topography_{name}"
         ),
     ),
     remarks=(
-        Remark(_keys, each=lambda seen: (seen.data.design.best, *seen.data.design.robust)),
+        Remark(_keys, each="design.chosen"),
         Remark(
             "Pair {name}: shaft deflection is kept at that of the present flanks during the design; rerun with the "
             "designed modification to update it.",

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from fegear.design.flanks.flank_tolerance import LeadTolerance
+from fegear.design.flanks.forms import lead_bearer
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.relief.grinding import BIAS, CROWNING, END, SLOPE, TIP, Grinding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.flanks.forms import GroundRelief
-    from fegear.design.tip_relief.tip_tolerance import TipTolerance
 
 #: Tolerance of the length of a tip relief without one of its own, over the length.
 _OF_LENGTH = 0.1
@@ -44,7 +46,7 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -
     if relief.end_relief:
         ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
         lead.append(f"end_relief = {{ {ends} }}")
-    bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+    bearer = lead_bearer(pair)
     if lead:
         by_gear[gears[bearer]].append(f"lead = {{ {', '.join(lead)} }}")
     if relief.bias:
@@ -58,14 +60,15 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -
 
 def ground_rows(
     relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str], design: str,
-    tolerances: tuple[TipTolerance, TipTolerance],
+    tolerance: FlankTolerance,
 ) -> list[Grinding]:  # fmt: skip
     """The relief as rows of the grinding table; lead and twist are those of the gear that `keys_of` gives them to."""
-    bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+    bearer = lead_bearer(pair)
+    own = tolerance.lead or LeadTolerance(math.nan, math.nan, math.nan)
     shape = "linear" if relief.tip_power == 1.0 else "parabolic"
 
     def tip(member: Member, amount: float, end: float, start: float) -> Grinding:
-        allowed, length = tolerances[MEMBERS.index(member)], abs(end - start)
+        allowed, length = tolerance.tips[MEMBERS.index(member)], abs(end - start)
         top, foot = (2.0 * float(pair.radius(at, member)) for at in (end, start))
         return Grinding(
             gears[member], member, design, TIP, shape, amount, amount_tolerance=allowed.amount,
@@ -73,24 +76,21 @@ def ground_rows(
             length=length, length_tolerance=_OF_LENGTH * length if allowed.length is None else allowed.length,
         )  # fmt: skip
 
-    def lead(kind: str, shape: str, amount: float, length: float = math.nan) -> Grinding:
-        return Grinding(gears[bearer], bearer, design, kind, shape, amount, face_length=length)
+    def lead(kind: str, shape: str, amount: float, allowed: float, length: float = math.nan) -> Grinding:
+        return Grinding(
+            gears[bearer], bearer, design, kind, shape, amount, face_length=length,
+            amount_tolerance=allowed,
+        )  # fmt: skip
 
     bias = relief.bias if bearer == "driver" else -relief.bias
     rows = [
         tip("driver", relief.driver_tip, pair.x_end, pair.x_end - relief.driver_tip_length),
         tip("driven", relief.driven_tip, pair.x_start, pair.x_start + relief.driven_tip_length),
-        lead(CROWNING, "parabolic", relief.crowning),
-        lead(END, "linear", relief.end_relief, relief.end_relief_length),
-        lead(SLOPE, "linear", relief.slope), lead(BIAS, "linear", bias),
+        lead(CROWNING, "parabolic", relief.crowning, own.crowning),
+        lead(END, "linear", relief.end_relief, own.crowning, relief.end_relief_length),
+        lead(SLOPE, "linear", relief.slope, own.slope), lead(BIAS, "linear", bias, own.twist),
     ]  # fmt: skip
     return [row for row in rows if row.amount]
-
-
-def _is_common(pair: GearPair, member: Member) -> bool:
-    """Whether a gear's face is the common one."""
-    slack = 1e-9 * pair.face_width
-    return abs(pair.gear(member).face_width - pair.face_width) <= slack and abs(pair.face_height(member)) <= slack
 
 
 def _um(value: float) -> str:

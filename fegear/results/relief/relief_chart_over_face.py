@@ -64,7 +64,7 @@ class ChartOverFace(ReliefChartData):
     @property
     def tips(self) -> tuple[Tip, ...]:
         """The best reliefs, a gear each."""
-        from fegear.design.flanks.tip_design import end_reliefs
+        from fegear.design.flanks.flank_tolerance import end_reliefs
 
         relief = cast("FamilyBest", self.best).relief
         both = end_reliefs(relief.numbers, self.pair.pair, relief.tip_power)

@@ -82,11 +82,12 @@ def _inputs(scene: Scene, name: str) -> TipReliefInputs:
 
 
 def _compute(inputs: TipReliefInputs, upstream: Upstream, work: Work) -> TipReliefData:
+    from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.flanks.tip_design import TipDesignTask, design_tips
 
     found, part = loaded_flanks(upstream, inputs.name), inputs.part
     load = part.load or found.nominal
-    task = TipDesignTask(load, inputs.over, tuple(part.grind), inputs.tolerances, tuple(found.loads))
+    task = TipDesignTask(load, inputs.over, tuple(part.grind), FlankTolerance(inputs.tolerances), tuple(found.loads))
     solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
     coarse = {member: one.coarse or one.fine for member, one in solved.items()}
     design = design_tips(

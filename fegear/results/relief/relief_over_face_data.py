@@ -208,7 +208,8 @@ class TipsShown:
     @cached_property
     def tips(self) -> tuple[Tip, ...]:
         """Of both gears for each shape, the best first."""
-        from fegear.design.flanks.tip_design import POWERS, end_reliefs
+        from fegear.design.flanks.flank_tolerance import end_reliefs
+        from fegear.design.flanks.tip_design import POWERS
 
         found = (
             (shape, end_reliefs(self.design.found[shape].relief.numbers, self.data.pair, POWERS[shape]))
@@ -221,12 +222,14 @@ class TipsShown:
     @cached_property
     def grinding(self) -> tuple[Grinding, ...]:
         """What is ground, the best shape first."""
+        from fegear.design.flanks.flank_tolerance import FlankTolerance
+
         return tuple(
             row
             for shape in self.shapes
             for row in ground_rows(
                 self.design.found[shape].relief, self.data.pair, self.asked.gears, f"{shape} tip relief",
-                self.asked.tolerances,
+                FlankTolerance(self.asked.tolerances),
             )
         )  # fmt: skip
 

@@ -1,0 +1,139 @@
+"""What the ground flanks of teeth with a width leave when amounts and lengths are off by what a drawing allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fegear.base.arrays import Array
+from fegear.design.flanks.forms import NUMBERS
+from fegear.design.flanks.trials import FlankTrials
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.relief import EndRelief
+
+#: Tips: amount and length of driver and driven gear; the amounts behind them.
+_TIPS = 4
+_CROWNING, _END, _SLOPE, _BIAS = (NUMBERS.index(name) for name in ("crowning", "end_relief", "slope", "bias"))
+#: Rounds of tips and lead in turn.
+_ROUNDS = 2
+
+
+@dataclass(frozen=True)
+class LeadTolerance:
+    """By how much lead and twist of the gear that has them may be off, to either side [m].
+
+    Parameters
+    ----------
+    slope : float
+        Of the helix slope over the face.
+    crowning : float
+        Of crowning and end relief at the ends of the face.
+    twist : float
+        Of the flank twist.
+    """
+
+    slope: float
+    crowning: float
+    twist: float
+
+
+@dataclass(frozen=True)
+class FlankTolerance:
+    """By how much what is ground on a pair may be off.
+
+    Parameters
+    ----------
+    tips : tuple of TipTolerance
+        Of driver and driven gear.
+    lead : LeadTolerance or None
+        None where only tips are ground.
+    """
+
+    tips: tuple[TipTolerance, TipTolerance]
+    lead: LeadTolerance | None = None
+
+    @property
+    def amounts(self) -> Array:
+        """Of the amounts among the nine numbers of a ground relief, zero at lengths, shape (9,) [m]."""
+        found = np.zeros(len(NUMBERS))
+        found[[0, 2]] = [tip.amount for tip in self.tips]
+        if self.lead is not None:
+            found[[_CROWNING, _END, _SLOPE, _BIAS]] = (
+                self.lead.crowning, self.lead.crowning, self.lead.slope, self.lead.twist,
+            )  # fmt: skip
+        return found
+
+
+def end_reliefs(numbers: Array, pair: GearPair, tip_power: float) -> tuple[EndRelief, EndRelief]:
+    """The tip reliefs of driver and driven gear over their roll angles."""
+    found = []
+    for member, amount, length in zip(MEMBERS, numbers[0:4:2].tolist(), numbers[1:4:2].tolist(), strict=True):
+        end = pair.x_end if member == "driver" else pair.x_start
+        start = end - length if member == "driver" else end + length
+        if amount == 0.0:
+            start = end - 0.5 * pair.path_length if member == "driver" else end + 0.5 * pair.path_length
+        first, last = (float(pair.roll_angle(x, member)) for x in (start, end))
+        found.append(EndRelief(amount, first, last, tip_power))
+    return found[0], found[1]
+
+
+def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance) -> Array:
+    """Nine numbers inside their tolerances that leave most under each load, shape (L, 9).
+
+    Amounts and lengths of both tip reliefs are at the ends of their tolerances and in their middle, each with each; so
+    are then the amounts over the face with the tips that leave most, and the tips once more with these. What is not
+    ground is not off.
+
+    Parameters
+    ----------
+    trials : FlankTrials
+        By whose roll positions the worst is chosen.
+    pair : GearPair
+    numbers : ndarray, shape (9,)
+        Nominal.
+    tolerance : FlankTolerance
+    """
+    tips, leads = _tips(trials, pair, numbers, tolerance), _leads(numbers, tolerance)
+    worst = np.tile(numbers, (trials.loads.size, 1))
+    for turn in range(_ROUNDS if len(leads) > 1 else 1):
+        worst = _most(trials, worst, tips, slice(0, _TIPS), alike=turn == 0)
+        if len(leads) > 1:
+            worst = _most(trials, worst, leads, slice(_TIPS, None))
+    return worst
+
+
+def _most(trials: FlankTrials, worst: Array, choices: Array, where: slice, *, alike: bool = False) -> Array:
+    """Put the choice that leaves most under each load in place of some numbers; `alike`: all rows of `worst` are."""
+    found = worst.copy()
+    seen: Array | None = None
+    for load, base in enumerate(worst):
+        if seen is None or not alike:
+            tried = np.tile(base, (len(choices), 1))
+            tried[:, where] = choices
+            seen = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in tried])
+        found[load, where] = choices[int(seen[:, load].argmax())]
+    return found
+
+
+def _tips(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance) -> Array:
+    """Amounts and lengths of both tips, nominal and at the ends of their tolerances, shape (C, 4)."""
+    each: list[list[tuple[float, float]]] = []
+    ends = end_reliefs(numbers, pair, trials.tip_power)
+    for member, tip, allowed in zip(MEMBERS, ends, tolerance.tips, strict=True):
+        gear = pair.gear(member)
+        off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else [tip]
+        each.append([(one.amount, gear.base_radius * (one.end - one.start)) for one in (tip, *off)])
+    return np.array([[*driver, *driven] for driver, driven in product(*each)])
+
+
+def _leads(numbers: Array, tolerance: FlankTolerance) -> Array:
+    """Numbers over the face, nominal and at the ends of their tolerances, shape (C, 5)."""
+    allowed = tolerance.amounts
+    each = [
+        (at,) if at == 0.0 or off == 0.0 else (at, at - off, at + off)
+        for at, off in zip(numbers[_TIPS:].tolist(), allowed[_TIPS:].tolist(), strict=True)
+    ]
+    return np.array(list(product(*each)))
