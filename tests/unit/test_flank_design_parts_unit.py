@@ -127,7 +127,8 @@ def steps(monkeypatch):
 
     def under(loads, apart):
         calls.update(under=(loads.tolist(), apart))
-        dense = SimpleNamespace(known=SimpleNamespace(lines=lines("dense", START + PITCH * np.arange(4) / 4.0)))
+        known = SimpleNamespace(lines=lines("dense", START + PITCH * np.arange(4) / 4.0))
+        dense = Trials(pair, known, "apart", loads)
         return SimpleNamespace(left=left, dense=dense)
 
     plain = Trials(
