@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 _DRAWN = 0.05
 #: Width of a letter and height of a line, over the larger side of the drawing.
 _WIDE, _TALL = 0.0145, 0.028
+#: Width of a letter of names that stand close to what they name, where the drawing is wide.
+_DENSE = 0.0065
 #: Colour and line width of each kind of body.
 _LOOKS = {"shaft": ("ink", 1.2), "gear": ("blue", 1.6), "bearing": ("green", 1.2)}
 _LEGEND = {"shaft": "shafts", "gear": "gears", "bearing": "bearings"}
@@ -177,7 +179,7 @@ def _names(
         elif body.kind == "gear":
             places.append((middle, height - 0.5 * (body.inner[0] + body.outer[0]), body.name))
         else:
-            beside = 0.5 * _WIDE * size * len(body.name) if upright else 0.0
+            beside = 0.5 * _DENSE * size * len(body.name) if upright else 0.0
             places.append((middle, height - body.outer[0] - room - beside, body.name))
     z, y, labels = zip(*places, strict=True)
     x, y = _turned((np.array(z) * 1e3, np.array(y) * 1e3), upright=upright)
