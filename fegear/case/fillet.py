@@ -147,9 +147,9 @@ class FilletPart(Part):
 
         Parameters as of `shape`.
         """
+        from fegear.geometry.custom_fillet_tooth import with_fillet
         from fegear.geometry.external_tooth import Tooth
         from fegear.geometry.internal_tooth import InternalTooth
-        from fegear.geometry.shaped_tooth import with_fillet
 
         shape = self.shape(module, find) if isinstance(tooth, (Tooth, InternalTooth)) else None
         return tooth if shape is None or not isinstance(tooth, (Tooth, InternalTooth)) else with_fillet(tooth, shape)

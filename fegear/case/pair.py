@@ -178,7 +178,7 @@ class PairPart(Part):
     )
     normal_backlash: LengthOrZero | None = Field(
         default=None,
-        description="Backlash normal to the flanks, by equal `thickness_allowance` of gears without a specified one.",
+        description="Normal backlash, shared by equal `thickness_allowance` of the gears that specify none.",
     )
     circumferential_backlash: LengthOrZero | None = Field(
         default=None,

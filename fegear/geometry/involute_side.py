@@ -92,7 +92,7 @@ class InvoluteSide(ABC):
 
     #: 1 for an external tooth, -1 for an internal one.
     side: ClassVar[int] = 1
-    #: Whether its fillets are other than its tool makes them (`fegear.geometry.shaped_tooth`).
+    #: Whether its fillets are other than its tool makes them (`fegear.geometry.custom_fillet_tooth`).
     shaped: ClassVar[bool] = False
 
     teeth: int

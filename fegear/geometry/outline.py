@@ -148,13 +148,13 @@ def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
     """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
     from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
-    from fegear.geometry.shaped_tooth import ShapedTooth
+    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
     if isinstance(tooth, (InternalTooth, AsymmetricInternalSide)):
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, (Tooth, AsymmetricSide)):
         return rack_in_gear(tooth, rolled)
-    if isinstance(tooth, ShapedTooth):
+    if isinstance(tooth, CustomFilletTooth):
         return tool_in_gear(tooth.generated, rolled)
     raise TypeError(f"no tool available for a {type(tooth).__name__}")
 

@@ -17,8 +17,8 @@ from fegear.design.fillet.fillet_limits import Limits
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.geometry.custom_fillet_tooth import with_fillet
 from fegear.geometry.fillet_shapes import EllipseOnSpace
-from fegear.geometry.shaped_tooth import with_fillet
 from fegear.results.catalogue import STAGES
 from fegear.results.pair.fillet_design_data import FilletDesignInputs
 from fegear.results.pair.fillet_design_sheet import FILLET_DESIGN_SHEET

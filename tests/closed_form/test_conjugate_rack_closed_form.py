@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from fegear.design.fillet.fillet_bench import FilletBench
 from fegear.design.fillet.fillet_limits import Limits
 from fegear.geometry.conjugate_rack import conjugate_rack
+from fegear.geometry.custom_fillet_tooth import with_fillet
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import EllipseOnSpace, PointsFillet
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.shaped_tooth import with_fillet
 
 TOOTH = Tooth(24, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2)
 

@@ -16,12 +16,12 @@ from fegear.design.fillet.moved_ellipses import MovedEllipses
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
 from fegear.geometry.conjugate_rack import conjugate_rack
+from fegear.geometry.custom_fillet_tooth import with_fillet
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import EllipseOnSpace
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.shaped_tooth import with_fillet
 from fegear.geometry.tip_interference import interference, refuse_shaped
 
 #: NASA's four-square test gear.

@@ -12,6 +12,7 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.iso6336.pair_geometry import of_pair
 from fegear.formulas.iso6336.part3_internal import outline_root_form
 from fegear.geometry.curves import arc_length
+from fegear.geometry.custom_fillet_tooth import with_fillet, with_tip
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import ArcFillet, ControlFillet, EllipseOnSpace, PointsFillet
 from fegear.geometry.gear import Gear
@@ -19,7 +20,6 @@ from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.mass import section_moments
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.shaped_tooth import with_fillet, with_tip
 from fegear.geometry.tip_interference import interference
 
 RING = InternalTooth(60, PinionCutter(30, 0.0, 1.25, math.nan, 0.2))

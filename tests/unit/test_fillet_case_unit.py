@@ -13,10 +13,10 @@ from fegear.base.errors import FegearError, InputError
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.geometry.curves import Arc
+from fegear.geometry.custom_fillet_tooth import CustomFilletTooth, ShapedRingTooth
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_curves import ArcsFillet, EllipseFillet, SplineFillet
 from fegear.geometry.outline import gear_outline
-from fegear.geometry.shaped_tooth import ShapedRingTooth, ShapedTooth
 from fegear.output.dxf import write_dxf
 from fegear.results.catalogue import STAGES
 
@@ -65,7 +65,7 @@ def test_kinds_of_fillets_become_curves():
     }  # fmt: skip
     for fillet, curve in kinds.values():
         gear = built(case(fillet)).gears["p"]
-        assert type(gear.tooth) is ShapedTooth
+        assert type(gear.tooth) is CustomFilletTooth
         assert isinstance(gear.tooth.fillet, curve)
         assert gear.shaped
     assert not built(case()).gears["p"].shaped

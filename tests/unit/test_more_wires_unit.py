@@ -242,7 +242,8 @@ def test_formats_say_what_they_need_and_what_they_can_write():
     def of(flag):
         return {name for name, one in FORMATS.items() if getattr(one, flag)}
 
-    assert of("asymmetric") == {"dxf", "step", "msh", "vtu", "inp", "solid-inp", "solid-vtu"}
+    asymmetric = {"dxf", "step", "msh", "vtu", "inp", "solid-inp", "solid-vtu"}
+    assert of("asymmetric") == asymmetric, "a format that was tried with asymmetric teeth belongs in this list"
     assert of("takes_results") == {"rexs"}
     assert of("needs") == {"fmu"}
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.shaped_tooth import ShapedTooth
+    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
 
 def needed_reach(scene: Scene, name: str) -> int:
@@ -191,7 +191,7 @@ def fillet_remarks(name: str, gear: Gear) -> tuple[str, ...]:
     """That points of a fillet scatter, where its curvature swings."""
     if not gear.shaped:
         return ()
-    tooth = cast("ShapedTooth", gear.tooth)
+    tooth = cast("CustomFilletTooth", gear.tooth)
     if tooth.swings <= _SWINGS:
         return ()
     said = (

@@ -102,10 +102,14 @@ class CoupledTeeth(ABC):
         """Of driver and driven."""
         return self.driver, self.driven
 
+    def contact_slope(self, member: Member) -> float:
+        """kappa of a gear's part in a contact that follows its load [m^2/N]."""
+        return self.source(member).log_slope
+
     @property
     def log_slope(self) -> float:
         """kappa of both gears for the whole face [m/N]."""
-        return (self.driver.log_slope + self.driven.log_slope) / self.face_width
+        return (self.contact_slope("driver") + self.contact_slope("driven")) / self.face_width
 
     def power(self, member: Member) -> float:
         """q of a gear's part in a contact that approaches by q w^0.9 more under a line load w [m (m/N)^0.9]."""
@@ -216,18 +220,19 @@ class CoupledTeeth(ABC):
         parts = [source.own(i, radius)]
         if power and q > 0.0:
             parts.append(np.asarray(q * (np.asarray(load) / self.face_width) ** (EXPONENT - 1.0)))
-        if self.hertz != "none" and source.log_slope > 0.0:
+        kappa = self.contact_slope(member)
+        if self.hertz != "none" and kappa > 0.0:
             b = self.half_width(np.asarray(load), relative_radius)
-            parts.append(source.log_slope * np.log(source.reference_half_width(radius) / b))
+            parts.append(kappa * np.log(source.reference_half_width(radius) / b))
         return tuple(parts)
 
     def _edges(self, at: Contacts, half_width: Array) -> EdgeContacts:
         """Contacts near the tips: that of the driven gear touches at the start of the path, the driver's at its end."""
         early = at.x < self.middle_of_path
         (soft1, least1), (soft2, least2) = (
-            (softer * source.log_slope / self.log_slope / self.face_width, least)
-            for source in self.both
-            for softer, least in (source.tip_wedge,)
+            (softer * self.contact_slope(member) / self.log_slope / self.face_width, least)
+            for member in MEMBERS
+            for softer, least in (self.source(member).tip_wedge,)
         )
         wedge, least = np.where(early, soft2, soft1), np.where(early, least2, least1)
         return EdgeContacts(at.edge / half_width, wedge, least / half_width)

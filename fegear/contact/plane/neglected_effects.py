@@ -52,7 +52,7 @@ _IDLE: dict[str, Callable[[Engagement], bool]] = {
     CORNER_CONTACT.name: lambda e: not any(corner.exists for corner in e.meshing.corners),
     NEIGHBOUR_COUPLING.name: lambda e: all(source.reach == 0 for source in e.compliance.both),
     HERTZ.name: lambda e: all(
-        e.compliance.source(member).log_slope <= 0.0 and e.compliance.power(member) <= 0.0 for member in MEMBERS
+        e.compliance.contact_slope(member) <= 0.0 and e.compliance.power(member) <= 0.0 for member in MEMBERS
     ),
 }
 

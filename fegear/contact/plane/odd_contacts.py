@@ -23,8 +23,8 @@ from fegear.base.arrays import same
 from fegear.base.errors import InputError
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.formulas.weber_banaschek import contact_approach
+from fegear.geometry.custom_fillet_tooth import with_tip
 from fegear.geometry.pair import MEMBERS
-from fegear.geometry.shaped_tooth import with_tip
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -210,7 +210,7 @@ def on_less_face(matrices: PairMatrices, share: Array, at: Contacts, compliance:
     narrower = compliance.half_width(load / share, at.relative_radius)
     for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True):
         gear = compliance.pair.gear(member)
-        if compliance.source(member).log_slope > 0.0:
+        if compliance.contact_slope(member) > 0.0:
             r = np.clip(radius, *gear.involute_radii)
             harder = contact_approach(gear, r, line_load / share, narrower)
             added = (harder - contact_approach(gear, r, line_load, usual)) / load

@@ -24,11 +24,11 @@ from fegear.design.fillet.fillet_limits import Limits
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.conjugate_rack import conjugate_rack
+from fegear.geometry.custom_fillet_tooth import CustomFilletTooth, with_fillet
 from fegear.geometry.fillet_shapes import FilletShape, FlankAbove
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.pair import Member
-from fegear.geometry.shaped_tooth import ShapedTooth, with_fillet
 
 if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import FilletCurve
@@ -106,7 +106,7 @@ class FilletBench:
     def generated(self) -> InvoluteTooth:
         """The tooth as its tool makes it."""
         tooth = self.gear.symmetric_tooth
-        return tooth.generated if isinstance(tooth, ShapedTooth) else tooth
+        return tooth.generated if isinstance(tooth, CustomFilletTooth) else tooth
 
     @property
     def active_roll(self) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 from fegear.base.arrays import Array, Index
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.odd_compliance import OddCompliance
-from fegear.contact.plane.revolution_orders import (
+from fegear.contact.plane.sidebands import (
     HIGHEST,
     ConditionIndicators,
     amplitudes,

@@ -327,12 +327,12 @@ def _formed(gear: Gear) -> InvoluteTooth | None:
 
 
 def _shape(gear: Gear, body: Body) -> GearShape:
+    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
     from fegear.geometry.external_tooth import Tooth
     from fegear.geometry.internal_tooth import InternalTooth
-    from fegear.geometry.shaped_tooth import ShapedTooth
 
     formed = _formed(gear)
-    generated = gear.tooth.generated if isinstance(gear.tooth, ShapedTooth) else gear.tooth
+    generated = gear.tooth.generated if isinstance(gear.tooth, CustomFilletTooth) else gear.tooth
     if isinstance(generated, InternalTooth):
         return _ring_shape(gear, generated, body)
     if not isinstance(generated, Tooth):

@@ -34,7 +34,7 @@ from fegear.results.gear.body_section import body_figures
 from fegear.results.gear.drawing import Drawing, pair_figure
 
 if TYPE_CHECKING:
-    from fegear.geometry.shaped_tooth import ShapedTooth
+    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
 
 def _everything(scene: Scene) -> tuple[str, ...]:
@@ -343,7 +343,7 @@ def _fillets(seen: Seen) -> Iterator[str]:
     """Numbers of fillets that no tool generates, beside those of the tool."""
     for name, gear in seen.data.gears.items():
         if gear.shaped:
-            tooth = cast("ShapedTooth", gear.tooth)
+            tooth = cast("CustomFilletTooth", gear.tooth)
             m, made = 1e3 * gear.module, tooth.generated
             corner = ", the involute starts in a corner" if tooth.undercut else ""
             yield (

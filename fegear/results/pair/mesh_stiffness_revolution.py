@@ -25,7 +25,7 @@ from fegear.case.built.pair_spec import pair_spec
 from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
 from fegear.contact.plane.odd_compliance import OddCompliance
 from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
-from fegear.contact.plane.revolution_orders import (
+from fegear.contact.plane.sidebands import (
     AlongRevolution,
     ConditionIndicators,
     RevolutionOrders,

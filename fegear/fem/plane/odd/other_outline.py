@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import GeometryError, InputError
-from fegear.geometry.shaped_tooth import with_tip
+from fegear.geometry.custom_fillet_tooth import with_tip
 
 if TYPE_CHECKING:
     from fegear.geometry.involute_tooth import InvoluteTooth

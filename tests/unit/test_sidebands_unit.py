@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.plane.over_revolution import OverRevolution
-from fegear.contact.plane.revolution_orders import along_revolution, condition_indicators, revolution_orders
+from fegear.contact.plane.sidebands import along_revolution, condition_indicators, revolution_orders
 
 CYCLES, POSITIONS, PITCH, START = 12, 400, 6e-3, -2e-3
 

@@ -31,7 +31,7 @@ _COMES_BACK = 1e-6
 
 
 @dataclass(frozen=True)
-class ShapedTooth(SideOfTooth, InvoluteTooth):
+class CustomFilletTooth(SideOfTooth, InvoluteTooth):
     """An external tooth with fillets of its own.
 
     Parameters
@@ -168,20 +168,20 @@ class ShapedTooth(SideOfTooth, InvoluteTooth):
         return int(np.count_nonzero(marked))
 
 
-class ShapedRingTooth(ShapedTooth):
+class ShapedRingTooth(CustomFilletTooth):
     """The same of an internal gear."""
 
     side: ClassVar[int] = -1
 
 
-def with_fillet(tooth: Tooth | InternalTooth, shape: FilletShape) -> ShapedTooth:
+def with_fillet(tooth: Tooth | InternalTooth, shape: FilletShape) -> CustomFilletTooth:
     """A tooth with another fillet than its tool's."""
-    return ShapedRingTooth(tooth, shape) if isinstance(tooth, InternalTooth) else ShapedTooth(tooth, shape)
+    return ShapedRingTooth(tooth, shape) if isinstance(tooth, InternalTooth) else CustomFilletTooth(tooth, shape)
 
 
 def with_tip(tooth: InvoluteTooth, radius: float) -> InvoluteTooth:
     """An external tooth that ends at another tip circle [modules]; flanks and fillets stay."""
-    if isinstance(tooth, ShapedTooth):
+    if isinstance(tooth, CustomFilletTooth):
         return replace(tooth, generated=replace(tooth.generated, tip_radius=radius))
     if not isinstance(tooth, Tooth):
         raise GeometryError("tip_radius", f"{radius:.6g} modules", "is possible for external teeth only")
