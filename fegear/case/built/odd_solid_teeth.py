@@ -46,11 +46,13 @@ def solve_odd_solid_gear(asked: OddSolidToSolve, cache: SolutionCache | None = N
     from fegear.fem.solid.odd.odd_solid_influence import odd_solid_influence
 
     gear = asked.gear.gear
-    _, *others = parts_in_modules(gear)
+    _, twist, width, poisson_ratio = parts_in_modules(gear)
     with keys_of_the_case(asked.gear.name):
         return odd_solid_influence(
             gear.symmetric_tooth,
-            *others,
+            twist,
+            width,
+            poisson_ratio,
             gear.bore_radius / gear.module,
             asked.gear.settings,
             asked.teeth.in_solid(gear.teeth),
