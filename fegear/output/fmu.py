@@ -35,7 +35,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.output.file_names import file_name
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.loaded_teeth import loaded_pairs, over_revolution_task, teeth_of
+from fegear.results.pair.loaded_teeth import loaded_pairs, odd_teeth_task, teeth_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -318,7 +318,7 @@ def mesh_models(scene: Scene) -> list[tuple[MeshModel, str]]:
     """
     if not scene.pairs:
         raise InputError("pair", "(not given)", "is required for an FMU", "add [pair.NAME]")
-    tasks = [over_revolution_task(scene, name) for name in loaded_pairs(scene)]
+    tasks = [odd_teeth_task(scene, name) for name in loaded_pairs(scene)]
     alone = replace(scene, case=scene.case.model_copy(update={"results": []}), estimates=False)
     found = run_plan(alone, make_plan(alone, STAGES, tasks)).outcomes
     return [_model(scene, task.subject, cast("LoadedTeeth", teeth_of(task, found[task].data))) for task in tasks]

@@ -69,7 +69,7 @@ def planned():
 EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
     "flank-design", "flank-fracture", "flank-generation",
-    "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "pair-forced-response",
+    "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "odd-solid-solution", "pair-forced-response",
     "rack-geometry", "rack-solution",
     "rack-stiffness", "rack-transmission-error", "sizing", "tooth-contact",
     "transmissibility",

@@ -55,7 +55,7 @@ def test_the_page_is_sent_the_figures_of_the_design_and_no_others(monkeypatch):
     ]  # fmt: skip
     monkeypatch.setattr(designs, "relief_for_case", lambda results, pair, how: (pair, how))
     monkeypatch.setattr(designs, "what_it_leaves", lambda results, how: f"left by {how}")
-    scene = SimpleNamespace(case=SimpleNamespace(pair={}))
+    scene = SimpleNamespace(case=SimpleNamespace(pair={}, gauge={}, encoders={}))
     found = designed(SimpleNamespace(figures=figures, scene=scene), "I", "ground")
     assert (found["pair"], found["reliefs"], found["told"]) == ("I", ("I", "ground"), "left by ground")
     assert [one["key"] for one in found["figures"]] == ["designed-relief_I", "designed-relief_candidates_I"]

@@ -14,6 +14,7 @@ from fegear.case.crack_growth import CrackGrowthPart
 from fegear.case.flank_design import FlankDesignPart
 from fegear.contact.plane.neglected_effects import _load_change
 from fegear.contact.wide import spots
+from fegear.design.flanks.flank_design import FlankDesign
 from fegear.dynamics.motion import motion_over_revolution as over_revolution
 from fegear.dynamics.train.tooth_strain import ToothStrain
 from fegear.engine import processes
@@ -25,7 +26,6 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.results.gear import stiffness
 from fegear.results.pair import crack_path
-from fegear.results.relief.flank_design_data import FlanksShown
 from fegear.studies.cost import knobs
 
 
@@ -84,8 +84,7 @@ def test_a_motion_over_a_revolution_is_the_mean_of_its_repetitions(monkeypatch, 
 def test_misalignment_scatters_over_more_than_one_place():
     for size, scattered in ((1, False), (2, True), (3, True)):
         task = SimpleNamespace(scatter=SimpleNamespace(over_face=np.zeros(size)))
-        data = SimpleNamespace(design=SimpleNamespace(task=task))
-        assert FlanksShown.scattered.fget(data) is scattered
+        assert FlankDesign.scattered.fget(SimpleNamespace(task=task)) is scattered
 
 
 def test_spots_of_several_loads_are_put_together_with_the_most_steps(monkeypatch):
@@ -110,23 +109,29 @@ def test_spots_of_several_loads_are_put_together_with_the_most_steps(monkeypatch
         assert getattr(found, name).tolist() == [[times, 3.0 * times, 2.0 * times]]
 
 
-def test_neighbours_of_fourth_order_err_no_less_than_usual_and_no_more_than_it():
-    """The least is a share of the usual difference, which grows with the width of the pressure up to a limit."""
-    from fegear.fem.plane import estimate
+def test_neighbours_err_no_less_than_a_share_of_the_usual_and_than_what_the_gear_turns():
+    def kept(share, beside=0.0):
+        one = SimpleNamespace(
+            _least_beside=beside, _neighbour_at_samples=lambda k: np.full((99, 99), 2.0), common_errors=(0.0, 0.5)
+        )
+        (found,) = Estimate._neighbour_estimate(one, 1, np.zeros(1), np.array([share]))
+        return (found - 0.5) / 2.0
 
-    def least(order, share, beside=0.0):
-        one = SimpleNamespace(_least_beside=beside,
-            _neighbour_at_samples=lambda k: np.full((99, 99), 2.0), common_errors=(0.0, 0.5),
-            _for_width=lambda *_: share, fine=SimpleNamespace(flank=SimpleNamespace(order=order)),
-        )  # fmt: skip
-        (kept,) = Estimate._neighbour_estimate(one, 1, np.zeros(1))
-        return (kept - 0.5) / 2.0
+    assert kept(0.1, 1e7) == pytest.approx(0.5 * (10.0 - 0.5))  # a millionth of what the gear turns
+    assert kept(0.1) == pytest.approx(0.1)
+    assert kept(0.8) == pytest.approx(0.8)
 
-    most = estimate._MOST_USUAL_NEIGHBOUR
-    assert least(4, 0.5 * most, 1e7) == pytest.approx(0.5 * (10.0 - 0.5))  # a millionth of what the gear turns
-    assert least(4, 0.5 * most) == pytest.approx(0.5 * most)
-    assert least(4, 2.0 * most) == pytest.approx(most)
-    assert least(2, 0.5 * most) == pytest.approx(most)
+
+@pytest.mark.parametrize(("order", "edges", "share", "least"), [
+    (4, 2.0, 0.1, 0.1), (4, 2.0, 0.4, 0.25), (4, 1.0, 0.4, 0.4), (4, 1.0, 0.9, 0.8), (3, 2.0, 0.1, 0.8)
+])  # fmt: skip
+def test_a_share_of_the_usual_is_limited_but_on_long_edges_and_of_lower_orders(order, edges, share, least):
+    """Of external teeth; 0.25 of what neighbours usually differ by was error at most, on long edges 0.8."""
+    one = SimpleNamespace(
+        _for_width=lambda *_: share, _edges_below=edges,
+        fine=SimpleNamespace(flank=SimpleNamespace(order=order), tooth=SimpleNamespace(side=1)),
+    )  # fmt: skip
+    assert Estimate._least_of_usual(one, np.zeros(2)) == pytest.approx([least, least])
 
 
 def test_a_pair_may_jam_by_what_rounded_profile_shifts_are_off_and_by_no_more():

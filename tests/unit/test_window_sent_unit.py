@@ -141,7 +141,7 @@ def test_a_slider_s_map_stays_until_the_load_is_beyond_twice_or_below_a_fiftieth
 
     def at_rest(load):
         teeth = SimpleNamespace(nominal=load)
-        results = SimpleNamespace(scene=SimpleNamespace(case=SimpleNamespace(pair={})),
+        results = SimpleNamespace(scene=SimpleNamespace(case=SimpleNamespace(pair={}, gauge={}, encoders={})),
                                   outcomes={Task("loaded-pair", "I"): SimpleNamespace(data=teeth),
                                             Task("geometry", ""): SimpleNamespace(data=None)})  # fmt: skip
         (name,) = maps.at_rest(results)

@@ -156,11 +156,15 @@ def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
     return (Task(kind_of(scene, name).stage, name),)
 
 
+def odd_teeth_task(scene: Scene, name: str) -> Task:
+    """The task that loads a pair, a plane one with the odd teeth of its gears, if they have any."""
+    kind = kind_of(scene, name)
+    return Task(ODD if kind is PLANE and odd_gears_of(scene, name) else kind.stage, name)
+
+
 def over_revolution_task(scene: Scene, name: str) -> Task:
-    """The task that loads a pair with the odd teeth of its gears, if they have any."""
-    if name in scene.wide_pairs:
-        return Task(ODD_WIDE, name)
-    return Task(ODD if odd_gears_of(scene, name) else kind_of(scene, name).stage, name)
+    """The task that makes a pair ready to be followed over a revolution, also one of 3D gears with odd teeth."""
+    return Task(ODD_WIDE, name) if name in scene.wide_pairs else odd_teeth_task(scene, name)
 
 
 def needs_gears(scene: Scene, name: str) -> tuple[Task, ...]:

@@ -30,7 +30,7 @@ from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import (
     loaded_pair,
     needs_teeth,
-    over_revolution_task,
+    odd_teeth_task,
     pair_over_revolution,
 )
 
@@ -73,7 +73,7 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     for name, mesh in part.mesh.items():
         pair = part.loaded_pair_of(name)
         # teeth like those of another mesh are those of perfect gears
-        needed.update(dict.fromkeys(needs_teeth(scene, pair) if mesh.like else (over_revolution_task(scene, pair),)))
+        needed.update(dict.fromkeys(needs_teeth(scene, pair) if mesh.like else (odd_teeth_task(scene, pair),)))
     return tuple(needed)
 
 
