@@ -132,8 +132,6 @@ class ReliefDesign:
     within : mapping of shape to ndarray, shape (L, 2)
         Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
         empty without tolerances, or with a film.
-    left : float or None
-        Transmission error, peak to peak, that a design with compliances off by their errors leaves on true teeth [m].
     tables_leave : float
         Transmission error, peak to peak, of the relief tables read back linearly [m].
     """
@@ -148,7 +146,6 @@ class ReliefDesign:
     curves: Mapping[str, Loaded]
     over_range: Mapping[str, tuple[TransmissionError, ...]]
     within: Mapping[Shape, Array]
-    left: float | None
     tables_leave: float
 
     @property
@@ -227,17 +224,11 @@ def design_relief(
     report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
-    left = None
-    if shifted:
-        off = [replace(states["designed"], compliance=s.compliance) for s in shifted]
-        left = sum(transmission_error(state, load, task.harmonics).peak_to_peak for state in off)
-        left = max(left, _DIGITS * te["designed"].mean)
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     return ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, left,
-        tables_leave,
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
     )  # fmt: skip
 
 

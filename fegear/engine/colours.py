@@ -49,7 +49,7 @@ ROLES: dict[str, Look] = {
     "linear tip relief": Look("orange", "dashdot", "triangle-up"),
     "parabolic tip relief": Look("green", "longdashdot", "diamond"),
     "linear tip relief for one load": Look("sky", "dashdot", "triangle-up"),
-    "parabolic tip relief for one load": Look("sky", "longdashdot", "diamond"),
+    "parabolic tip relief for one load": Look("grey", "longdash", "diamond"),
     "relief of the case": Look("purple", "dash", "triangle-down"),
     "present relief": Look("purple", "dash", "triangle-down"),
     "over map": Look("white"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
@@ -151,15 +151,16 @@ class Pair(Described):
         """Write drawings and meshes of both gears, as ``fegear export`` does; see `Results.export`."""
         return self.data.export(folder, formats)
 
-    def relieved(self, design: Results, shape: Literal["designed", "linear", "parabolic"] = "designed") -> Pair:
+    def relieved(self, design: Results, shape: str = "designed") -> Pair:
         """The pair with a relief that `fegear.relief` found for it.
 
         Parameters
         ----------
         design : Results
             Of `fegear.relief` for this pair.
-        shape : {"designed", "linear", "parabolic"}
-            The relief of the tables (plane teeth only), or the tip reliefs that a shop can grind.
+        shape : str
+            ``"designed"``, the relief of the tables (plane teeth only), or ``"linear"`` or ``"parabolic"``: the tip
+            reliefs that a shop can grind, also by their names in tables, ``"linear tip relief"``.
 
         Returns
         -------
@@ -175,6 +176,7 @@ class Pair(Described):
             raise InputError("design", shown(design), "is not a relief design", "pass the result of fegear.relief")
         if not isinstance(shape, str):
             raise InputError("shape", shown(shape), "must be a text", 'for example "linear"')
+        shape = shape.removesuffix(" tip relief")
         labels = table_names(design.scene, self.name)
         reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
         driver, driven = (

@@ -81,9 +81,10 @@ def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, 
         begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
         assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
     assert "20.0 ± 4.0 µm" in chart.words
+    assert chart.words.endswith("; f_{fα} 3.0 µm")
 
 
 def test_a_gear_without_relief_has_a_level_chart(engagement, tips):
     chart = profile_chart("p", engagement.pair.driver, replace(tips[0], amount=0.0), TipTolerance(4e-6, None, 3e-6))
     assert not chart.profile.any()
-    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief")
+    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief; f_{fα} 3.0 µm")

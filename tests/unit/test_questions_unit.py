@@ -230,6 +230,7 @@ def test_a_pair_takes_the_relief_of_its_design_and_keeps_its_names_and_solutions
         "amount": pytest.approx(30e-6), "start_roll_angle": pytest.approx(0.43), "shape": "parabolic",
     }  # fmt: skip
     assert ground.driven.keys["relief"]["tip"]["amount"] == pytest.approx(40e-6)
+    assert pair.relieved(found, "parabolic tip relief") == ground  # as tables name it
     with pytest.raises(InputError, match='choose from "designed", "linear", "parabolic"'):
         pair.relieved(found, "cubic")
     for wrong, shape in ((1, "designed"), (found, 3)):

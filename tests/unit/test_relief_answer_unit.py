@@ -7,11 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
+from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.grinding import TIP, Grinding
 from fegear.results.relief.relief_over_range import LeftOverRange, said_of_range
 
+CLASS = "f_Hα of class 5, assumed"
 LOAD = np.array([1000.0, 2000.0])
 
 
@@ -30,14 +33,15 @@ def said(linear, parabolic):
         "parabolic tip relief": left((1.3, 2.5), parabolic), "linear tip relief for one load": left((3.9, 0.8)),
     }  # fmt: skip
     data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
-    return list(said_of_range(Seen(data, None, "I")))
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS),) * 2)
+    return list(said_of_range(Seen(data, asked, "I")))
 
 
 @pytest.mark.parametrize(
     ("linear", "parabolic", "words"),
     [
         ((4.3, 5.9), (3.5, 4.5), ("at most 4.3 µm at 50 N m (more than the 3.7 µm without relief); parabolic tip "
-         "relief at most 3.5 µm.")),
+         "relief is better within its tolerances: at most 3.5 µm.")),
         ((1.5, 5.9), (3.5, 4.5), "at most 5.9 µm at 100 N m (7 µm without relief)."),
         ((2.0, 3.0), (1.9, 3.9), "at most 2 µm at 50 N m (3.7 µm without relief)."),
     ],
@@ -46,7 +50,7 @@ def test_what_tolerances_may_leave_is_said_behind_what_to_grind(linear, paraboli
     first, within, single = said(linear, parabolic)
     assert first.startswith("Pair I: grind 6 µm from d 60.0 mm on gear p and 6 µm from d 60.0 mm on gear w, linear: ")
     assert first.endswith("7 -> 2.4 µm at 100 N m, 3.7 -> 1.2 µm at 50 N m, peak to peak.")
-    assert within == f"Pair I: within the tolerances of the grinding table {words}"
+    assert within == f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length {words}"
     assert single.endswith(
         "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
     )
@@ -54,3 +58,13 @@ def test_what_tolerances_may_leave_is_said_behind_what_to_grind(linear, paraboli
 
 def test_without_tolerances_nothing_is_said_of_them():
     assert len(said(None, None)) == 2
+
+
+def test_tolerances_are_named_once_or_by_gear_and_of_ground_gears_only():
+    p, w = (Grinding(gear, member, "", TIP, "linear", 6e-6) for gear, member in zip("pw", MEMBERS, strict=True))
+    given, graded = TipTolerance(3e-6, 0.4e-3, 0.0), TipTolerance(6e-6, 0.4e-3, 0.0, "f_Hα of class 6")
+    assert allowed_words((given, given), (p, w)) == "± 3 µm and ± 0.4 mm of length"
+    assert allowed_words((given, graded), (w,)) == "± 6 µm (f_Hα of class 6) and ± 0.4 mm of length"
+    assert allowed_words((given, graded), (p, w)) == (
+        "± 3 µm on gear p, ± 6 µm (f_Hα of class 6) on gear w and ± 0.4 mm of length"
+    )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.gear_deviations import gear_deviations
+from fegear.case.built.gear_deviations import gear_deviations, own_deviation
 from fegear.case.built.members import gear_name
 from fegear.case.design import TipTolerancePart
 from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
@@ -81,4 +81,13 @@ def _tolerance(part: GearPart, gear: Gear, asked: TipTolerancePart) -> TipTolera
     except RangeError:
         by_class = _inside_the_standard(gear, grade)
         slope, form = by_class.profile_slope, by_class.profile_form
-    return TipTolerance(slope if asked.amount is None else asked.amount, asked.length, form)
+    if asked.amount is not None:
+        return TipTolerance(asked.amount, asked.length, form)
+    return TipTolerance(slope, asked.length, form, _origin_of_slope(part))
+
+
+def _origin_of_slope(part: GearPart) -> str:
+    """Where f_Halpha of a gear comes from, in words."""
+    if own_deviation(part, "profile_slope") is not None:
+        return "f_Hα as specified"
+    return f"f_Hα of class {_class_of(part)}" + (", assumed" if part.tolerance_class is None else "")

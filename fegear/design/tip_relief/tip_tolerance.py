@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -13,7 +13,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.relief import EndRelief
 
 #: Length of a tip relief without a tolerance of its own may be off by this part of it.
-_OF_LENGTH = 0.1
+OF_LENGTH = 0.1
 #: The shortest relief that is left, over the one of the drawing.
 _SHORTEST = 0.02
 #: Amounts below this are none [m].
@@ -32,15 +32,18 @@ class TipTolerance:
         Along the line of action [m]; None: a tenth of the length.
     form : float
         What the profile may deviate besides, to the side of more removal [m].
+    origin : str
+        Where the amount's tolerance comes from, for sentences: "f_Hα of class 5"; empty where the case gives it.
     """
 
     amount: float
     length: float | None
     form: float
+    origin: str = field(default="", compare=False)
 
     def length_of(self, gear: Gear, tip: EndRelief) -> float:
         """By how much the length of a relief may be off [m]."""
-        return _OF_LENGTH * gear.base_radius * (tip.end - tip.start) if self.length is None else self.length
+        return OF_LENGTH * gear.base_radius * (tip.end - tip.start) if self.length is None else self.length
 
     def off(self, gear: Gear, tip: EndRelief, amount: int, length: int) -> EndRelief:
         """The relief with amount and length at an end of their tolerances: -1, 0 or 1 each."""

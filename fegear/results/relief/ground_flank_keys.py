@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.design.flanks.flank_tolerance import LeadTolerance
 from fegear.design.flanks.forms import lead_bearer
+from fegear.design.tip_relief.tip_tolerance import OF_LENGTH
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.relief.grinding import BIAS, CROWNING, END, SLOPE, TIP, Grinding
 
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
 
     from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.flanks.forms import GroundRelief
-
-#: Tolerance of the length of a tip relief without one of its own, over the length.
-_OF_LENGTH = 0.1
 
 
 def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -> list[str]:
@@ -73,7 +71,7 @@ def ground_rows(
         return Grinding(
             gears[member], member, design, TIP, shape, amount, amount_tolerance=allowed.amount,
             start_diameter=foot, end_diameter=top, start_roll_angle=float(pair.roll_angle(start, member)),
-            length=length, length_tolerance=_OF_LENGTH * length if allowed.length is None else allowed.length,
+            length=length, length_tolerance=OF_LENGTH * length if allowed.length is None else allowed.length,
         )  # fmt: skip
 
     def lead(kind: str, shape: str, amount: float, allowed: float, length: float = math.nan) -> Grinding:

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.transmission_error import TransmissionError
 
+#: What the last digits of a mesh's coordinates move, over the mean: nothing is known any better.
+_DIGITS = 1e-9
+
 
 class LeftError(NamedTuple):
     """Estimated errors of the transmission error that is left [m]; None where nothing states one."""
@@ -41,5 +44,5 @@ def left_error(te: TransmissionError, shifted: Sequence[Engagement], searched: f
     shift = transmission_error_shift(te, shifted)
     if shift is None:
         return LeftError(searched, searched)
-    more = searched or 0.0
-    return LeftError(shift.peak_to_peak + more, shift.effective + more)
+    more, least = searched or 0.0, _DIGITS * te.mean
+    return LeftError(max(shift.peak_to_peak + more, least), max(shift.effective + more, least))

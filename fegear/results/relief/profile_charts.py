@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _PLACES = 241
 #: Share of the deepest removal that is left free above the involute.
 _ROOM = 0.18
+#: Limit toward more removal in the legend.
+_LOWER = "the same and profile form f_{fα}"
 _SHAPES = {1.0: "linear", 2.0: "parabolic"}
 
 
@@ -77,6 +79,8 @@ def profile_chart(
             f"{tolerance.length_of(gear, tip) * 1e3:.1f} mm"
         )
         marks = [Mark("x", gear.base_radius * tip.start * 1e3, f"d {2e3 * start:.2f}")]
+    if tolerance.form > NOTHING:
+        words = f"{words}; f_{{fα}} {tolerance.form * 1e6:.1f} µm"
     return ProfileChart(
         name, words, tuple(marks), gear.base_radius * roll, -tip.removal(roll), -least, -most,
         None if present is None else -present.removal(roll),
@@ -103,14 +107,15 @@ def k_chart(of: str) -> Chart:
     return Chart(
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
         "Pair {name}: profile of each gear over roll length, material removed below zero, tip at right. Dashed: limits "
-        "by the tolerances of amount and length, and of profile form toward more removal (flank tolerance class).",
+        "by the tolerances of amount and length; the lower one (dash-dot) includes profile form f_fα (flank tolerance "
+        "class), more removal.",
         (
             Over(
                 "roll_length",
                 (
                     Line("profile", "nominal", "designed", look={**plain, "width": 2.4}),
-                    Line("upper", "limits", "grey", look={**plain, "dash": "dash"}),
-                    Line("lower", "limits", "grey", look={**plain, "dash": "dash"}),
+                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}),
+                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}),
                     Line("present", "present relief", "present relief", look=plain),
                 ),
                 _ordinate,

@@ -211,19 +211,33 @@ def _inside(chart: ReliefChart, amount: float, length: float) -> bool:
 
 @dataclass(frozen=True)
 class ChartInputs:
-    """What the chart of a pair depends on."""
+    """What the chart of a pair depends on.
+
+    Parameters
+    ----------
+    part : ChartPart
+    metric : {"peak_to_peak", "effective_error"}
+    over : LoadRange or None
+        Loads of the chart where it has none of its own.
+    name : str
+        Of the pair.
+    said_by_relief : bool
+        Whether the case requests ``relief`` for the same loads and shape, which says what to grind on each gear.
+    """
 
     part: ChartPart
     metric: Metric
     over: LoadRange | None
     name: str = field(compare=False)
+    said_by_relief: bool = field(default=False, compare=False)
 
 
 def chart_inputs(scene: Scene, name: str) -> ChartInputs:
     """Collect what a case says of the chart of a pair."""
     part = design_part(scene)
     over = None if part.chart.loads else design_range(scene, name)
-    return ChartInputs(part.chart, part.metric, over, name)
+    said = over is not None and part.chart.shape in part.grind and "relief" in scene.case.results
+    return ChartInputs(part.chart, part.metric, over, name, said)
 
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
@@ -263,7 +277,9 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
     )  # fmt: skip
     amount, length = chart.best()
     equal = f"{figures(amount * 1e6, 2)} µm over {figures(length * chart.unit_length * 1e3, 2)} mm"
-    if not ground:
+    if ground and seen.asked.said_by_relief:
+        yield f"Pair {seen.name}: best equal tip relief on both gears: {equal}."
+    elif not ground:
         yield f"Pair {seen.name}: no tip relief reduces the excitation."
     else:
         yield (

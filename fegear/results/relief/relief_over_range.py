@@ -14,6 +14,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.left_errors import left_error
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair
+    from fegear.results.relief.grinding import Grinding
 
 
 #: Share of what one shape may leave within its tolerances below which another is worth a word.
@@ -114,7 +116,8 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     d = seen.data
     shape = d.grinding[0].shape
     none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
-    ground = [row.words for row in d.grinding if row.shape == shape and row.words]
+    rows = [row for row in d.grinding if row.shape == shape and row.words]
+    ground = [row.words for row in rows]
     left = ", ".join(
         f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
         f"{figures(best.torque[i], 4)} N m"
@@ -123,7 +126,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
     if ground and best.most is not None:
-        yield _tolerated(seen, shape, none, best, every)
+        yield _tolerated(seen, shape, none, best, every, rows)
     single = d.over_range.get(f"{shape} tip relief for one load")
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
@@ -136,14 +139,17 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         )
 
 
-def _tolerated(seen: Seen, shape: str, none: LeftOverRange, best: LeftOverRange, ends: tuple[int, ...]) -> str:
+def _tolerated(
+    seen: Seen, shape: str, none: LeftOverRange, best: LeftOverRange, ends: tuple[int, ...], ground: list[Grinding]
+) -> str:  # fmt: skip
     """What tolerances may leave where they take most of the gain, and which other shape they hurt less."""
     most, at = best.allowed, np.array(ends) % best.torque.size
     i = int(at[np.argmax(most[at] / none.peak_to_peak[at])])
-    without = f"{figures(none.peak_to_peak[i] * 1e6, 2)} µm without relief"
+    more = "more than the " if most[i] > none.peak_to_peak[i] else ""
+    without = f"{more}{figures(none.peak_to_peak[i] * 1e6, 2)} µm without relief"
     said = (
-        f"Pair {seen.name}: within the tolerances of the grinding table at most {figures(most[i] * 1e6, 2)} µm at "
-        f"{figures(best.torque[i], 4)} N m ({'more than the ' if most[i] > none.peak_to_peak[i] else ''}{without})"
+        f"Pair {seen.name}: within {allowed_words(seen.asked.tolerances, ground)} at most "
+        f"{figures(most[i] * 1e6, 2)} µm at {figures(best.torque[i], 4)} N m ({without})"
     )
     others = {
         key.removesuffix(" tip relief"): one
@@ -153,7 +159,8 @@ def _tolerated(seen: Seen, shape: str, none: LeftOverRange, best: LeftOverRange,
     other = min(others, key=lambda key: others[key].worst_allowed, default="")
     if not other or others[other].worst_allowed > _CLEARLY * best.worst_allowed:
         return f"{said}."
-    return f"{said}; {other} tip relief at most {figures(others[other].allowed[i] * 1e6, 2)} µm."
+    within = figures(others[other].allowed[i] * 1e6, 2)
+    return f"{said}; {other} tip relief is better within its tolerances: at most {within} µm."
 
 
 def _key(seen: Seen) -> str:

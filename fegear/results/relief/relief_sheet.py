@@ -252,7 +252,7 @@ class ReliefShown:
         searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
         for label, te in design.te.items():
             curve, ground = design.curves[label], searched.get(label)
-            error = LeftError(design.left, design.left) if label == "designed" else self._left_error(te, ground)
+            error = self._left_error(te, ground)
             harris = HarrisMap(
                 pair, curve.x, curve.load, curve.transmission_error.T, at=self.load, word="design", over=over
             )
