@@ -24,6 +24,7 @@ UNCOUNTED = {
     "contact/plane/loaded_pair.py": {"neglected"},  # asked of it once more
     "contact/plane/roll_grids.py": {"others"},  # the same grid with other teeth, evaluated before
     "contact/wide/loaded.py": {"cache", "progress"},
+    "design/tip_relief/tip_tolerance.py": {"origin"},  # in sentences
 }
 
 
