@@ -222,7 +222,7 @@ class ChartInputs:
     name : str
         Of the pair.
     said_by_relief : bool
-        Whether the case requests ``relief`` for the same loads and shape, which says what to grind on each gear.
+        Whether ``relief`` designs for the same loads and shape: what to grind on each gear is its answer.
     """
 
     part: ChartPart
@@ -236,7 +236,7 @@ def chart_inputs(scene: Scene, name: str) -> ChartInputs:
     """Collect what a case says of the chart of a pair."""
     part = design_part(scene)
     over = None if part.chart.loads else design_range(scene, name)
-    said = over is not None and part.chart.shape in part.grind and "relief" in scene.case.results
+    said = over is not None and part.chart.shape in part.grind
     return ChartInputs(part.chart, part.metric, over, name, said)
 
 
