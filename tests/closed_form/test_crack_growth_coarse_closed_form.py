@@ -164,7 +164,7 @@ def test_what_is_said_of_a_path():
     assert "heads through the rim, 1 to 2 mm, fracture at 1.5 mm;" in _said(
         _path(end="rim", stopped="steps", fracture=1.5e-3)
     )
-    assert _said(_path(stopped="closed")) == "does not grow, the loads of its tooth do not open it."
+    assert _said(_path(stopped="closed")) == "no growth, the loads on its tooth do not open it."
     for cycles, text in ((2.5e6, ", 2.5e+06 load cycles;"), (math.inf, ", stops below the threshold;")):
         assert text in _said(crack_path.Path("pinion", one.made, 4, one.found, 2e-3, cycles))
     assert crack_path._first(SimpleNamespace(data=crack_path.CrackPathData((one,)))) == ("pinion", 4)

@@ -201,10 +201,10 @@ def test_neighbours_are_reciprocal_and_ends_are_softer():
 def test_the_corner_of_a_rack_is_that_of_a_gear_of_many_teeth():
     """The slope of its wedge; the difference falls like one over the teeth."""
     rack = SimpleNamespace(tooth=RackTooth(BasicRack(1.0, 1.25, 0.38)), module=MODULE)
-    found, half = RackCompliance.tip_wedge.fget(SimpleNamespace(rack=rack))
+    found, half = RackTeeth.tip_wedge.fget(SimpleNamespace(rack=rack))
     assert half == pytest.approx(0.02 * MODULE)
     off = []
-    for teeth in (100, 300, 900):
+    for teeth in (300, 900, 2700):
         of = SimpleNamespace(gear=SimpleNamespace(tooth=Tooth(teeth, BasicRack(1.0, 1.25, 0.38))),
                              reference_half_width=1.0)  # fmt: skip
         off.append(FiniteElementCompliance.tip_wedge.fget(SimpleNamespace(influence=of))[0] - found)
