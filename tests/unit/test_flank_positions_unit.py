@@ -15,6 +15,7 @@ from fegear.contact.wide.transmission_error import (
     curve_through,
     flank_transmission_error_shift,
     from_half,
+    no_less_than_shown_by_half,
     series_over_pitch,
 )
 from fegear.geometry.external_tooth import Tooth
@@ -187,6 +188,32 @@ def test_what_positions_leave_of_harmonics_is_read_as_the_harmonics_are(position
     assert stated.max() < by_lines.max()
     if positions == 48:
         assert stated.max() < 0.3 * by_lines.max()
+
+
+@pytest.mark.parametrize("place", [0.35, 0.42, 0.57])
+@pytest.mark.parametrize("positions", [24, 48])
+def test_harmonics_beyond_those_of_half_the_positions_are_stated_no_better_than_a_kink_leaves_them(place, positions):
+    """A kink where no line begins: of a pair 7 nm of a harmonic were 6.4 off where 2.2 were stated."""
+    points = roll_points(pair(20.0), positions)
+    turn = (points.x - points.breaks[0]) / points.period
+    away = np.abs(np.mod(turn - place + 0.5, 1.0) - 0.5)
+    values = 1.0 - 2.0 * away
+    te = FlankTransmissionError(1.0, points, values, values, values, series_over_pitch(points, values), 1.0)
+    stated = flank_transmission_error_shift(te, te, te, te).amplitude
+    n = np.arange(1, positions // 2 + 1)
+    exact = np.where(n % 2, 4.0 / (math.pi * n) ** 2, 0.0)
+    true = np.abs(te.series.amplitude - exact)
+    assert (true <= 1.5 * stated).all()
+    assert np.sqrt(np.mean(stated**2)) < 20.0 * np.sqrt(np.mean(true**2))
+
+
+def test_what_half_of_the_positions_show_is_continued():
+    change = np.array([9.0, 1.0, 2.0, 4.0, 0.5, 3.0, 0.1, 0.2])
+    np.testing.assert_allclose(
+        no_less_than_shown_by_half(change), [9.0, 1.0, 2.0, 4.0, 2.56, 3.0, 4.0 * (4 / 7) ** 2, 1.0]
+    )
+    for few in ([], [0.3]):
+        assert no_less_than_shown_by_half(np.array(few)).tolist() == few
 
 
 def test_coarser_gears_count_in_part_and_longer_panels_whole():

@@ -12,8 +12,10 @@ module of the ends of the face, and a share that would be spread evenly over les
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,7 +24,7 @@ from fegear.base.shown import shown
 from fegear.contact.wide.lines import ContactLines, long_line
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.contact.wide.root_stress import RootedLines
@@ -33,26 +35,65 @@ if TYPE_CHECKING:
 _FREE_END = 0.5
 
 
+#: Every so many roll positions are looked at, and what is taken for an error of what that changes.
+_FEWER = ((2, 1.0), (3, 0.5))
 #: Places nearer to each other than this share of the face are one.
 _BESIDE = 1e-9
 #: Places along the face at which the gap is read for its straight part.
 _READ = 101
 
 
+class FactorsLeft(NamedTuple):
+    """What the number of roll positions leaves open of K_Fbeta and K_Falpha."""
+
+    face: float
+    transverse: float
+
+
+_NOTHING_LEFT = FactorsLeft(0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class RootFactors:
-    """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa]."""
+    """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa].
+
+    `left_by_positions` is what the number of roll positions leaves open of both factors.
+    """
 
     face: float = shown("", "maximum root stress over that with uniform load along each contact line", name="K_Fbeta")
     transverse: float = shown(
         "", "maximum root stress with uniform load along each line over that of unmodified flanks", name="K_Falpha"
     )
     largest: float = shown("MPa", "maximum root stress in the normal section")
+    left_by_positions: FactorsLeft = _NOTHING_LEFT
 
 
 def transverse_load_factor(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:
     """K_Halpha, shape (L,): largest load on a pair over the mesh cycle, over the largest of perfect flanks."""
     return np.asarray(found.pair_load.max(axis=(0, 1)) / perfect.pair_load.max(axis=(0, 1)))
+
+
+def transverse_left_by_positions(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:
+    """What the number of roll positions leaves open of K_Halpha, shape (L,): see `fewer_positions`."""
+    load, ideal = found.pair_load.max(axis=0), perfect.pair_load.max(axis=0)
+    whole = load.max(axis=0) / ideal.max(axis=0)
+    changes = [
+        part * np.abs(load[at].max(axis=0) / ideal[at].max(axis=0) - whole)
+        for part, at in fewer_positions(found.lines.roll.size)
+    ]
+    return np.asarray(np.max(changes, axis=0))
+
+
+def fewer_positions(count: int) -> list[tuple[float, Mask]]:
+    """Parts of so many roll positions, shape (P,) each, and how much of what each changes is taken for an error.
+
+    A factor is a ratio of largest values, which stand between the positions. Without every second of them either the
+    nearest position or the next one is left: both change nothing if these are equally far. Every third has neither
+    once: a kink is half as far from the nearest position, at most, as that moves it.
+    """
+    number = np.arange(count)
+    every = [(part, number % step == first) for step, part in _FEWER for first in range(step)]
+    return [(part, at) for part, at in every if at.any()]
 
 
 def even_along_the_lines(lines: ContactLines, force: Array, shortest: float = 0.0) -> Array:
@@ -91,8 +132,28 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
     free = _FREE_END * m - _BESIDE * (lines.high - lines.low)
     inside = (z >= lines.low + free) & (z <= lines.high - free)
     places = z[inside] if helical and inside.any() else z
-    largest, even, best = (rooted.largest("tension", force, places, across=True) for force in loads)
-    return RootFactors(largest / even, even / best, largest)
+    felt = [rooted.surface("tension", force, places) for force in loads]
+
+    def largest(at: Mask | None = None) -> list[float]:
+        return [
+            rooted.largest("tension", force, places, surface, across=True, at=at)
+            for force, surface in zip(loads, felt, strict=True)
+        ]
+
+    whole = largest()
+    face, transverse = _ratios(whole)
+    changes = [
+        part * np.abs(np.subtract(_ratios(largest(at)), (face, transverse)))
+        for part, at in fewer_positions(lines.roll.size)
+    ]
+    left = np.max(changes, axis=0)
+    return RootFactors(face, transverse, whole[0], FactorsLeft(*left.tolist()))
+
+
+def _ratios(largest: Sequence[float]) -> tuple[float, float]:
+    """K_Fbeta and K_Falpha of largest tensions s_1, s_2, s_3; one where no load that counts is on the lines."""
+    face, transverse = (one / two if two > 0.0 else 1.0 for one, two in pairwise(largest))
+    return face, transverse
 
 
 def straight_gap(pair: GearPair, gaps: FlankGaps) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array, Index, ReadOnlyArrays, first_of_largest
+from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
@@ -129,20 +129,28 @@ class RootedLines:
         return np.where(root, self.surface(side, force, places)[0] / m**2, np.nan)
 
     def largest(
-        self, side: Side, force: Array, z: ArrayLike, surface: Array | None = None, *, across: bool = False
+        self,
+        side: Side,
+        force: Array,
+        z: ArrayLike,
+        surface: Array | None = None,
+        *,
+        across: bool = False,
+        at: Mask | None = None,
     ) -> float:
         """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone.
 
         With `across` it is that of the stress across the root, at right angles to the helix through the place, which
-        is what a formula for the normal section means, rather than of that along the transverse section.
+        is what a formula for the normal section means, rather than of that along the transverse section. With `at`,
+        shape (P,), only these roll positions count.
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         arc, sign = self.solution.fillets[side].arc, _SIGN[side]
         felt = self.surface(side, force, places) if surface is None else surface
-        total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
-            arc.size, -1
-        )
-        return _highest(total, arc, sign, self.ends(side).at(places / m, force).ravel()) / m**2
+        total = _across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]
+        teeth = slice(None) if at is None else at[self.teeth[:, 0]]
+        end = self.ends(side).at(places / m, force)[:, teeth]
+        return _highest(total[:, :, teeth].reshape(arc.size, -1), arc, sign, end.ravel()) / m**2
 
     def influence(self, side: Side, z: ArrayLike) -> RootInfluence:
         """The stress of every place as a sum over the stations' forces, for many states of forces.

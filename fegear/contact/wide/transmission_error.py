@@ -155,11 +155,28 @@ def flank_transmission_error_shift(
     for part, (one, two) in zip(shape, pairs, strict=True):
         # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
         change = 2.0 * np.abs(one.series.coefficients - two.series.coefficients)[1:]
+        if two is fewer:
+            change = no_less_than_shown_by_half(change)
         amplitude += part * np.pad(change, (0, known))[:known]
     return TransmissionErrorShift(
         changed("mean", mean), changed("peak_to_peak", shape), changed("effective_error", shape),
         no_less_than_beside(amplitude), changed("mean_secant", mean),
     )  # fmt: skip
+
+
+def no_less_than_shown_by_half(change: Array) -> Array:
+    """What half of the roll positions change of harmonics, shape (N,), as an error of all of them.
+
+    Half of the positions show half of the harmonics. Of the others neither they nor all positions show much where the
+    curve turns between positions: both are too small, and differ by less than the error. A curve without jumps turns at
+    worst at a kink, whose harmonics n fall like 1/n^2: so the largest change in the upper half of those that half of
+    the positions show is continued.
+    """
+    n, half = np.arange(1, change.size + 1), change.size // 2
+    if not half:
+        return change
+    least = change[half // 2 : half].max() * (half / n) ** 2
+    return np.where(n > half, np.maximum(change, least), change)
 
 
 def curve_through(points: Panels, values: Array, x: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,8 +32,8 @@ if TYPE_CHECKING:
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.geometry.pair import Member
 
-#: Seconds of a roll position: both gears, both solutions, three loads.
-_SECONDS = 0.0015
+#: Seconds of a roll position: both gears, three solutions, three loads.
+_SECONDS = 0.0022
 #: Of what the load over the face may be off by, relatively, so much is error of K_Fbeta at least: where that is all but
 #: one, both solutions agree by chance (of a spur pair they were 1e-5 apart where 7e-5 was true, K_Hbeta off by 4e-3).
 _OF_LOAD = 0.05
@@ -55,8 +56,10 @@ class FlankLoadFactorsData:
     loaded : LoadedWidePair
     transverse, transverse_error : ndarray, shape (L,)
         K_Halpha and its estimated error.
-    root, coarse : mapping of Member to RootFactors
-        At the nominal load, and by the coarser solution; None where there is none.
+    root : mapping of Member to RootFactors
+        At the nominal load.
+    coarser : mapping of Member to tuple of RootFactors
+        On longer panels, and of coarser gears on these; empty where there is no coarser solution.
     by_iso : ndarray, shape (L,), or None
         K_Hbeta of ISO 6336-1; None where the standard does not hold.
     why_not : str
@@ -68,7 +71,7 @@ class FlankLoadFactorsData:
     loaded: LoadedWidePair
     transverse_error: Array
     root: Mapping[Member, RootFactors]
-    coarse: Mapping[Member, RootFactors | None]
+    coarser: Mapping[Member, tuple[RootFactors, ...]]
     why_not: str
     exponent: float
     gap: float = shown("um", "straight part of the gap over the face")
@@ -87,20 +90,23 @@ class FlankLoadFactorsData:
         return {member: ComparedRoot(root, self.off) for member, root in self.root.items()}
 
     def off(self, factor: str) -> float | None:
-        """How far a factor of both solutions is apart: of both gears the farther, for both feel the same loads.
+        """Estimated error of a factor: what solutions and roll positions change, of both gears the farther.
 
-        One of them may agree by chance, for a factor is the ratio of two largest values. K_Fbeta is off by a part of
-        what the load over the face is off by, for that reaches the root smoothed.
+        One of them may agree by chance, for a factor is the ratio of two largest values, and both feel the same loads.
+        Longer panels and coarser gears may change it in opposite directions: their changes add up, with what half of
+        the roll positions change. K_Fbeta is off by a part of what the load over the face is off by, for that reaches
+        the root smoothed.
         """
         apart = [
-            abs(getattr(coarse, factor) - getattr(self.root[member], factor))
-            for member, coarse in self.coarse.items() if coarse is not None
+            sum(abs(getattr(two, factor) - getattr(one, factor)) for one, two in pairwise((self.root[member], *others)))
+            for member, others in self.coarser.items() if others
         ]  # fmt: skip
         if not apart:
             return None
+        left = max(getattr(root.left_by_positions, factor) for root in self.root.values())
         loaded = self.loaded
         by_load = loaded.error.face_load_factor[loaded.at] / loaded.stated.face_load_factor[loaded.at]
-        return max(*apart, _OF_LOAD * float(by_load) if factor == "face" else 0.0)
+        return max(*apart, _OF_LOAD * float(by_load) if factor == "face" else 0.0) + float(left)
 
 
 @dataclass(frozen=True)
@@ -117,39 +123,44 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
         iso_root_exponent,
         root_factors,
         straight_gap,
+        transverse_left_by_positions,
         transverse_load_factor,
     )
     from fegear.contact.wide.root_stress import rooted_lines
 
     loaded = loaded_flanks(upstream, inputs.name)
-    found, coarse, i = loaded.found, loaded.error.coarse, loaded.at
+    found, i = loaded.found, loaded.at
     pair, coupling, z = found.pair, loaded.coupling, loaded.places_along
+    solutions = (found, *((loaded.error.longer, loaded.error.coarse) if loaded.estimated else ()))
     # Perfect flanks on the same lines, each with its own compliances.
-    perfect = loaded.flanks.solve(found.load, None, found.known)
-    perfect_coarse = loaded.flanks.solve(found.load, None, coarse.known) if loaded.estimated else perfect
+    ideal = [loaded.flanks.solve(found.load, None, one.known) for one in solutions]
     root: dict[Member, RootFactors] = {}
-    root_coarse: dict[Member, RootFactors | None] = {}
+    coarser: dict[Member, tuple[RootFactors, ...]] = {}
     for member, gear in inputs.gears.items():
         influence = solid_solution_of(upstream, gear)
-        rooted = rooted_lines(pair, member, found.lines, influence.fine, coupling=coupling)
-        root[member], root_coarse[member] = root_factors(found, perfect, rooted, z, i), None
-        if loaded.estimated and influence.coarse is not None:
-            again = rooted_lines(pair, member, coarse.lines, influence.coarse, coupling=coupling)
-            root_coarse[member] = root_factors(coarse, perfect_coarse, again, z, i)
-    transverse = transverse_load_factor(found, perfect)
-    off = _apart(transverse, transverse_load_factor(coarse, perfect_coarse) if loaded.estimated else np.nan)
+        bodies = [influence.fine, influence.fine, influence.coarse] if influence.coarse else [influence.fine]
+        root[member], *others = (
+            root_factors(one, perfect, rooted_lines(pair, member, one.lines, body, coupling=coupling), z, i)
+            for one, perfect, body in zip(solutions, ideal, bodies, strict=False)
+        )
+        coarser[member] = tuple(others)
+    factors = [transverse_load_factor(one, perfect) for one, perfect in zip(solutions, ideal, strict=True)]
+    transverse, off = factors[0], np.full(found.load.shape, np.nan)
+    if loaded.estimated:
+        off = np.sum([_apart(one, two) for one, two in pairwise(factors)], axis=0)
+        off = off + transverse_left_by_positions(found, ideal[0])
     by_iso, why_not = None, ""
     try:
         by_iso = np.array([iso_face_load_factor(pair, loaded.gaps, load) for load in found.load.tolist()])
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, off, root, root_coarse, why_not, iso_root_exponent(pair),
+        loaded, off, root, coarser, why_not, iso_root_exponent(pair),
         straight_gap(pair, loaded.gaps.under(loaded.nominal)), by_iso, transverse,
     )  # fmt: skip
 
 
-def _apart(factor: Array, other: Array | float) -> Array:
+def _apart(factor: Array, other: Array) -> Array:
     """Difference of two solutions; never zero, which means exact, where both agree to the last digit by chance."""
     return np.asarray(np.maximum(np.abs(other - factor), np.spacing(factor)))
 
