@@ -1,5 +1,6 @@
 """Errors of the root factors of solved flanks: what two solutions share by chance is not stated as certain."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from fegear.contact.wide import load_factors
 from fegear.contact.wide.load_factors import FactorsLeft, RootFactors, root_factors, transverse_left_by_positions
-from fegear.results.pair.load_factors import _OF_LOAD, FlankLoadFactorsData
+from fegear.results.pair.load_factors import _OF_LOAD, FlankLoadFactorsData, _transverse_left
 
 
 def factors(face, transverse, left=(0.0, 0.0)):
@@ -87,3 +88,31 @@ def test_few_roll_positions_are_parted_as_far_as_they_go():
         every = load_factors.fewer_positions(count)
         assert len(every) == parts
         assert all(at.any() and at.size == count for _, at in every)
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """What shares of one everywhere are solved with, and at how many positions."""
+
+    positions: int
+
+    def solve(self, load, gaps, known):
+        assert (gaps, known) == (None, "many")
+        return shares(np.ones(self.positions))
+
+
+def shares(share):
+    return SimpleNamespace(
+        pair_load=share[None, :, None], known="many", load=np.ones(1), lines=SimpleNamespace(roll=np.arange(share.size))
+    )
+
+
+def test_the_factor_of_shares_errs_by_what_many_roll_positions_change():
+    """Of a helical pair it was 1.000 at 16 positions, certain to 1e-8, and 1.005 at 48."""
+    many = np.ones(48)
+    many[20] = 1.005  # between the few
+    loaded = SimpleNamespace(found=shares(np.ones(16)), over=SimpleNamespace(found=shares(many)), flanks=Flanks(16))
+    left = _transverse_left(loaded, np.ones(1), shares(np.ones(16)))
+    np.testing.assert_allclose(left, 2 * 0.005)  # without that position nothing is left of it, either
+    loaded.over.found = loaded.found
+    np.testing.assert_array_equal(_transverse_left(loaded, np.ones(1), shares(np.ones(16))), 0.0)

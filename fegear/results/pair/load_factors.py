@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.load_factors import RootFactors
+    from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.geometry.pair import Member
 
@@ -123,7 +124,6 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
         iso_root_exponent,
         root_factors,
         straight_gap,
-        transverse_left_by_positions,
         transverse_load_factor,
     )
     from fegear.contact.wide.root_stress import rooted_lines
@@ -148,7 +148,7 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
     transverse, off = factors[0], np.full(found.load.shape, np.nan)
     if loaded.estimated:
         off = np.sum([_apart(one, two) for one, two in pairwise(factors)], axis=0)
-        off = off + transverse_left_by_positions(found, ideal[0])
+        off = off + _transverse_left(loaded, transverse, ideal[0])
     by_iso, why_not = None, ""
     try:
         by_iso = np.array([iso_face_load_factor(pair, loaded.gaps, load) for load in found.load.tolist()])
@@ -158,6 +158,21 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
         loaded, off, root, coarser, why_not, iso_root_exponent(pair),
         straight_gap(pair, loaded.gaps.under(loaded.nominal)), by_iso, transverse,
     )  # fmt: skip
+
+
+def _transverse_left(loaded: LoadedWidePair, transverse: Array, perfect: LoadedFlanks) -> Array:
+    """What the number of roll positions leaves open of K_Halpha, shape (L,).
+
+    Its change at the many positions of numbers of a whole base pitch, which are solved anyway, and what these leave.
+    """
+    from fegear.contact.wide.load_factors import transverse_left_by_positions, transverse_load_factor
+
+    many = loaded.over.found
+    if many.lines.roll.size > loaded.found.lines.roll.size:
+        flanks = replace(loaded.flanks, positions=many.lines.roll.size)
+        perfect = flanks.solve(many.load, None, many.known)
+    change = np.abs(transverse_load_factor(many, perfect) - transverse)
+    return np.asarray(change + transverse_left_by_positions(many, perfect))
 
 
 def _apart(factor: Array, other: Array) -> Array:
