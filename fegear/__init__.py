@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import (
         dynamic_factor,
+        flank_design,
         load_sharing,
         mesh_stiffness_revolution,
         relief,
@@ -34,7 +35,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "fillet_design",
-    "load_sharing", "mesh_stiffness_revolution", "rating", "relief",
+    "flank_design", "load_sharing", "mesh_stiffness_revolution", "rating", "relief",
     "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
@@ -48,6 +49,7 @@ _HOMES = {
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
     "fillet_design": "workbench.fillet",
+    "flank_design": "workbench.questions",
     "load_sharing": "workbench.questions",
     "mesh_stiffness_revolution": "workbench.questions",
     "rating": "workbench.rating",

@@ -152,15 +152,16 @@ class Pair(Described):
         return self.data.export(folder, formats)
 
     def relieved(self, design: Results, shape: str = "designed") -> Pair:
-        """The pair with a relief that `fegear.relief` found for it.
+        """The pair with a relief that `fegear.relief` or `fegear.flank_design` found for it.
 
         Parameters
         ----------
         design : Results
-            Of `fegear.relief` for this pair.
+            Of `fegear.relief` or `fegear.flank_design` for this pair.
         shape : str
             ``"designed"``, the relief of the tables (plane teeth only), or ``"linear"`` or ``"parabolic"``: the tip
-            reliefs that a shop can grind, also by their names in tables, ``"linear tip relief"``.
+            reliefs that a shop can grind, also by their names in tables, ``"linear tip relief"``. Of `flank_design` a
+            design of its grinding table, ``"profile-and-lead"``: lead and twist are replaced, too, where it has any.
 
         Returns
         -------
@@ -172,19 +173,19 @@ class Pair(Described):
         InputError
             If the design has no such relief.
         """
+        from fegear.results.relief.applied_design import MODIFIED
+
         if not isinstance(design, Results):
             raise InputError("design", shown(design), "is not a relief design", "pass the result of fegear.relief")
         if not isinstance(shape, str):
             raise InputError("shape", shown(shape), "must be a text", 'for example "linear"')
         shape = shape.removesuffix(" tip relief")
         labels = table_names(design.scene, self.name)
-        reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
+        flanks = {member: _flank_keys(design, self.name, member, labels[member], shape) for member in _MEMBERS}
+        replaced = MODIFIED if any(flank.keys() - {"relief"} for flank in flanks.values()) else ("relief",)
         driver, driven = (
-            Gear.of(
-                name,
-                {**{k: v for k, v in gear.keys.items() if k != "relief"}, **({"relief": relief} if relief else {})},
-            )
-            for name, gear, relief in zip(_apart(self.names), (self.driver, self.driven), reliefs.values(), strict=True)
+            Gear.of(name, {**{k: v for k, v in gear.keys.items() if k not in replaced}, **flank})
+            for name, gear, flank in zip(_apart(self.names), (self.driver, self.driven), flanks.values(), strict=True)
         )
         keys = {key: value for key, value in self.keys.items() if key != "compliance"}
         made = Pair(driver, driven, compliance=self.keys["compliance"], name=self.name,
@@ -223,13 +224,13 @@ def _apart(names: tuple[str, str]) -> tuple[str, str]:
     return names if names[0] != names[1] else ("driver", "driven")
 
 
-def _relief(design: Results, pair: str, member: Member, label: str, shape: str) -> dict[str, Any]:
-    """One gear's relief as a case file has it, in SI."""
+def _flank_keys(design: Results, pair: str, member: Member, label: str, shape: str) -> dict[str, Any]:
+    """One gear's flank modifications as a case file has them, in SI."""
     names = list(design.tables.keys())
     if shape == "designed" and f"relief_{label}" in names:
         table = design.tables[f"relief_{label}"]
         places, removals = table.column("roll_angle").si.tolist(), table.column("relief").si.tolist()
-        return {"table": {"roll_angles": places, "removals": removals}}
+        return {"relief": {"table": {"roll_angles": places, "removals": removals}}}
     if f"grindable_{pair}" not in names:  # teeth with a width
         return _ground_over_face(design, pair, label, shape)
     ground = design.tables[f"grindable_{pair}"]
@@ -238,20 +239,20 @@ def _relief(design: Results, pair: str, member: Member, label: str, shape: str) 
         known = ", ".join(f'"{one}"' for one in ["designed", *dict.fromkeys(ground["shape"].tolist())])
         raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", f"choose from {known}")
     amount, start = (float(ground.column(key).si[rows][0]) for key in ("amount", "start_roll_angle"))
-    return {"tip": {"amount": amount, "start_roll_angle": start, "shape": shape}}
+    return {"relief": {"tip": {"amount": amount, "start_roll_angle": start, "shape": shape}}}
 
 
 def _ground_over_face(design: Results, pair: str, label: str, shape: str) -> dict[str, Any]:
-    """One gear's tip relief of the grinding table, where the design has no relief by theory."""
-    from fegear.results.relief.applied_design import designs_of, keys_of_design
+    """One gear's modifications of the grinding table, where the design has no relief by theory."""
+    from fegear.results.relief.applied_design import EXACT, designs_of, keys_of_design
 
     tables = {table.name: table for table in design.tables}
-    known = [one for one in designs_of(tables, pair) if one.endswith(" tip relief")]
-    chosen = f"{shape} tip relief"
+    known = [one for one in designs_of(tables, pair) if one != EXACT]
+    chosen = shape if shape in known else f"{shape} tip relief"
     if chosen not in known:
         words = ", ".join(f'"{one.removesuffix(" tip relief")}"' for one in known)
         remedy = f"choose from {words}" if words else "pass the result of fegear.relief"
         raise InputError("shape", f'"{shape}"', "is not one of the designed reliefs", remedy)
     driver, driven = design.scene.case.pair[pair].driver, design.scene.case.pair[pair].driven
     keys = keys_of_design(tables, pair, (driver, driven), chosen)
-    return dict(keys[label.removeprefix(f"{pair}_")].get("relief", {}))
+    return dict(keys[label.removeprefix(f"{pair}_")])

@@ -31,6 +31,7 @@ _TITLES = {
     "transmission-error": "Transmission error",
     "relief": "Relief",
     "fillet-design": "Fillet",
+    "flank-design": "Flanks",
     "dynamic-factor": "Dynamic factor",
     "rating": "Rating",
 }
@@ -355,6 +356,42 @@ def relief(
     document, several = _designed_for(pair, torque, load)
     document["design"] = {"pair": pair.name, **several, **table(design, "design")}
     return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache, neglected=neglected)
+
+
+def flank_design(
+    pair: Pair,
+    *,
+    torque: Torque | Iterable[Torque] | Mapping[str, Any] | None = None,
+    load: Force | Iterable[Force] | None = None,
+    design: Mapping[str, Any] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Modifications of profile and lead with the minimum transmission error of a helical pair, or of a spur pair in 3D.
+
+    Parameters
+    ----------
+    pair : Pair
+        Helical, or with ``width="solid"`` or ``"slices"``.
+    torque, load : torque or force, or several
+        As in `relief`: several, or a range, are designed for together.
+    design : mapping, optional
+        Keys of ``[flank_design]`` of a case file: ``families``, ``scatter``, ``positions``, ``gear``, ...
+    effects, tolerance, progress, cache
+        As in `transmission_error`.
+
+    Returns
+    -------
+    Results
+        Tables ``flank_topography_<pair>_<gear>`` (exact), ``flank_designs_<pair>`` and ``grinding_<pair>``;
+        `Pair.relieved` applies a design of the latter.
+    """
+    document, _ = _designed_for(pair, torque, load)
+    loads = {"loads": document["pair"][pair.name]["loads"]} if "loads" in document["pair"][pair.name] else {}
+    document["flank_design"] = {"pair": pair.name, **loads, **table(design, "design")}
+    return ask_of_pair("flank-design", pair, document, effects, tolerance, progress, cache, neglected=False)
 
 
 def dynamic_factor(

@@ -241,6 +241,15 @@ def test_a_relief_design_takes_a_helix_and_a_range_of_torques():
     assert "helix" not in draft(Answers("relief", {}), "x")
 
 
+def test_a_relief_design_of_a_helical_pair_takes_a_helix_deviation():
+    given = {"teeth": "20 31", "helix_angle": "15 deg", "face_width": "12 mm", "lead_error": "10 um"}
+    scene = build_scene(tomllib.loads(draft(Answers("relief", given), "x")), "x", Path())
+    assert scene.case.effects.misalignment
+    assert scene.case.pair["I"].line_error is not None
+    with pytest.raises(InputError, match='--lead-error = "10 um": requires a helical pair; specify --helix-angle'):
+        Answers("relief", {"lead_error": "10 um"})
+
+
 @pytest.mark.parametrize("text", ["120 to 320 N m", "120 N m..320 N m", "120 N m … 0.32 kN m"])
 @pytest.mark.parametrize("helix", [{}, {"helix_angle": "15 deg", "face_width": "12 mm"}])
 def test_a_relief_is_drafted_for_a_range_of_torques(text, helix):

@@ -262,6 +262,38 @@ def test_tip_relief_of_a_pair_with_a_width_is_taken_from_its_grinding_table(pair
             pair.relieved(found, shape)
 
 
+def test_flanks_designed_over_the_face_are_taken_whole_and_replace_lead_and_twist(pair, monkeypatch):
+    monkeypatch.setattr("fegear.workbench.pair.table_names", lambda scene, name: {
+        "driver": "I_pinion", "driven": "I_wheel",
+    })  # fmt: skip
+    found, columns = design_of(pair), {
+        "gear": (["pinion", "pinion", "wheel"], ""), "design": (["profile-and-lead"] * 3, ""),
+        "modification": (["tip relief", "crowning", "tip relief"], ""), "shape": (["linear"] * 3, ""),
+        "amount": ([12e-6, 6e-6, 18e-6], "um"), "start_diameter": ([61e-3, np.nan, 101e-3], "mm"),
+        "end_diameter": ([65.9e-3, np.nan, 104.9e-3], "mm"),
+    }  # fmt: skip
+    made = (TableColumn(name, np.array(values), unit) for name, (values, unit) in columns.items())
+    type(found).tables = Named([RunTable("grinding_I", tuple(made))])
+    bent = fegear.Gear.of("wheel", {**WHEEL.keys, "lead": {"crowning": "9 um"}})
+    ground = Pair(PINION, bent, compliance="cornell").relieved(found, "profile-and-lead")
+    assert ground.driver.keys["lead"] == {"crowning": "6 um"}
+    assert ground.driven.keys["relief"]["tip"]["amount"] == "18 um"
+    assert "lead" not in ground.driven.keys  # that of before is replaced
+
+
+def test_flanks_are_designed_for_one_torque_a_range_or_loads(monkeypatch):
+    seen = {}
+    monkeypatch.setattr(questions, "ask_of_pair", lambda wanted, pair, document, *rest, **more: seen.update(document))
+    wide = Pair(PINION, WHEEL, width="slices")
+    fegear.flank_design(wide, torque="60 to 90 N m", design={"families": ["profile"]})
+    assert seen["pair"]["I"]["torques"] == {"start": "60 N m", "stop": "90 N m", "count": 3}
+    assert seen["flank_design"] == {"pair": "I", "families": ["profile"]}
+    fegear.flank_design(wide, load=[1000.0, 2000.0])
+    assert seen["flank_design"]["loads"] == [1000.0, 2000.0]
+    fegear.flank_design(wide, torque="90 N m")
+    assert seen["flank_design"] == {"pair": "I"}
+
+
 def test_pairs_are_alike_where_they_are_described_alike(pair):
     same = Pair(PINION, WHEEL, compliance="cornell")
     assert pair == same

@@ -104,6 +104,9 @@ class Answers:
                     _option(name), f'"{text}"', f'is not used for a case of kind "{self.kind}"', "remove it"
                 )
             check(asked[name], len(KINDS[self.kind].gears), text)
+        if self.has("lead_error") and not self.helical:
+            told = f'"{self["lead_error"]}"'
+            raise InputError("--lead-error", told, "requires a helical pair", "specify --helix-angle, or remove it")
         if self.has("tip_relief") != self.has("relief_length"):
             told = f'"{self["tip_relief"]}" over "{self["relief_length"]}"'
             raise InputError("--tip-relief", told, "must have both amount and length", 'for example "20 um" "4 mm"')

@@ -39,7 +39,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
     "gear": Kind("gear: tooth stiffness and root stress, formulas of the standards", ("gear",), _TOOTH),
     "pair": Kind("gear pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
     "relief": Kind("gear pair: design of profile modification", ("pinion", "wheel"),
-                   ("helix_angle", *_LOADED)),
+                   ("helix_angle", *_LOADED, "lead_error")),
     "helical": Kind("helical pair: load distribution over the face width, transmission error, misalignment",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
     "gearbox": Kind("gearbox stage: helical pair on shafts and bearings, misalignment, load distribution, rating",

@@ -31,7 +31,7 @@ _GRINDING = (OF_FLANKS, OF_LEADS)
 #: Keys of a gear that a lead in the grinding table becomes.
 _LEAD = {SLOPE: "slope", CROWNING: "crowning"}
 #: Flank modifications of a gear.
-_MODIFIED = ("relief", "lead", "bias", "topography")
+MODIFIED = ("relief", "lead", "bias", "topography")
 #: Decimals of an amount that is not rounded.
 _ALL = 9
 #: Sizes of gears are the same within this of themselves.
@@ -186,7 +186,7 @@ def applied_design(
     gears = gears_of_design(before, document, pair, where)
     keys = keys_of_design(tables, pair, gears, chosen)
     of_lead = any(str(row["design"]) == chosen for row in _rows(tables, OF_LEADS, pair))
-    modified = _MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",)
+    modified = MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",)
     if of_lead and before.case.effects.relief:  # on flanks that count: all but slope and crowning stays
         keys, modified = _leads(before, tables, pair, keys), ("lead",)
     remark = f"{REMARK}: {chosen}, {source}, pair {pair}"

@@ -16,8 +16,9 @@ from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
+from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.flank_design_data import FlanksShown
-from fegear.results.relief.grinding import grinding_table
+from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.design.flanks.flank_design import FlankState
     from fegear.engine.sheet.seen import Seen
+    from fegear.results.relief.grinding import Grinding
 
 #: A transmission error below this is none [m]; by this share of it less is worth a word.
 _NONE, _CLEARLY = 1e-12, 0.05
@@ -162,7 +164,8 @@ def _grind(seen: Seen) -> Iterator[str]:
     best, least = design.best, design.least
     torque, none = _left(seen, design.unrelieved.label)
     after = _left(seen, best.label)[1]
-    words = [row.words for row in seen.data.grinding if row.design == best.label and row.words]
+    ground = [row for row in seen.data.grinding if row.design == best.label and row.words]
+    words = [row.words for row in ground]
     left = ", ".join(
         f"{_microns(none[i])} -> {_microns(after[i])} µm at {_torque(torque[i])}"
         for i in dict.fromkeys(i % torque.size for i in (-1, 0))
@@ -173,7 +176,7 @@ def _grind(seen: Seen) -> Iterator[str]:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
         without = f"{'more than the ' if within[i] > none[i] else ''}{_microns(none[i])} µm without relief"
         yield (
-            f"Pair {seen.name}: within the tolerances of the grinding table at most {_microns(within[i])} µm at "
+            f"Pair {seen.name}: within {_allowed(seen, ground)} at most {_microns(within[i])} µm at "
             f"{_torque(torque[i])} ({without})."
         )
     if least is not best:
@@ -183,6 +186,14 @@ def _grind(seen: Seen) -> Iterator[str]:
             f"Pair {seen.name}: {least.label} ({least.modifications} modifications) is only {gain} better than "
             f"{best.label} ({best.modifications}), {why}."
         )
+
+
+def _allowed(seen: Seen, ground: list[Grinding]) -> str:
+    """Tolerances of what is ground: of tips, and of everything else by its kind."""
+    tips = [row for row in ground if row.modification == TIP]
+    tip = [allowed_words(seen.asked.tolerance.tips, tips)] if tips else []
+    rest = [f"± {_microns(row.amount_tolerance)} µm {row.modification}" for row in ground if row.modification != TIP]
+    return ", ".join([*tip, *dict.fromkeys(rest)])
 
 
 def _further(seen: Seen, best: FlankState, least: FlankState) -> str:
