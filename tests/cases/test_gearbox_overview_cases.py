@@ -3,17 +3,26 @@
 import copy
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.case.reading import build_scene
+from fegear.design.flanks.lead_correction import LevelLead
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.results.shafts.gearbox_data import CAUSE_WORDS, MeshAtGlance, Safety, _of_mesh
+from fegear.results.shafts.gearbox_data import (
+    CAUSE_WORDS,
+    BearingAtGlance,
+    GearboxData,
+    MeshAtGlance,
+    Safety,
+    _of_mesh,
+)
 from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -133,14 +142,43 @@ def test_the_remedy_follows_the_cause():
     assert f"S_H about {0.8 * math.sqrt(1.8 / 1.1):.2f}" in weak.remedy
 
 
+def bearing(name, life, margin, exponent=3.0):
+    hours = 5000.0 * margin**exponent
+    return BearingAtGlance(name, "in", 1000.0, 0.0, life, 3600.0 * hours, margin, exponent)
+
+
+def test_where_nothing_falls_short_three_improvements_are_named():
+    safe = Safety(1.6, 2.8, (1.0, 1.4), 1.2)
+    lead = LevelLead(4e-6, 1.2, 1.0)
+    first = replace(mesh(factor=1.2, margin=2.0), safety=safe, contact=1.8, bending=2.8, lead=lead)
+    second = replace(mesh(factor=1.2, margin=3.0), pair="II", safety=safe, lead=LevelLead(2e-6, 1.2, 1.1))
+    third = replace(mesh(factor=1.01, margin=4.0), pair="III", safety=safe, lead=LevelLead(1e-6, 1.02, 1.01))
+    box = GearboxData(None, None, (first, second, third), (bearing("A", 1e9, 1.5), bearing("B", 1e10, 2.0)), 1.8e7)
+    assert [one.part for one in box.changes] == ["pair I", "bearing A of shaft in", "pair II"]
+    assert not any(one.urgent for one in box.changes)
+    assert box.changes[0].finding.startswith("S_F 2.80 of 1.4")
+    assert "K_Hβ 1.20 -> 1.00): S_F about 3.36" in box.changes[0].remedy  # follows the load, as the root does
+    assert f"{16875 * 1.1**3 / 100:.0f}00 h" in box.changes[1].remedy
+    # what falls short stays in front, and is named once
+    short = replace(box, bearings=(bearing("A", 1e9, 0.9), *box.bearings[1:]))
+    assert [(one.part, one.urgent) for one in short.changes] == [
+        ("bearing A of shaft in", True), ("pair I", False), ("pair II", False),
+    ]  # fmt: skip
+
+
 def test_names_in_the_drawing_do_not_lie_over_each_other():
     x, y = np.array([0.0, 1.0, 2.0, 60.0, 1.0]), np.array([0.0, 0.1, 0.0, 0.0, 40.0])
     labels = ("lager_6202_j", "stirnrad_pos_2", "lager_6202_j_33", "far", "above")
-    moved = apart(x, y, labels, 100.0)
+    moved = apart(x, y, labels, 1.4)
     assert moved[[3, 4]].tolist() == [0.0, 40.0]  # these are in nobody's way
     assert np.abs(np.subtract.outer(moved[:3], moved[:3]))[~np.eye(3, dtype=bool)].min() > 2.7
     assert np.abs(moved[:3]).max() < 6.0
-    assert apart(x[:1], y[:1], labels[:1], 100.0).tolist() == [0.0]
+    assert apart(x[:1], y[:1], labels[:1], 1.4).tolist() == [0.0]
+    # a bearing in the way: beside it, as near as both heights allow
+    box = np.array([[0.0, 0.5, 4.0, 6.0]])
+    beside = float(apart(x[:1], y[:1], labels[:1], 1.4, box)[0])
+    assert abs(beside - 0.5) >= 0.999 * 0.5 * (2.8 + 6.0)
+    assert abs(beside - 0.5) < 0.5 * (2.8 + 6.0) + 0.25 * 2.8
 
 
 def test_the_drawing_has_its_centre_distances_and_displacements(usual):
@@ -150,7 +188,7 @@ def test_the_drawing_has_its_centre_distances_and_displacements(usual):
     assert heights["mid"] - heights["out"] == pytest.approx(0.13)
     figure = scheme(data)
     curves = {item.name: item for item in figure.panels[0].items if item.name}
-    factor = float(figure.caption.partition("are drawn ")[2].partition(" times")[0].replace(" ", ""))
+    factor = float(figure.caption.partition("magnified ")[2].partition(" times")[0].replace(" ", ""))
     bent = dict(zip(data.shafts.gearbox.names, data.shafts.nominal.bent, strict=True))
     largest = max(float(np.hypot(one.line.x, one.line.y).max()) for one in bent.values())
     x = np.asarray(curves["axes under load"].x) * 1e-3

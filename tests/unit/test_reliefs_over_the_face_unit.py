@@ -299,6 +299,22 @@ def test_nothing_is_ground_where_nothing_is_better():
     assert lead_correction._searched(mesh, _shafts(1e-6), (1.0,), 200.0, (0.0, 0.0)) == (0.0, 0.0)
 
 
+def test_a_single_slope_is_as_many_tilts_as_still_gain(monkeypatch):
+    monkeypatch.setattr(
+        lead_correction, "face_load_factors",
+        lambda mesh, _shafts, loads, _load: mesh.flanks.solve(loads, mesh.gaps, None).face_load_factor,
+    )  # fmt: skip
+
+    def level(wanted, tilt):
+        return lead_correction.level_lead(Mesh(Flanks(wanted, 0.0), Gaps()), _shafts(-tilt), 200.0)
+
+    once, twice = level(4e-6, 4e-6), level(8.4e-6, 4e-6)
+    assert (once.slope, once.before, once.after) == pytest.approx((4e-6, 1.4, 1.0))
+    assert (twice.slope, twice.before, twice.after) == pytest.approx((8e-6, 1.84, 1.04))
+    assert level(-4e-6, 4e-6) is None  # against what the flanks want
+    assert level(4e-6, 0.2e-6) is None  # below what is ground
+
+
 def test_corrections_come_on_top_of_what_the_driver_has():
     (own,) = lead_correction.lead_modifications(0.0, 3e-6, 0.02)
     mesh = Mesh(None, Gaps(("present",)))

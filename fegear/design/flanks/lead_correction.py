@@ -28,6 +28,8 @@ GRADUATION = 0.5e-6
 _ROUNDS = 2
 #: Evaluations of one search, and its end: amounts and K_Hbeta.
 _EVALUATIONS, _AMOUNT, _FACTOR = 60, 0.2e-6, 1e-3
+#: Most multiples of the shafts' tilt that a single slope is tried with.
+_TIMES = 4
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,49 @@ def lead_modifications(slope: float, crowning: float, width: float) -> tuple[Fla
         *((LeadCrowning(crowning, width),) if crowning else ()),
         *((HelixSlope(slope, width),) if slope else ()),
     )
+
+
+@dataclass(frozen=True)
+class LevelLead:
+    """A helix slope on the driver against the tilt of the shafts, under one load.
+
+    Parameters
+    ----------
+    slope : float
+        From zero at end I to this at end II, over the driver's own face [m].
+    before, after : float
+        K_Hbeta in the gaps of the present flanks.
+    """
+
+    slope: float
+    before: float
+    after: float
+
+
+def level_lead(mesh: FlankForces, shafts: ShaftGaps, load: float) -> LevelLead | None:
+    """The helix slope that takes away the tilt of the shafts, or as many times that as still lower K_Hbeta.
+
+    None where the tilt is below what is ground, or a slope against it gains nothing.
+
+    Parameters
+    ----------
+    mesh : FlankForces
+        With the present flanks.
+    shafts : ShaftGaps
+    load : float
+        Along the transverse line of action [N].
+    """
+    tilt = GRADUATION * round(_tilt(mesh, shafts, load) / GRADUATION)
+    if not tilt:
+        return None
+    best = LevelLead(0.0, *2 * (float(face_load_factors(mesh, shafts, np.array([load]), load)[0]),))
+    for times in range(1, _TIMES + 1):
+        ground = replace(mesh, gaps=_ground(mesh, times * tilt, 0.0))
+        after = float(face_load_factors(ground, shafts, np.array([load]), load)[0])
+        if after >= best.after:
+            break
+        best = replace(best, slope=times * tilt, after=after)
+    return best if best.slope else None
 
 
 def correct_leads(
@@ -129,14 +174,18 @@ def _ground(mesh: FlankForces, slope: float, crowning: float) -> FlankGaps:
     return replace(mesh.gaps, driver_flank=(*mesh.gaps.driver_flank, *more))
 
 
+def _tilt(mesh: FlankForces, shafts: ShaftGaps, load: float) -> float:
+    """Helix slope over the driver's face that takes away the linear part of the gap of the shafts [m]."""
+    at, width = shafts.under(load), mesh.flanks.pair.driver.face_width
+    return -float(np.polyfit(at.height, at.gap[-1, 0], 1)[0]) * width if at.given else 0.0
+
+
 def _searched(
     mesh: FlankForces, shafts: ShaftGaps, scales: Sequence[float], nominal: float, start: tuple[float, float]
 ) -> tuple[float, float]:
     """Slope and crowning of the least mean K_Hbeta over the loads, each weighted by itself, in whole graduations."""
     loads = np.array(scales) * nominal
-    at, width = shafts.under(float(loads[-1])), mesh.flanks.pair.driver.face_width
-    tilt = -float(np.polyfit(at.height, at.gap[-1, 0], 1)[0]) * width if at.given else 0.0
-    size = max(abs(tilt), 2.0 * GRADUATION)
+    size = max(abs(_tilt(mesh, shafts, float(loads[-1]))), 2.0 * GRADUATION)
 
     def uneven(amounts: Array) -> float:
         slope, crowning = (float(one) * size for one in amounts)

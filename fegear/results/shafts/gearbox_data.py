@@ -12,6 +12,7 @@ import numpy as np
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.contact.wide.on_shafts import LoadedShafts
+from fegear.design.flanks.lead_correction import LevelLead
 from fegear.results.shafts.drawn_gearbox import DrawnGearbox
 from fegear.shafts.gearbox import CAUSES
 from fegear.shafts.life import EXPONENT, LifeRating
@@ -31,6 +32,8 @@ _CORRECTED, _WORTH = 1.1, 1.25
 _MIDDLE = 0.4
 #: Parts that are to be changed first.
 _FIRST = 3
+#: Gain of K_Hbeta from which a lead correction is named, and what a part of the usual size more is worth.
+_GAIN, _MORE = 1.02, 1.1
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,8 @@ class MeshAtGlance:
         Estimated.
     peak : float
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
+    lead : LevelLead or None
+        Helix slope against the tilt of the shafts, and what it is worth; None where it gains nothing.
     """
 
     safety: Safety | None
@@ -75,6 +80,7 @@ class MeshAtGlance:
     bending_required: float = shown("", "its minimum", name="S_F_min")
     te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
     margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
+    lead: LevelLead | None = None
 
     @property
     def main_cause(self) -> int:
@@ -93,16 +99,18 @@ class BearingAtGlance:
     life: float = shown("", "basic rating life L_10, in revolutions (ISO 281)", name="life")
     duration: float = shown("h", "basic rating life L_10h at the speed of its shaft", name="life_hours")
     margin: float = shown("", "load at the required life over the present one", name="load_margin")
+    exponent: float = math.nan
 
 
 @dataclass(frozen=True)
 class Change:
-    """Something to change, with why and what it brings."""
+    """Something to change, with why and what it brings; urgent where it falls short or wastes load capacity."""
 
     margin: float
     part: str = shown("", "pair or bearing")
     finding: str = shown("", "what is found")
     remedy: str = shown("", "what would help")
+    urgent: bool = True
 
 
 @dataclass(frozen=True)
@@ -128,8 +136,36 @@ class GearboxData:
     @cached_property
     def changes(self) -> tuple[Change, ...]:
         """At most three, the most urgent first: what fails, then what wastes load capacity, then the weakest."""
-        found = [*filter(None, map(_of_mesh, self.meshes)), *filter(None, map(self._of_bearing, self.bearings))]
-        return tuple(sorted(found, key=lambda one: one.margin))[:_FIRST]
+        urgent = [*filter(None, map(_of_mesh, self.meshes)), *filter(None, map(self._of_bearing, self.bearings))]
+        named = {one.part for one in urgent}
+        found = sorted(urgent, key=lambda one: one.margin)
+        for one in self._improvements():
+            if one.part not in named:
+                found.append(one)
+                named.add(one.part)
+        return tuple(found[:_FIRST])
+
+    def _improvements(self) -> Iterator[Change]:
+        """What limits the load although it suffices: least safety, shortest life, and loads over the face to even."""
+        rated = [one for one in self.meshes if math.isfinite(one.margin) and one.safety is not None]
+        yield from (_least_safe(one, one.safety) for one in rated[:1] if one.safety is not None)
+        lasting = [one for one in self.bearings if math.isfinite(one.margin)]
+        yield from (self._shortest(one) for one in lasting[:1])
+        levelled = [one for one in self.meshes if _gain(one) > _GAIN]
+        for one in sorted(levelled, key=_gain, reverse=True):
+            yield Change(
+                one.margin, f"pair {one.pair}", f"K_Hβ {one.face_load_factor:.2f}, {_place(one)}", _levelled(one),
+                urgent=False,
+            )  # fmt: skip
+
+    def _shortest(self, one: BearingAtGlance) -> Change:
+        hours = one.duration / 3600.0
+        return Change(
+            one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
+            f"life {figures(hours)} h, required {figures(self.required_hours / 3600.0)} h: least reserve of bearings",
+            f"{percent(_MORE - 1.0, whole=True)} more dynamic load rating C: {figures(hours * _MORE**one.exponent)} h",
+            urgent=False,
+        )  # fmt: skip
 
     def _of_bearing(self, one: BearingAtGlance) -> Change | None:
         if not one.margin < 1.0:
@@ -148,31 +184,63 @@ def _of_mesh(one: MeshAtGlance) -> Change | None:
     uneven = one.face_load_factor if math.isfinite(one.face_load_factor) else 1.0
     if uneven <= _WORTH:
         return None
-    if abs(one.peak) < _MIDDLE:
-        return Change(
-            1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, largest load at mid-face",
-            "less lead crowning C_β",
-        )  # fmt: skip
-    end = "II" if one.peak > 0.0 else "I"
+    middle = abs(one.peak) < _MIDDLE
     return Change(
-        1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, largest load at end {end}", _against_tilt(one)
-    )
+        1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, {_place(one)}",
+        "less lead crowning C_β" if middle else _against_tilt(one),
+    )  # fmt: skip
+
+
+def _place(one: MeshAtGlance) -> str:
+    """Where the load over the face is largest."""
+    return "largest load at " + ("mid-face" if abs(one.peak) < _MIDDLE else "end II" if one.peak > 0.0 else "end I")
+
+
+def _gain(one: MeshAtGlance) -> float:
+    """K_Hbeta over that with the shafts' tilt ground away."""
+    return 1.0 if one.lead is None else one.lead.before / one.lead.after
+
+
+def _levelled(one: MeshAtGlance) -> str:
+    """The lead correction that takes the tilt of the shafts away, with K_Hbeta before and after it where it gains."""
+    if one.lead is None or _gain(one) <= _GAIN:
+        return "lead correction"
+    slope, before, after = figures(one.lead.slope * 1e6), one.lead.before, one.lead.after
+    return f"lead correction (helix slope C_Hβ {slope} µm on the driver: K_Hβ {before:.2f} -> {after:.2f})"
+
+
+def _limit(one: MeshAtGlance, safety: Safety) -> tuple[str, str, float, float, float]:
+    """Symbol, failure, value and minimum of the safety factor that limits the load, and its power of the load."""
+    flank, root = safety.margins
+    if flank <= root:
+        return "S_H", "pitting", one.contact, one.contact_required, 0.5
+    return "S_F", "tooth breakage", one.bending, one.bending_required, 1.0
+
+
+def _least_safe(one: MeshAtGlance, safety: Safety) -> Change:
+    """The safety factor with the least margin, and what raises it."""
+    symbol, what, value, least, power = _limit(one, safety)
+    gain, remedy = _gain(one), _levelled(one)
+    if gain <= _GAIN:
+        gain, remedy = _MORE, f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors"
+    return Change(
+        one.margin, f"pair {one.pair}",
+        f"{symbol} {value:.2f} of {figures(least)} ({what}), least safety: {percent(one.margin, whole=True)} of the "
+        "load",
+        f"{remedy}: {symbol} about {value * gain**power:.2f}", urgent=False,
+    )  # fmt: skip
 
 
 def _against_tilt(one: MeshAtGlance) -> str:
     """What evens out the load of a misaligned mesh."""
     cause = CAUSES[one.main_cause]
     share, every = figures(one.by_cause[one.main_cause] * 1e6), figures(one.over_face * 1e6)
-    return f"lead correction, or {REMEDIES[cause]} ({CAUSE_WORDS[cause]} {share} µm, all causes {every} µm)"
+    return f"{_levelled(one)}, or {REMEDIES[cause]} ({CAUSE_WORDS[cause]} {share} µm, all causes {every} µm)"
 
 
 def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     """A safety below its minimum: an even load where that helps, more face width where not."""
-    flank, root = safety.margins
-    symbol, what, value, least, power = (
-        ("S_H", "pitting", one.contact, one.contact_required, 0.5) if flank <= root
-        else ("S_F", "tooth breakage", one.bending, one.bending_required, 1.0)
-    )  # fmt: skip
+    symbol, what, value, least, power = _limit(one, safety)
     finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {percent(one.margin, whole=True)} of the load"
     factor = safety.face_load_factor
     wider = f"{figures(1.0 / one.margin, 2)} times the face width at equal K factors, or a larger centre distance"
@@ -216,9 +284,10 @@ def bearings_at_glance(
         for k, name in enumerate(of_names):
             rating = of_lives[k]
             duration = float(loads.life[k]) * 2.0 * math.pi / of_speeds[k] if of_speeds[k] > 0.0 else math.nan
-            margin = math.nan if rating is None else (duration / required) ** (1.0 / EXPONENT[rating.kind])
+            exponent = math.nan if rating is None else EXPONENT[rating.kind]
+            margin = (duration / required) ** (1.0 / exponent)
             radial, axial = float(loads.force_radial[k]), abs(float(loads.force_axial[k]))
-            found.append(BearingAtGlance(name, shaft, radial, axial, float(loads.life[k]), duration, margin))
+            found.append(BearingAtGlance(name, shaft, radial, axial, float(loads.life[k]), duration, margin, exponent))
     return tuple(sorted(found, key=lambda one: (_last(one.margin), _last(one.duration), _last(one.life))))
 
 

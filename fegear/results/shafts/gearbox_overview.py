@@ -13,6 +13,8 @@ from fegear.base.printed import figures
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
+from fegear.contact.wide.on_shafts import FlankForces
+from fegear.design.flanks.lead_correction import level_lead
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.sheet.answer import Answer
@@ -35,7 +37,14 @@ from fegear.results.shafts.gearbox_data import (
     safeties,
 )
 from fegear.results.shafts.gearbox_scheme import scheme
-from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
+from fegear.results.shafts.loaded_shafts import (
+    LOADED_SHAFTS_TASK,
+    inputs_of_shafts,
+    loaded_shafts,
+    mesh_forces,
+    needs_gears_of_meshes,
+    shafts_of,
+)
 from fegear.shafts.gearbox import CAUSES
 
 if TYPE_CHECKING:
@@ -45,10 +54,12 @@ if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
+    from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
 
@@ -63,6 +74,7 @@ class GearboxInputs:
 
     Parameters
     ----------
+    shafts : LoadedShaftsInputs
     drawn : DrawnGearbox
     rated : tuple of PairToRate or None
         Of every mesh; None where the case lacks what a rating needs.
@@ -76,6 +88,7 @@ class GearboxInputs:
         Why something is missing.
     """
 
+    shafts: LoadedShaftsInputs
     drawn: DrawnGearbox
     rated: tuple[PairToRate | None, ...]
     wide: tuple[bool, ...]
@@ -112,7 +125,7 @@ def _is_wide(scene: Scene, pair: str) -> bool:
     return pair in scene.wide_pairs and not _refused(check_wide_pair, scene, pair)
 
 
-def _inputs(scene: Scene, _name: str) -> GearboxInputs:
+def _inputs(scene: Scene, name: str) -> GearboxInputs:
     from fegear.case.built.rated_pair import pair_to_rate
 
     meshes = [mesh.pair for mesh in mesh_places(scene)]
@@ -132,7 +145,8 @@ def _inputs(scene: Scene, _name: str) -> GearboxInputs:
             'width = "slices" or "solid"'
         )
     return GearboxInputs(
-        drawn_gearbox(scene), tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
+        inputs_of_shafts(scene, name), drawn_gearbox(scene),
+        tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         names, lives, speeds, required, tuple(why),
     )  # fmt: skip
@@ -161,12 +175,22 @@ def _against(spins: dict[str, float], shaft: str, around: str | None) -> float:
     return abs(spins[shaft] - (spins[around] if around else 0.0))
 
 
-def _compute(inputs: GearboxInputs, upstream: Upstream, _work: Work) -> GearboxData:
+def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxData:
     shafts = loaded_shafts(upstream)
     states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
-    meshes = [_mesh(inputs, upstream, shafts, n, state) for n, state in enumerate(states)]
+    leads = _leads(inputs, upstream, shafts, work)
+    meshes = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
     bearings = bearings_at_glance(shafts, inputs.bearings, inputs.lives, inputs.speeds, inputs.required)
     return GearboxData(shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required)
+
+
+def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
+    """Of every mesh whose flanks are loaded with the shafts, the helix slope against their tilt."""
+    meshes = mesh_forces(inputs.shafts, upstream, work)
+    return [
+        level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
+        for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
+    ]
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
@@ -209,8 +233,8 @@ def _safety(asked: PairToRate | None, upstream: Upstream, pair: str) -> Safety |
     return Safety(*known, asked.conditions.required, found.formula["K_Hbeta"].value)
 
 
-def _needs(scene: Scene, _name: str) -> tuple[Task, ...]:
-    found = [LOADED_SHAFTS_TASK]
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    found = [LOADED_SHAFTS_TASK, *needs_gears_of_meshes(scene, name)]
     for mesh in mesh_places(scene):
         if not _why_not_rated(scene, mesh.pair):
             found.append(Task("rating", mesh.pair))
@@ -227,7 +251,7 @@ def _check(scene: Scene, _name: str) -> None:
 
 
 def _sentences(seen: Seen) -> Iterator[str]:
-    """The weakest mesh, the weakest bearing, and what to change first."""
+    """The weakest mesh, the weakest bearing, and what to change first, or to improve where nothing falls short."""
     data: GearboxData = seen.data
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
@@ -247,7 +271,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
     yield f"Pair {first.pair}{many}: {', '.join(known)}."
     yield from _weakest_bearing(data)
     for number, one in enumerate(data.changes):
-        yield f"Change {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+        yield f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
 
 
 def _weakest_bearing(data: GearboxData) -> Iterator[str]:
@@ -260,7 +284,7 @@ def _weakest_bearing(data: GearboxData) -> Iterator[str]:
         f"{figures(first.duration / 3600.0)} h" if math.isfinite(first.duration)
         else f"{figures(first.life * 1e-6)} million revolutions"
     )  # fmt: skip
-    required = f" (required {figures(data.required_hours / 3600.0)} h)" if first.margin < 1.0 else ""
+    required = f" (required {figures(data.required_hours / 3600.0)} h)" if math.isfinite(data.required_hours) else ""
     many = f", the weakest of {len(lives)}" if len(lives) > 1 else ""
     yield f"Bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}."
 

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
 #: The largest deflection is drawn as this share of the height of the drawing.
 _DRAWN = 0.05
-#: Width of a letter and height of a line, over the larger side of the drawing.
-_WIDE, _TALL = 0.0145, 0.028
-#: Width of a letter of names that stand close to what they name, where the drawing is wide.
-_DENSE = 0.0065
+#: Letters that fit beside each other into the width of the figure, and into its height; height of a line in letters.
+_LETTERS_WIDE, _LETTERS_TALL, _LINE = 122.0, 62.0, 2.0
 #: Colour and line width of each kind of body.
 _LOOKS = {"shaft": ("ink", 1.2), "gear": ("blue", 1.6), "bearing": ("green", 1.2)}
 _LEGEND = {"shaft": "shafts", "gear": "gears", "bearing": "bearings"}
@@ -147,10 +145,8 @@ def _outline(
 
 def _upright(data: GearboxData, heights: dict[str, float], start: dict[str, float]) -> bool:
     """Whether the shafts stand upright, so that the drawing is wider than high."""
-    bodies = data.drawn.bodies
-    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in bodies])
-    across = np.array([heights[body.shaft] + body.outer.max() * np.array([-1.0, 1.0]) for body in bodies])
-    return bool(np.ptp(across) > np.ptp(ends))
+    along, across = _extents(data, heights, start)
+    return across > along
 
 
 def _turned(pair: Any, *, upright: bool) -> tuple[Any, Any]:
@@ -167,26 +163,46 @@ def _names(
 ) -> Points:  # fmt: skip
     """Names of shafts with their largest displacement, of bearings, and of gears."""
     places: list[tuple[float, float, str]] = []
-    room = 0.03 * _span(heights)
-    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in data.drawn.bodies])
-    size = max(float(np.ptp(ends)), _span(heights) + 2.0 * max(body.outer.max() for body in data.drawn.bodies))
-    for body in data.drawn.bodies:
+    bodies = data.drawn.bodies
+    letter = _letter(*_turned(_extents(data, heights, start), upright=upright))
+    line = _LINE * letter
+    boxes = []
+    far = {name: max(b.z[-1] for b in bodies if b.shaft == name) for name in heights}
+    for body in bodies:
         middle, height = start[body.shaft] + 0.5 * (body.z[0] + body.z[-1]), heights[body.shaft]
         if body.kind == "shaft":
             words = f"{body.shaft}: {figures(ways[body.shaft][1] * 1e6)} µm"
-            beyond = room * (1.0 if upright else 0.5 * len(words))
-            places.append((start[body.shaft] + body.z[-1] + beyond, height, words))
+            beyond = 0.6 * line if upright else letter * (0.5 * len(words) + 1.0)
+            places.append((start[body.shaft] + far[body.shaft] + beyond, height, words))
         elif body.kind == "gear":
             places.append((middle, height - 0.5 * (body.inner[0] + body.outer[0]), body.name))
         else:
-            beside = 0.5 * _DENSE * size * len(body.name) if upright else 0.0
-            places.append((middle, height - body.outer[0] - room - beside, body.name))
+            beyond = letter * (0.5 * len(body.name) + 1.0) if upright else 0.6 * line
+            places.append((middle, height - body.outer[0] - beyond, body.name))
+            for side in (-1.0, 1.0):
+                across, half = height + 0.5 * side * (body.inner[0] + body.outer[0]), body.outer[0] - body.inner[0]
+                boxes.append([*_turned((middle, -across if upright else across), upright=upright),
+                              *_turned((body.z[-1] - body.z[0], half), upright=upright)])  # fmt: skip
     z, y, labels = zip(*places, strict=True)
     x, y = _turned((np.array(z) * 1e3, np.array(y) * 1e3), upright=upright)
-    return Points(x, apart(x, y, labels, 1e3 * size), "", "ink", size=0.0, labels=labels)
+    moved = apart(x, y, labels, 1e3 * letter, 1e3 * np.array(boxes).reshape(-1, 4))
+    return Points(x, moved, "", "ink", size=0.0, labels=labels)
 
 
-def apart(x: Array, y: Array, labels: Sequence[str], size: float) -> Array:
+def _extents(data: GearboxData, heights: dict[str, float], start: dict[str, float]) -> tuple[float, float]:
+    """Of the drawing along the shafts and across them [m]."""
+    bodies = data.drawn.bodies
+    ends = np.array([start[body.shaft] + body.z[[0, -1]] for body in bodies])
+    across = np.array([heights[body.shaft] + body.outer.max() * np.array([-1.0, 1.0]) for body in bodies])
+    return float(np.ptp(ends)), float(np.ptp(across))
+
+
+def _letter(wide: float, tall: float) -> float:
+    """Width of a letter, in a drawing of this width and height with equal scales."""
+    return max(wide / _LETTERS_WIDE, tall / _LETTERS_TALL)
+
+
+def apart(x: Array, y: Array, labels: Sequence[str], letter: float, boxes: Array | None = None) -> Array:
     """Ordinates of labels that do not lie over each other: each as near to its place as the others before it let it be.
 
     Parameters
@@ -194,23 +210,26 @@ def apart(x: Array, y: Array, labels: Sequence[str], size: float) -> Array:
     x, y : ndarray, shape (N,)
         Middles of the labels.
     labels : sequence of str, length N
-    size : float
-        The larger side of the drawing, in the unit of `x` and `y`.
+    letter : float
+        Width of a letter, in the unit of `x` and `y`.
+    boxes : ndarray, shape (B, 4), optional
+        Middle (x, y), width and height of what they shall not lie over.
     """
-    wide, tall = _WIDE * size, _TALL * size
+    tall = _LINE * letter
+    boxes = np.empty((0, 4)) if boxes is None else boxes
+    size = letter * np.array([len(one) for one in labels])
     moved = np.array(y, dtype=float)
     order = np.argsort(-moved, kind="stable")
     for k, one in enumerate(order):
         before = order[:k]
-        near = np.abs(x[before] - x[one]) < 0.5 * wide * np.array([len(labels[one]) + len(labels[b]) for b in before])
-        taken = moved[before][near]
-        steps = (sign * n * 0.5 * tall for n in range(2 * len(labels) + 1) for sign in (-1.0, 1.0))
-        moved[one] += next(step for step in steps if (np.abs(taken - moved[one] - step) >= 0.999 * tall).all())
+        middles = np.concatenate([x[before], boxes[:, 0]])
+        near = np.abs(middles - x[one]) < 0.5 * (size[one] + np.concatenate([size[before], boxes[:, 2]]))
+        taken = np.concatenate([moved[before], boxes[:, 1]])[near]
+        clear = 0.5 * (tall + np.concatenate([np.full(k, tall), boxes[:, 3]]))[near]
+        steps = (sign * n * 0.25 * tall for n in range(8 * (len(labels) + len(boxes)) + 1) for sign in (-1.0, 1.0))
+        free = (step for step in steps if (np.abs(taken - moved[one] - step) >= 0.999 * clear).all())
+        moved[one] += next(free, 0.0)
     return moved
-
-
-def _span(heights: dict[str, float]) -> float:
-    return max(heights.values()) - min(heights.values()) or 0.1
 
 
 def _nice(factor: float) -> float:
