@@ -92,7 +92,7 @@ def test_values_are_counted_by_what_is_known_of_their_errors():
     assert (list(within.x), list(within.y), list(over.x), list(over.y)) == ([0.005], [0.0], [0.025], [1.0])
     assert (within.size, panel.marks[0].at, panel.x.log) == (9.0, 1e-2, True)
     assert isinstance(figure, Plot)
-    assert (title.words, bars) == ("CPU time of each task:", Bars({"geometry": 0.5}, "s"))
+    assert (title.words, bars) == ("Elapsed time of each task:", Bars({"geometry": 0.5}, "s"))
     one = accuracy_blocks(results_of([Value("a", 2.0, "", 0.01), Value("c", 1.0, "", 0.0), Value("d", 1.0, "", 0.0)]))
     assert "1 have an estimated error, 2 are exact. No estimated error exceeds the tolerance." in one[0].words
     assert len(one) == 3  # one error is no figure
@@ -101,7 +101,7 @@ def test_values_are_counted_by_what_is_known_of_their_errors():
     assert "exceeds" not in accuracy_blocks(noted)[0].words  # a note names columns that do
     large = accuracy_blocks(results_of([Value("a", 2.0, "", 0.01), Value("b", 1.0, "", 0.7)]))
     assert large[0].words.endswith("Above tolerance: b.")
-    assert accuracy_blocks(results_of([]))[0] == Paragraph("CPU time of each task:", "table-title")
+    assert accuracy_blocks(results_of([]))[0] == Paragraph("Elapsed time of each task:", "table-title")
 
 
 def test_the_libraries_are_named_where_finite_elements_were_solved():

@@ -79,7 +79,7 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
         *((Paragraph(summary),) if results.values else ()),
         *(Paragraph(sentence) for sentence in _libraries(results)),
         *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
-        Paragraph("CPU time of each task:", "table-title"),
+        Paragraph("Elapsed time of each task:", "table-title"),
         Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),
         *settings,
     )
