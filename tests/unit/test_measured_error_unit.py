@@ -220,6 +220,7 @@ def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_
         ({"te_column": "angle"}, "is the column of the angle"), ({"te_column": "SG"}, "requires a column SG"),
         ({"traces": [{"file": "none.csv"}]}, "file not found"), ({"pair": "q"}, "is not a pair"),
         ({"traces": [{"file": "t.csv", "torque": "11 N*m"}]}, "is not a torque of pair p"),
+        ({"traces": [{"file": "t.csv", "torque": f"{20.0 * 31 / 20} N*m"}]}, "on the driven gear is 20 N*m (divided"),
         ({"traces": [{"file": "t.csv", "torque": "20 N*m"}] * 2}, "one torque twice"),
         ({"traces": [{"file": "t.csv"}, {"file": "t.csv"}]}, "is that of another trace"),
         ({"torque_column": "te"}, "is the column of the transmission error"),

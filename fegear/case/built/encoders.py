@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Loads that differ by less, over one of them, are the same.
 _SAME_LOAD = 1e-6
+#: Torques measured on the driven shaft are those of the driver times the ratio, less losses and what is rounded.
+_ABOUT = 0.03
 #: Largest transmission error of a pair [m].
 _LARGEST = 5e-3
 
@@ -84,6 +86,17 @@ def pair_of_encoders(scene: Scene, name: str) -> str:
     return pairs[0]
 
 
+def _of_driven(torque: float, known: Array, ratio: float, band: float) -> str:
+    """What to do where a torque [N m] is one of the pair's on the driven shaft; empty where it is none."""
+    near = float(known[np.argmin(np.abs(known * ratio - torque))]) if known.size else 0.0
+    if not near or abs(torque - near * ratio) > band * near * ratio:
+        return ""
+    return (
+        f"specify torques of the driver: {torque:.5g} N*m on the driven gear is {torque / ratio:.5g} N*m (divided by "
+        f"the ratio {ratio:.5g})"
+    )
+
+
 def encoders_of(scene: Scene, name: str) -> Encoders:
     """Measured transmission errors of a case.
 
@@ -111,7 +124,8 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
                     f"{key}.file", f'"{one.file}"',
                     f"has no run of samples within ±{percent(part.torque_band)} of a torque of {said}; its column "
                     f"{part.torque_column} has {low:.4g} to {high:.4g} N*m",
-                    f"add the measured torques to pair.{pair}.torques, or set torque_band",
+                    _of_driven(float(np.median(read.torque)), torques, placed.ratio, part.torque_band)
+                    or f"add the measured torques to pair.{pair}.torques, or set torque_band",
                 )  # fmt: skip
             rest = read.angle.size - sum(run.stop - run.start for run in found.values())
             reading = [read.reading] if read.reading else []
@@ -125,7 +139,8 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
         if wanted is not None and not known:
             raise InputError(
                 f"{key}.torque", f"{wanted * lever:.6g} N*m", f"is not a torque of {said}",
-                f"add it to pair.{pair}.torques",
+                _of_driven(wanted * lever, np.array(loads) * lever, placed.ratio, _ABOUT)
+                or f"add it to pair.{pair}.torques",
             )  # fmt: skip
         traces.append(ErrorTrace(read.angle, read.te, known[0] if known else 0.0, read.reading, key, one.file))
     traces.sort(key=lambda one: one.load)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
+from fegear.base.printed import figures
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, place_gauge
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.gauge_strain import GaugeHistory
     from fegear.contact.wide.loaded_pair import LoadedWidePair
+    from fegear.results.pair.gauge_data import GaugePlace
     from fegear.results.pair.placed_gauge import PlacedGauge
 
 #: Seconds of both fillets over the path.
@@ -127,6 +130,18 @@ _CURVES = (
     "x", "angle", "roll_angle", "strain", "strain_opposite", "strain_towards_root", "strain_towards_tip",
 )  # fmt: skip
 _ERROR = Off("strain", "history.strain_error")
+
+
+def _where(asked: GaugeInputs, place: GaugePlace) -> str:
+    """Where a gauge is, as one would look for it on the gear."""
+    gauge = asked.gauge
+    face = f", {figures(place.z * 1e3)} mm from the middle of the common face" if asked.wide else ""
+    return (
+        f"gear {gauge.gear}, tooth {gauge.tooth + 1}, {gauge.side} side, tangent at "
+        f"{math.degrees(place.tangent_angle):.3g}°, diameter {place.diameter * 1e3:.5g} mm{face}"
+    )
+
+
 _SHEET = Sheet(
     loads="loads",
     nominal="at",
@@ -191,7 +206,12 @@ _SHEET = Sheet(
     ),
     answer=Answer(
         lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.compared else [],
-        "Gauge {name}: peak strain {v[peak_strain]}, peak stress {v[peak_stress]}.",
+        lambda seen: [
+            seen.said(
+                f"Gauge {{name}} ({_where(seen.asked, seen.data.place)}) at {{load:said}}: peak strain "
+                "{v[peak_strain]}, peak stress {v[peak_stress]}."
+            )
+        ],
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}",
     ),

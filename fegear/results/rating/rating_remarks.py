@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import RangeError
 from fegear.base.notes import assuming, exceeding, failing, neglecting
 from fegear.base.printed import percent
+from fegear.engine.sheet.load_words import load_words
 from fegear.geometry.pair import MEMBERS
 from fegear.results.rating.shared_load import bending_said
 
@@ -103,10 +104,11 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
         if data.bent is not None and data.by_computed is not None:
             told.append(bending_said(asked.name, data.bent, data.by_computed["Y_M"].values))
     else:
-        load, pressure = data.computed.load, data.computed.pressure * 1e-6
+        load, pressure = load_words(data.computed.load), data.computed.pressure * 1e-6
+        where = "on the driver" if load.endswith("N m") else "along the line of action"
         told.append(
-            f"Pair {asked.name}: load distribution and root stress computed by FE at {load:.5g} N along the line of "
-            f"action (including K_A, K_gamma, K_v), maximum pressure {pressure:.4g} MPa. The FE root stress replaces "
+            f"Pair {asked.name}: load distribution and root stress computed by FE at {load} {where} "
+            f"(including K_A, K_gamma, K_v), maximum pressure {pressure:.4g} MPa. The FE root stress replaces "
             "Y_F Y_S Y_beta Y_B Y_DT K_Fbeta K_Falpha."
         )
         told += _aligned(data, asked)
