@@ -6,6 +6,7 @@ The page's own drawing takes its place as soon as it is there; until then nothin
 from __future__ import annotations
 
 import math
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -19,8 +20,8 @@ _TALL, _WIDE = 3.2, 6.0
 _BESIDE = 1.3
 
 
-def first_drawing(pairs: Mapping[str, Mapping[str, Any]], view: View) -> str:
-    """The drawing of a pair as HTML, where the page's own will stand; empty where there is none.
+def first_drawing(pairs: Mapping[str, Mapping[str, Any]], view: View, title: str = "") -> str:
+    """The drawing of a pair as HTML, where the page's own will stand, or the title only where there is none.
 
     Parameters
     ----------
@@ -28,10 +29,13 @@ def first_drawing(pairs: Mapping[str, Mapping[str, Any]], view: View) -> str:
         As `drag_handles.hands_of`.
     view : View
         How the page was left.
+    title : str
+        Of the case; says what is being computed.
     """
+    told = f"<p>{escape(title)}: computing …</p>" if title and not view.report else ""
     mesh = next((one["mesh"] for name, one in pairs.items() if view.middle in ("", name)), None)
     if mesh is None or view.report:
-        return ""
+        return f'<div id="first-gears">{told}</div>' if told else ""
     m = mesh["module"] * 1e3
     tall, wide = _TALL * m, max(_WIDE * m, _BESIDE * 1e3 * max(-mesh["start"], mesh["end"]))
     paths = "".join(
@@ -41,7 +45,7 @@ def first_drawing(pairs: Mapping[str, Mapping[str, Any]], view: View) -> str:
     )
     box = f"{-wide:.4f} {-tall:.4f} {2.0 * wide:.4f} {2.0 * tall:.4f}"
     return (
-        f'<div id="first-gears" class="{"folded" if view.folded else ""}" aria-hidden="true">'
+        f'<div id="first-gears" class="{"folded" if view.folded else ""}" aria-hidden="true">{told}'
         f'<svg class="mesh" viewBox="{box}"><g transform="scale(1,-1)">{paths}</g></svg></div>'
     )
 

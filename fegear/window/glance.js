@@ -18,6 +18,46 @@ const fegearGlance = (() => {
   };
   const keep = (change) => { Object.assign(view, change); emitEvent("view", change); };
 
+  // ---- exercises ----------------------------------------------------------------------------------------------------
+  const QUESTIONS = {
+    plane: [
+      "How large is the peak-to-peak transmission error, and does it rise or fall at half the torque?",
+      "Over what share of the path of contact do two tooth pairs carry the load?",
+      "Which gear has the higher root stress, and at which position in the mesh is it highest?",
+    ],
+    wide: [
+      "At which end of the face is the load larger, and how large is K_Hβ?",
+      "How large is the peak-to-peak transmission error, and does it rise or fall at half the torque?",
+      "Which gear has the higher root stress, and at which place on the face is it highest?",
+    ],
+    set: [
+      "In which order do the planets mesh, and do their mesh forces add up or cancel in the torque?",
+      "How does the load of one planet change over a mesh cycle?",
+    ],
+  };
+  let asking = 0, hiding = false;
+  /** The question of an exercise, and room for the student's own answer, which stands beside the computed one later. */
+  function ask() {
+    let host = $("question");
+    if (!view.exercise) { host?.remove(); hiding = false; return; }
+    if (!host) {
+      host = Object.assign(made("details", "question"), { id: "question", open: true });
+      const answer = Object.assign(made("textarea"), { rows: 3, placeholder: "Your answer, in one sentence" });
+      answer.setAttribute("aria-label", "Your answer");
+      answer.addEventListener("keydown", (event) => event.stopPropagation());
+      const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
+      next.onclick = () => { asking += 1; answer.value = ""; ask(); };
+      host.append(made("summary", "", "Exercise"), made("p"), answer, next);
+      document.body.append(host);
+    }
+    const [words, answer] = [host.querySelector("p"), host.querySelector("textarea")];
+    const all = QUESTIONS[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"];
+    words.textContent = all[asking % all.length];
+    if (!view.revealed && !hiding) answer.value = ""; // another exercise
+    hiding = !view.revealed;
+    answer.readOnly = !!view.revealed;
+  }
+
   // ---- what is shown, and how ---------------------------------------------------------------------------------------
   function apply() {
     const none = !Object.keys(pairs).length, report = view.report || none;
@@ -26,6 +66,7 @@ const fegearGlance = (() => {
     document.documentElement.classList.toggle("large-type", !!view.large);
     document.body.classList.toggle("exercise", !!view.exercise);
     document.body.classList.toggle("revealed", !!view.revealed);
+    ask();
     const hidden = !view.revealed;
     for (const [id, on, words] of [
       ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
@@ -60,6 +101,7 @@ const fegearGlance = (() => {
     const host = $("small"), names = chosen(), wanted = JSON.stringify([kind, pair, names]);
     if (!host || !told || host.dataset.laid === wanted) return;
     host.dataset.laid = wanted;
+    ask(); // what is shown has its own questions
     host.replaceChildren();
     plots.clear();
     for (const name of names) {

@@ -232,6 +232,12 @@ class Page:
             self._client.run_javascript(f"fegear.hearAll({told})")
 
 
+def _title(bench: Bench) -> str:
+    """Of the case on the desk, or its name."""
+    desk = bench.desk
+    return "" if desk is None else (desk.scene.case.title if desk.scene is not None else "") or desk.name
+
+
 def show(bench: Bench) -> None:
     """Build the page for who has just opened it."""
     _serve_files(bench)
@@ -240,5 +246,5 @@ def show(bench: Bench) -> None:
     ui.add_head_html(f'<script defer src="{_AT}/{_ALL}"></script>')
     hands = dict(bench.shown_now()).get("hands")
     if hands is not None:
-        ui.add_body_html(first_drawing(hands["pairs"], bench.view))
+        ui.add_body_html(first_drawing(hands["pairs"], bench.view, _title(bench)))
     Page(bench, looks=bool(ui.context.client.request.scope.get(LOOKS)))

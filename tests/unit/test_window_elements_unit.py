@@ -236,6 +236,10 @@ def test_the_gears_stand_in_the_page_that_is_served(tmp_path):
     assert first_drawing(pairs, View(middle="I")) == drawn
     assert first_drawing(pairs, View(middle="set P")) == first_drawing(pairs, View(report=True)) == ""
     assert first_drawing({}, View()) == ""
+    # the title stands there at once, with or without gears
+    assert "<p>Rig &lt;1&gt;: computing …</p>" in first_drawing(pairs, View(), "Rig <1>")
+    assert first_drawing({}, View(), "Rig") == '<div id="first-gears"><p>Rig: computing …</p></div>'
+    assert first_drawing({}, View(report=True), "Rig") == ""
 
 
 def test_a_refusal_stands_at_its_field_and_goes_with_its_cause(client, bench):
