@@ -36,11 +36,11 @@ pressure_angle = {pressure_angle}
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-bore_radius = "{bore_radius}"     # gear body fixed there: half the root radius; replace by that of the drawing
+bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}; replace by that of the drawing
 # tip_diameter = "{tip_diameter}"     # default: this value, d + 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
 {relief}
-# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # default: steel
+# material = {{ young_modulus = "206.8 GPa", poisson_ratio = 0.3 }}     # default: steel
 """
 _HELICAL = """\
 [gear.{name}]
@@ -67,7 +67,7 @@ rim_thickness = {rim}     # radial, beyond the root circle; outer circle fixed; 
 face_width = {face_width}{face_width_note}
 # tip_diameter = "{tip_diameter}"     # default: this value, d - 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
-# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # default: steel
+# material = {{ young_modulus = "206.8 GPa", poisson_ratio = 0.3 }}     # default: steel
 """
 _PAIR = """\
 [pair.{pair}]
@@ -155,8 +155,9 @@ _BODIES = 10.0
 _STEEL = 7850.0
 #: Backlash of a train's mesh, assumed [modules].
 _BACKLASH = 0.05
-#: Radius at which a gear body is fixed, over its root radius; half a contact's width [modules]: as a case without them.
-_BORE, _HALF_WIDTH = 0.5, 0.02
+#: Radius at which a gear body is fixed, over its root radius, and its rim at least, over the tooth depth; half a
+#: contact's width [modules]: as a case without them.
+_BORE, _RIM, _HALF_WIDTH = 0.5, 1.21, 0.02
 #: Mesh stiffness per face width, assumed for a ring and for reliefs [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
 
@@ -244,8 +245,11 @@ def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None)
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
     module, teeth, dedendum = answers.si("module"), int(texts["teeth"]), BasicRack.named(answers["rack"]).dedendum
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
-    texts["bore_radius"] = _length(_BORE * module * (0.5 * teeth / turn - dedendum + shift))
-    texts["bore_note"] = "half the root radius"
+    root = 0.5 * teeth / turn - dedendum + shift
+    bore, note = _BORE * root, "half the root radius"
+    if 0.0 < (thinner := root - _RIM * (1.0 + dedendum)) < bore:
+        bore, note = thinner, "a rim of 1.2 tooth depths"
+    texts |= {"bore_radius": _length(bore * module), "bore_note": note}
     if answers.kind == "gearbox":
         texts |= {"bore_radius": _length(_shaft_radii(answers)[number]), "bore_note": "that of the shaft"}
     if answers.helical:
