@@ -10,6 +10,8 @@ _DIGITS, _WHOLE = 6, 1e9
 _MOST = 10
 #: An error above this share of a number is said with it.
 _ROUGH = 0.5
+#: Above this one `rounded` keeps a single digit, fewer than a single value has that is printed with its error.
+_SAID = 0.1
 
 
 def percent(share: float, signed: bool = False, whole: bool = False) -> str:
@@ -100,6 +102,20 @@ def rounded(value: float, error: float | None = None, digits: int = 3) -> str:
         return f"{figures(value, 1)} +- {figures(error, 1)}"
     room = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
     return figures(value, max(1, min(digits, room)))
+
+
+def with_rough_error(value: float, error: float | None = None) -> str:
+    """A number of a sentence, with its error where that leaves it a single digit: ``"731 +- 260"``, else `rounded`.
+
+    Parameters
+    ----------
+    value : float
+    error : float, optional
+        Estimated absolute error.
+    """
+    if error and math.isfinite(error) and error > _SAID * abs(value):
+        return with_its_error(value, error)
+    return rounded(value, error)
 
 
 def unit_said(unit: str) -> str:

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,11 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.gauges import check_gauge, check_plane_gauge, gauge_of
 from fegear.case.reading import build_scene
+from fegear.contact.fitted_curve import fit_curve
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.gauge import GAUGE
 
 CASE = {
     "results": ["gauge"],
@@ -286,3 +289,41 @@ def test_the_verdict_says_beyond(gain, words, plain, tmp_path):
     (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + rows)
     outcome = ran(changed({"measured": {"file": "t.csv"}}), tmp_path)
     assert any(words in one for one in outcome.remarks)
+
+
+def measured_of(data, gain):
+    """The computed curve times a gain as its measurement."""
+    angle, strain = data.history.angle, data.history.strain[:, data.at]
+    return replace(data, compared=fit_curve(angle, gain * strain, angle, strain, ("scale",)), sharper="set width")
+
+
+def test_a_draft_judges_no_measurement(plain):
+    """Its own error, some 35 % of coupled slices, is none of the parts of the limit."""
+    known = measured_of(plain, 1.1)
+    assert "10 % above the computed one, beyond" in known.verdict
+    draft = replace(known, estimated=False)
+    assert (draft.verdict, draft.judged) == ("", "")
+    scene = replace(build_scene(changed(), "case", Path()), estimates=False)
+    results = run_plan(scene, make_plan(scene, STAGES), cache=_CACHE)
+    assert not next(one.data for task, one in results.outcomes.items() if task.stage == "gauge").estimated
+
+
+def test_a_roughly_known_strain_passes_no_measurement(plain):
+    """What is within 35 % is no agreement; what is beyond them is still off."""
+    rough = replace(plain.history, known_error=0.35 * np.abs(plain.history.strain))
+    near, far = (measured_of(replace(plain, history=rough), gain) for gain in (1.098, 1.6))
+    assert near.verdict == near.judged == (
+        "measured strain is 9.8 % above the computed one; this cannot be judged: the computed strain is known to "
+        "±35 % only; set width"
+    )  # fmt: skip
+    assert "60 % above the computed one, beyond" in far.verdict
+    fine = replace(plain.history, known_error=0.09 * np.abs(plain.history.strain))
+    assert "5.0 % above the computed one, within" in measured_of(replace(plain, history=fine), 1.05).verdict
+
+
+@pytest.mark.parametrize(
+    ("width", "remedy"), [({"width": "slices"}, 'set pair.p.width = "solid"'), ({}, "reduce accuracy.tolerance")]
+)
+def test_the_remedy_of_a_rough_strain_is_that_of_its_model(width, remedy):
+    scene = build_scene(changed(pair__p={**CASE["pair"]["p"], **width}), "case", Path())
+    assert GAUGE.inputs(scene, "g").sharper == remedy

@@ -1,6 +1,7 @@
 """Measured transmission errors: orders, the curve of the mesh, and a synthetic trace beside the computed curve."""
 
 import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -175,7 +176,21 @@ def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
     first = columns["n"] == 1
     np.testing.assert_allclose(columns["measured_amplitude"][first], 0.9 * columns["computed_amplitude"][first],
                                rtol=0.01)  # fmt: skip
-    assert any("10 % below the computed one, beyond" in remark for remark in found.remarks)
+    assert any(
+        "fitted over the whole curve, the measured transmission error is 10 % below the computed one, beyond" in remark
+        for remark in found.remarks
+    )
+    sides, judged, largest = found.answer.sentences
+    assert sides.startswith("Encoders rig at 20 N m, peak-to-peak values: measured")
+    assert "(includes noise), computed" in sides
+    assert judged.startswith("Encoders rig: fitted over the whole curve")
+    assert largest == "Encoders rig: largest order besides the mesh harmonics: 1 (eccentricity), amplitude 5 µm."
+    high = found.data.last
+    assert replace(high, estimated=False).verdict == ""
+    near = replace(high, fitted=replace(high.fitted, gain=1.05), computed_error=0.35 * high.computed_peak_to_peak)
+    assert (
+        "5.0 % above the computed one; this cannot be judged: the computed one is known to ±35 % only" in near.verdict
+    )
     assert {figure.name for figure in found.figures} >= {"measured_te_rig", "measured_te_orders_rig",
                                                          "measured_te_harmonics_rig"}  # fmt: skip
 

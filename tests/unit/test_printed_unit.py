@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from fegear.base.printed import figures
+from fegear.base.printed import figures, with_rough_error
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,11 @@ def test_a_number_of_a_sentence_is_rounded(value, digits, text):
     assert figures(value, digits) == text
     if value > 0.0:
         assert figures(value, digits, signed=True) == f"+{text}"
+
+
+@pytest.mark.parametrize(
+    ("error", "text"), [(260.0, "731 +- 260"), (80.0, "731 +- 80"), (70.0, "730"), (3.0, "731"), (None, "731")]
+)
+def test_a_rough_number_has_its_error_where_one_digit_would_stay(error, text):
+    """A list had "731 +- 260 um/m" and the answer "700 um/m"."""
+    assert with_rough_error(731.0, error) == text

@@ -64,6 +64,8 @@ class Encoders:
     load_tolerance : float
     traces : tuple of ErrorTrace
         By load, ascending.
+    estimates : bool
+        Whether errors of the computed one are estimated.
     """
 
     pair: str
@@ -71,6 +73,7 @@ class Encoders:
     fit: tuple[Fitted, ...]
     load_tolerance: float
     traces: tuple[ErrorTrace, ...]
+    estimates: bool
     name: str = field(compare=False)
 
 
@@ -152,7 +155,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
         raise InputError(
             f"{again}.torque", torque, "is that of another trace", "specify the torque at which it was measured"
         )
-    return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), name)
+    return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), scene.estimates, name)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
-from fegear.base.printed import figures
+from fegear.base.printed import figures, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, place_gauge
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.gauge_strain import GaugeHistory
     from fegear.contact.wide.loaded_pair import LoadedWidePair
+    from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
     from fegear.results.pair.placed_gauge import PlacedGauge
 
@@ -61,6 +62,8 @@ class GaugeInputs:
         Whether errors are estimated.
     wide : bool
         Whether its gear is 3D.
+    sharper : str
+        What makes the computed strain more accurate.
     name : str
     """
 
@@ -68,6 +71,7 @@ class GaugeInputs:
     speed: float | None
     estimates: bool
     wide: bool
+    sharper: str = field(compare=False)
     name: str = field(compare=False)
 
 
@@ -76,7 +80,9 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     speed, pair = scene.case.pair[gauge.pair].speed, scene.pairs[gauge.pair]
     if speed is not None and gauge.member == "driven":
         speed /= pair.ratio
-    return GaugeInputs(gauge, speed, scene.estimates, gauge.pair in scene.wide_pairs, name)
+    sliced = gauge.pair in scene.wide_pairs and scene.width_of(gauge.pair) == "slices"
+    sharper = f'set pair.{gauge.pair}.width = "solid"' if sliced else "reduce accuracy.tolerance"
+    return GaugeInputs(gauge, speed, scene.estimates, gauge.pair in scene.wide_pairs, sharper, name)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -91,7 +97,7 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     return GaugeData(
         teeth.loads, at, history, place.place, clearance, place.clipped, gauge.load_tolerance, asked.speed,
         compared(gauge, history.angle, history.strain[:, at]), gauge.measured.reading if gauge.measured else "",
-
+        asked.estimates, asked.sharper,
     )  # fmt: skip
 
 
@@ -123,6 +129,20 @@ def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, Gauge
         teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved
     )
     return place, history, place.clearance(teeth.pair, gauge.member, gauge.side, solved.fine.flank)
+
+
+def _peaks(seen: Seen) -> list[str]:
+    """Peak strain and stress, each with its error where that takes digits that its single value has."""
+    data: GaugeData = seen.data
+    strain, stress = (
+        f"{with_rough_error(peak[data.at] * scale, None if error is None else error[data.at] * scale)} {unit}"
+        for peak, error, scale, unit in (
+            (data.peak_strain, data.peak_error, 1e6, "µm/m"),
+            (data.peak_stress, data.peak_stress_error, 1e-6, "MPa"),
+        )
+    )
+    start = seen.said(f"Gauge {{name}} ({_where(seen.asked, data.place)}) at {{load:said}}")
+    return [f"{start}: peak strain {strain}, peak stress {stress}."]
 
 
 #: Of a history, in the order of its columns.
@@ -205,18 +225,13 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.compared else [],
-        lambda seen: [
-            seen.said(
-                f"Gauge {{name}} ({_where(seen.asked, seen.data.place)}) at {{load:said}}: peak strain "
-                "{v[peak_strain]}, peak stress {v[peak_stress]}."
-            )
-        ],
+        lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.judged else [],
+        _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}",
     ),
     remarks=(
-        Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="compared"),
+        Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(
             lambda seen: f"Gauge {seen.name}: the contact comes within {seen.data.clearance:.2f} modules of the grid; "

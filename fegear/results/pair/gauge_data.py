@@ -22,6 +22,8 @@ _NEAR_CONTACT = 0.15
 _DRAWN = 2000
 #: Correlation below which shapes differ.
 _ALIKE = 0.98
+#: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
+_JUDGES = 0.1
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,10 @@ class GaugeData:
         Measured and computed strain at the nominal load.
     reading : str
         What had to be understood in the file of the trace.
+    estimated : bool
+        Whether errors were estimated: a draft, which does not know its own, judges no measurement.
+    sharper : str
+        The setting that makes the computed strain more accurate.
     """
 
     loads: Sequence[float]
@@ -102,6 +108,8 @@ class GaugeData:
     speed: float | None
     compared: FittedCurve | None
     reading: str = ""
+    estimated: bool = True
+    sharper: str = ""
 
     @property
     @shows("s", "time from the first position")
@@ -197,7 +205,7 @@ class GaugeData:
 
     @property
     def verdict(self) -> str:
-        """Measured against computed strain at the nominal load; empty where nothing was measured."""
+        """Measured against computed strain at the nominal load; empty without a trace and in drafts."""
         return self._verdict(brief=False)
 
     @property
@@ -206,12 +214,12 @@ class GaugeData:
         return self._verdict(brief=True)
 
     def _verdict(self, *, brief: bool) -> str:
-        if self.compared is None:
+        if self.compared is None or not self.estimated:
             return ""
         peak, error = float(self.peak_strain[self.at]), self.peak_error
         return verdict(
             self.compared, peak, self.peak_change_by_placement, 0.0 if error is None else float(error[self.at]),
-            self.load_tolerance, brief=brief,
+            self.load_tolerance, brief=brief, sharper=self.sharper,
         )  # fmt: skip
 
 
@@ -222,7 +230,8 @@ def thinned(found: FittedCurve) -> FittedCurve:
 
 
 def verdict(
-    found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float, *, brief: bool = False
+    found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float, *, brief: bool = False,
+    sharper: str = "",
 ) -> str:  # fmt: skip
     """Measured against computed strain, in one or two sentences without a subject.
 
@@ -237,6 +246,8 @@ def verdict(
         Relative uncertainty of load and gauge factor.
     brief : bool
         Without the parts of the limit and the residual.
+    sharper : str
+        Remedy where the computed strain is too rough to judge the measured one.
     """
     size = abs(peak)
     limits = Limits(by_placement / size, load_tolerance, error / size, _CERTAIN * found.gain_error)
@@ -248,6 +259,12 @@ def verdict(
         f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
     )
     within = abs(off) <= limits.together
+    if within and limits.model > _JUDGES:  # so wide a band would pass nearly everything
+        return (
+            f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one; this "
+            f"cannot be judged: the computed strain is known to ±{percent(limits.model)} only"
+            + (f"; {sharper}" if sharper else "")
+        )
     judged = (
         f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one, "
         f"{'within' if within else 'beyond'} ±{percent(limits.together)}{'' if brief else f' ({parts})'}"

@@ -19,6 +19,8 @@ from fegear.contact.measured_error import FittedError, MeasuredError
 _CERTAIN = 2.0
 #: Correlation below which shapes differ.
 _ALIKE = 0.98
+#: Estimated error of the computed value above which it judges no measurement within it, relative.
+_JUDGES = 0.1
 #: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
 _DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
 
@@ -38,6 +40,8 @@ class TraceBeside:
     load_tolerance : float
     reading : str
         What had to be understood in the file.
+    estimated : bool
+        Whether errors were estimated: a draft, which does not know its own, judges no measurement.
     """
 
     found: MeasuredError
@@ -49,6 +53,7 @@ class TraceBeside:
     computed_peak_to_peak: float = shown("um", "peak-to-peak transmission error computed")
     load_tolerance: float = 0.01
     reading: str = ""
+    estimated: bool = True
 
     @property
     @shows("", "harmonic of the tooth-mesh frequency")
@@ -128,8 +133,15 @@ class TraceBeside:
         return float(spectrum.amplitude[np.searchsorted(spectrum.order, largest - 1e-9)])
 
     @property
+    def largest_cause(self) -> str:
+        """What the largest order usually comes from, in brackets, where it is once per revolution."""
+        return " (eccentricity)" if (largest := self.largest_order) and abs(largest - 1.0) < 1e-6 else ""
+
+    @property
     def verdict(self) -> str:
-        """Measured against computed, a clause without a subject."""
+        """Measured against computed, a clause without a subject; empty in drafts."""
+        if not self.estimated:
+            return ""
         fitted, computed = self.fitted, self.computed_peak_to_peak
         if fitted.gain <= 0.0:
             return "measured and computed curve go against each other; check positive, reverse and fit"
@@ -141,8 +153,16 @@ class TraceBeside:
         off = fitted.gain - 1.0
         within = abs(off) <= together
         said = (
-            f"measured transmission error is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed "
-            f"one, {'within' if within else 'beyond'} ±{percent(together)} ("
+            f"fitted over the whole curve, the measured transmission error is {percent(abs(off))} "
+            f"{'above' if off >= 0.0 else 'below'} the computed one"
+        )
+        if within and parts["computation"] > _JUDGES:  # so wide a band would pass nearly everything
+            return (
+                f"{said}; this cannot be judged: the computed one is known to ±{percent(parts['computation'])} only; "
+                'set width = "solid" or reduce accuracy.tolerance'
+            )
+        said += (
+            f", {'within' if within else 'beyond'} ±{percent(together)} ("
             + ", ".join(f"{name} {percent(part)}" for name, part in parts.items()) + ")"
         )  # fmt: skip
         if fitted.correlation < _ALIKE:

@@ -81,7 +81,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
             TraceBeside(
                 measured, fitted, amplitude, None if relative is None else relative * size,
                 trace.load * pair.driver.base_radius, trace.load, size, asked.load_tolerance,
-                trace.reading,
+                trace.reading, asked.estimates,
             )
         )  # fmt: skip
     return MeasuredErrorData(traces, asked.member)
@@ -186,16 +186,17 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        "Encoders {name} at {d.last.torque:.4g}: measured {v[measured_peak_to_peak]} peak to peak, computed "
-        "{v[computed_peak_to_peak]}.",
-        lambda seen: [f"Encoders {seen.name}: {seen.data.last.verdict}."],
-        "Encoders {name}: largest order that is none of the mesh: {v[largest_other_order]}, amplitude "
-        "{v[largest_other_amplitude]}.",
+        "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
+        "noise), computed {v[computed_peak_to_peak]}.",
+        lambda seen: [f"Encoders {seen.name}: {seen.data.last.verdict}."] if seen.data.last.verdict else [],
+        "Encoders {name}: largest order besides the mesh harmonics: {v[largest_other_order]}{d.last.largest_cause}, "
+        "amplitude {v[largest_other_amplitude]}.",
         figure="measured_te_{name}",
     ),
     remarks=(
         Remark(
             lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.verdict}.", each="traces",
+            when=lambda seen: bool(seen.one.verdict),
         ),
         Remark(
             lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: file read with {seen.one.reading}.",
