@@ -106,7 +106,7 @@ def _run_case(
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
     from fegear.output.spoken_values import spoken_values
-    from fegear.output.tables import sheet_lines
+    from fegear.output.tables import printed_lines
     from fegear.results.catalogue import STAGES
 
     try:
@@ -139,9 +139,8 @@ def _run_case(
             remember(results, forecast_seconds(scene, planned))
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
-    for table in results.tables:
-        for line in sheet_lines(table) if table.printed else ():
-            voice.say(line)
+    for line in printed_lines([table for table in results.tables if table.printed]):
+        voice.say(line)
     values, further = spoken_values(results)
     for value in values:
         voice.say(repr(value))

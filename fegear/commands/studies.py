@@ -217,7 +217,7 @@ def check(
     Exit code 0: every difference is covered by the stated error; 1: some are not.
     """
     from fegear.case.reading import read_scene
-    from fegear.studies.check import check_gear, gears_to_check
+    from fegear.studies.check import OWN_ERROR, check_gear, gears_to_check
 
     voice = Voice(quiet, as_json)
     scene = read_scene(case, overrides or ())
@@ -247,7 +247,10 @@ def check(
             )
     compared = [one for gear in found for one in gear.compared]
     covered = sum(one.covered for one in compared)
-    voice.say(f"{covered} of {len(compared)} differences are within the estimated error.")
+    voice.say(
+        f"{covered} of {len(compared)} differences are within the estimated error plus that of the check itself, "
+        f"{OWN_ERROR:.0e}."
+    )
     gears = {
         gear.gear: {
             "unknowns": gear.unknowns,
@@ -257,7 +260,7 @@ def check(
         }
         for gear in found
     }
-    voice.tell({"gears": gears, "compared": len(compared), "covered": covered})
+    voice.tell({"gears": gears, "compared": len(compared), "covered": covered, "check_error": OWN_ERROR})
     if covered < len(compared):
         raise typer.Exit(1)
 

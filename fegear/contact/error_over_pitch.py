@@ -197,7 +197,7 @@ class ErrorOverPitch(Brief):
         Parameters
         ----------
         driver_angle : array_like
-            Counted from the first row of the curve [rad]; any number of turns.
+            As `driver_angle`: zero where the tooth pair is at the pitch point [rad]; any number of turns.
         secant : bool
             Load over transmission error in place of the slope dF/dTE.
 
@@ -214,7 +214,8 @@ class ErrorOverPitch(Brief):
 
     def _over_rotation(self, values: Array, driver_angle: ArrayLike) -> Array:
         x = np.asarray(driver_angle, dtype=float) * self.pair.driver.base_radius
-        return over_pitch(self.x, values[:, self.at], self.pair.base_pitch, x / self.pair.base_pitch % 1.0)
+        part = (x - self.x[0]) / self.pair.base_pitch % 1.0
+        return over_pitch(self.x, values[:, self.at], self.pair.base_pitch, part)
 
     @property
     def harmonics(self) -> Harmonics:

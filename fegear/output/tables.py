@@ -88,6 +88,16 @@ def sheet_lines(table: Table) -> list[str]:
     ]
 
 
+def printed_lines(tables: Sequence[Table]) -> list[str]:
+    """Lines for the terminal of several tables; of the same ones for several pairs each has its title above it."""
+    kinds = [tuple(column.head for column in table.columns[:2]) for table in tables]  # further ones are errors, or none
+    return [
+        line
+        for table, kind in zip(tables, kinds, strict=True)
+        for line in (*((f"{table.title}:",) if kinds.count(kind) > 1 else ()), *sheet_lines(table))
+    ]
+
+
 def write_table(folder: Path, table: Table) -> Path:
     """Write ``<name>.csv`` into a folder, and ``<name>.mat`` beside it where the table is for other programs.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.scikit_fem_alone import WholeGearAlone
 
 #: What the whole gear by scikit-fem is itself good to, relative to c_self: it says nothing of errors below.
-_OWN_ERROR = 2e-5
+OWN_ERROR = 2e-5
 #: Contacts keep so many half-widths off the ends of the flank.
 _ROOM = 2.0
 _COMPLIANCE, _STRESS = "um.mm/N", "MPa.mm/N"
@@ -57,7 +57,7 @@ class Compared:
     @property
     def covered(self) -> bool:
         """Whether the stated error and that of the check itself are together no smaller than the difference."""
-        return self.difference <= self.stated_error + _OWN_ERROR
+        return self.difference <= self.stated_error + OWN_ERROR
 
 
 @dataclass(frozen=True)

@@ -199,8 +199,8 @@ class Results(Found):
         Parameters
         ----------
         driver_angle : array_like
-            [rad], any number of turns: counted from the first row of the curve over a tooth, and of a revolution with
-            odd teeth from where the first teeth are at the pitch point.
+            [rad], any number of turns: zero where a tooth pair is at the pitch point, as `driver_angle` of the table
+            ``transmission_error_<pair>``; of a revolution with odd teeth where the first teeth are.
         pair : str
             By default the only pair with a curve.
         secant : bool

@@ -9,7 +9,7 @@ import pytest
 
 from fegear.engine.table import Column, Table
 from fegear.output.run_folder import _read_table as read_table
-from fegear.output.tables import cells, sheet_lines, table_text
+from fegear.output.tables import cells, printed_lines, sheet_lines, table_text
 
 TABLE = Table("lives_I", (
     Column("place", np.array([0.0, 1e-3]), "mm", "along the shaft"),
@@ -30,6 +30,15 @@ def test_a_table_has_blanks_and_its_columns_say_why():
     ]  # fmt: skip
     odd = (np.float64("nan"), np.float64("-inf"), np.int64(3), np.str_("a"))
     assert [cells(np.array([one])) for one in odd] == [[""], [""], ["3"], ["a"]]
+
+
+def test_equal_tables_of_several_pairs_have_their_titles_in_the_terminal():
+    """Two blocks of safety factors followed each other without a word of whose they were."""
+    one, two = (Table(f"lives_{name}", TABLE.columns, f"Lives of pair {name}") for name in ("I", "II"))
+    other = Table("shares_I", TABLE.columns[2:], "Shares of pair I")
+    lines = printed_lines([one, other, two])
+    assert [line for line in lines if line.endswith(":")] == ["Lives of pair I:", "Lives of pair II:"]
+    assert printed_lines([one, other]) == [*sheet_lines(one), *sheet_lines(other)]
 
 
 def test_a_reader_takes_blanks_for_what_does_not_apply(tmp_path):

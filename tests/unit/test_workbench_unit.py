@@ -353,7 +353,9 @@ def test_mesh_stiffness_and_transmission_error_are_functions_of_the_rotation(fou
     columns = {column.name: column.si for column in table.columns}
     x, slope, secant, te = (columns[name] for name in ("x", "local_stiffness", "mesh_stiffness", "te"))
     middle = slice(5, 60)
-    angle = (x - x[0])[middle] / pair.driver.base_radius + 3.0 * 2.0 * np.pi / pair.driver.teeth
+    # the zero is that of the column driver_angle, the pitch point: the curve was counted from its first row
+    angle = columns["driver_angle"][middle] + 3.0 * 2.0 * np.pi / pair.driver.teeth
+    assert found.transmission_error(0.0) == pytest.approx(np.interp(0.0, x, te), rel=1e-6)
     np.testing.assert_allclose(found.mesh_stiffness(angle), slope[middle], rtol=1e-6)
     np.testing.assert_allclose(found.mesh_stiffness(angle, "I", secant=True), secant[middle], rtol=1e-6)
     np.testing.assert_allclose(found.transmission_error(angle), te[middle], rtol=1e-6)

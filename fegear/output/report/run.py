@@ -49,6 +49,10 @@ if TYPE_CHECKING:
 _MOST_OPEN = 16
 
 
+def _number_of(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
 def _title(results: Results, task: Task) -> str:
     step = next((step for step in results.plan.steps if step.task == task), None)
     title = step.stage.title if step else task.stage.replace("-", " ").capitalize()
@@ -201,7 +205,8 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
         title=scene.case.title or scene.name,
-        note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
+        note=f"Case {scene.name}: {', '.join(scene.case.results)}. "
+        f"{_number_of(count, 'value')} and {_number_of(len(results.tables), 'table')}, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
             Section("Answer", _answer(answer, drawn, shown, results.tables)),

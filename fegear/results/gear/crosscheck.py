@@ -12,6 +12,7 @@ from fegear.base.notes import assuming
 from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Rows
@@ -56,7 +57,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
-    from fegear.formulas.outcome import Outcome as Answer
+    from fegear.formulas.outcome import Outcome
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
 
@@ -232,7 +233,7 @@ class GearAnswers:
     root_stress: Mapping[str, RootStressAnswers]
     compliance: Mapping[str, ComplianceAnswers]
     contact_zone: Array
-    cornell: Answer[SectionLengths]
+    cornell: Outcome[SectionLengths]
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +242,7 @@ class PairAnswers:
 
     reference: PairReference
     compliance: Mapping[str, ComplianceAnswers]
-    iso: Answer[Stiffness]
+    iso: Outcome[Stiffness]
 
 
 @dataclass(frozen=True, slots=True)
@@ -408,9 +409,33 @@ def _on_load(seen: Seen) -> str:
     return assuming(f"Pair {seen.key}: no load was given; its contact is that of {load}.")
 
 
+#: Formulas of root stress as people name them, in the order in which an answer has them.
+_ROOT_FORMULAS = {
+    "iso-6336-3": "ISO 6336-3", "agma-908": "AGMA 908", "cornell": "Cornell", "cornell-trochoid": "Cornell (trochoid)",
+    "heywood": "Heywood", "dolan-broghamer": "Dolan and Broghamer",
+}  # fmt: skip
+
+
+def _root_stress(seen: Seen) -> list[str]:
+    """One gear: the range of each formula over finite elements, that of the standard first."""
+    extremes = seen.one.root_stress.extremes
+    ranges = [
+        f"{label} {extremes[name].lowest_ratio:.2f} to {extremes[name].highest_ratio:.2f}"
+        for name, label in _ROOT_FORMULAS.items()
+        if name in extremes
+    ]
+    return [f"Gear {seen.key}: root stress by formula over finite elements: {', '.join(ranges)}."] if ranges else []
+
+
+def _first_figure(seen: Seen) -> str:
+    """Of the first gear; of helical pairs alone there is none."""
+    return next((f"crosscheck_root_stress_{name}" for name in seen.asked.gears), "")
+
+
 _SHEET = Sheet(
     name=lambda _asked: _WHOLE,
     of=Everything.of,
+    answer=Answer(Each("gears", _root_stress), figure=_first_figure),
     tables=(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
