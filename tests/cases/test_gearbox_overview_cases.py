@@ -3,6 +3,7 @@
 import copy
 import math
 import tomllib
+import types
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from fegear.results.shafts.gearbox_data import (
     Safety,
     _of_mesh,
 )
+from fegear.results.shafts.gearbox_overview import _sentences
 from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -127,6 +129,18 @@ def test_what_cannot_be_computed_is_said_once():
 def mesh(peak=0.9, factor=1.5, margin=math.nan, over=12e-6, by=(10e-6, 1e-6, 3e-6, -2e-6)):
     safety = Safety(0.8, 2.0, (1.0, 1.4), 1.8) if margin < 1.0 else None
     return MeshAtGlance(safety, 0.0, 0.0, peak, "I", over, by, factor, 0.8, 1.0, 2.0, 1.4, 3e-6, margin)
+
+
+def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_leave_of_the_misalignment():
+    def said(remaining):
+        one = replace(mesh(margin=0.8), remaining=remaining)
+        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=())
+        return next(_sentences(types.SimpleNamespace(data=data)))
+
+    assert "with K_Hβ 1.80 of the rating, K_Hβ 1.50 of the loaded flanks, misaligned by 12 µm" in said(12e-6)
+    assert "misaligned by 12 µm (linear gap with the flank modifications 1.5 µm)" in said(1.5e-6)
+    assert "linear gap" not in said(math.nan)
+    assert "linear gap" not in said(12.05e-6)
 
 
 def test_the_remedy_follows_the_cause():

@@ -9,6 +9,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
+from fegear.design.flanks import lead_correction
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
@@ -80,6 +81,29 @@ def test_the_table_for_grinding_has_gear_amounts_and_factors(corrected):
     assert all(2.0 * one.slope * 1e6 == pytest.approx(round(2.0 * one.slope * 1e6)) for one in corrected.data.found)
     assert "grind a helix slope" in corrected.answer.sentences[0]
     assert "gear.c.lead" in " ".join(corrected.remarks)
+
+
+@pytest.mark.dear
+def test_present_crowning_is_searched_over_and_the_minimum_is_that_of_all_of_the_grid(corrected, monkeypatch):
+    asked, search = [], lead_correction.least_of_grid
+
+    def spied(value, first, longest):
+        asked.append((value, search(value, first, longest)))
+        return asked[-1][1]
+
+    monkeypatch.setattr(lead_correction, "least_of_grid", spied)
+    found = run(coarse(a=(0.3, 5.2), c=(0.0, 6.0)), "lead-correction")[Task("lead-correction", "all")]
+    for gear, amounts in leads_of(corrected).items():
+        assert leads_of(found)[gear] == pytest.approx(amounts)
+    value, (slope, crowning) = asked[-1]
+    grid = {(k, n): value(k, n) for k in range(slope - 5, slope + 6, 2) for n in range(0, 7, 2)}
+    assert value(slope, crowning) <= min(grid.values())
+    for one in found.data.found:
+        assert one.kept[-1] > one.after[-1] + 0.1
+    said = {one[:7]: one for one in found.answer.sentences}
+    assert said["Pair II"].endswith("with the present crowning of 6 µm.")
+    assert not any("present crowning" in one for one in corrected.answer.sentences)
+    assert "present crowning is not kept" in " ".join(found.remarks)
 
 
 def test_without_misaligned_flanks_there_is_nothing_to_correct():

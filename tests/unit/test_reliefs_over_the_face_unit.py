@@ -247,15 +247,17 @@ class Flanks:
     """K_Hbeta rises with the distance of the ground slope and crowning from what the shafts want."""
 
     pair = PAIR
+    positions = 48
 
     def __init__(self, slope, crowning):
         self.wanted = slope, crowning
 
     def solve(self, loads, gaps, known):
-        amounts = {type(one).__name__: one.amount for one in gaps.driver_flank}
-        off = np.hypot(
-            amounts.get("HelixSlope", 0.0) - self.wanted[0], 2.0 * (amounts.get("LeadCrowning", 0.0) - self.wanted[1])
+        slope, crowning = (
+            sum(one.amount for one in gaps.driver_flank if type(one).__name__ == name)
+            for name in ("HelixSlope", "LeadCrowning")
         )
+        off = np.hypot(slope - self.wanted[0], 2.0 * (crowning - self.wanted[1]))
         return SimpleNamespace(face_load_factor=1.0 + 1e5 * off * np.ones(loads.size))
 
 
@@ -290,13 +292,36 @@ def test_a_correction_is_what_the_shafts_want_in_whole_graduations(slope, crowni
     assert found == pytest.approx((slope, crowning), abs=0.51e-6)
     for one in found:
         assert one / 0.5e-6 == pytest.approx(round(one / 0.5e-6), abs=1e-9)
-    again = lead_correction._searched(mesh, _shafts(-slope), (0.5, 1.0), 200.0, found)
-    assert again == pytest.approx((slope, crowning), abs=0.51e-6)
+    again = lead_correction._searched(mesh, _shafts(-slope), (0.5, 1.0), 200.0, (0.0, 0.0), (5e-6, 2e-6))
+    assert again == found
+    present = (1.3e-6, 9.7e-6)  # no graduations: what is there counts to the total, and crowning may become less
+    has = lead_correction.lead_modifications(*present, 0.02)
+    mesh = replace(mesh, gaps=Gaps(has))
+    assert lead_correction._searched(mesh, _shafts(-slope), (0.5, 1.0), 200.0, present) == found
 
 
 def test_nothing_is_ground_where_nothing_is_better():
     mesh = Mesh(Flanks(0.0, 0.0), Gaps())
     assert lead_correction._searched(mesh, _shafts(1e-6), (1.0,), 200.0, (0.0, 0.0)) == (0.0, 0.0)
+    present = (0.9e-6, 1.3e-6)
+    mesh = Mesh(Flanks(*present), Gaps(lead_correction.lead_modifications(*present, 0.02)))
+    assert lead_correction._searched(mesh, _shafts(1e-6), (1.0,), 200.0, present) == present
+
+
+@pytest.mark.parametrize("first", [(0, 0), (-30, 0), (11, 25)])
+@pytest.mark.parametrize("wanted", [(0.0, 0.0), (-13.3, 0.4), (7.6, 4.5), (3.0, -2.0)])
+def test_the_minimum_of_the_grid_is_that_of_all_its_places(wanted, first):
+    """A largest value of several, as K_Hbeta is: its valley has a sharp floor askew to both directions."""
+
+    def value(k, n):
+        x, y = k - wanted[0], n - wanted[1]
+        return max(x + 0.6 * y, -x + 0.7 * y, -1.1 * y, 0.5 * x - y)
+
+    asked = []
+    found = lead_correction.least_of_grid(lambda k, n: asked.append((k, n)) or value(k, n), first, 8)
+    assert value(*found) == min(value(k, n) for k in range(-40, 41) for n in range(41))
+    assert len(asked) == len(set(asked)) < 200
+    assert all(n >= 0 for _, n in asked)
 
 
 def test_a_single_slope_is_as_many_tilts_as_still_gain(monkeypatch):

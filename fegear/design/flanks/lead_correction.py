@@ -11,13 +11,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.contact.loaded_teeth import silent
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.on_shafts import FlankForces, LoadedShafts, MeshForces, load_gearbox
-from fegear.contact.wide.over_pitch import over_pitch
+from fegear.contact.wide.over_pitch import POSITIONS, over_pitch
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.flank_modification import FlankModification, HelixSlope, LeadCrowning
 from fegear.shafts.gearbox import Gearbox
@@ -26,15 +25,15 @@ from fegear.shafts.gearbox import Gearbox
 GRADUATION = 0.5e-6
 #: Times that corrections are searched and all meshes loaded with them.
 _ROUNDS = 2
-#: Evaluations of one search, and its end: amounts and K_Hbeta.
-_EVALUATIONS, _AMOUNT, _FACTOR = 60, 0.2e-6, 1e-3
 #: Most multiples of the shafts' tilt that a single slope is tried with.
 _TIMES = 4
+#: Graduations around the minimum among which none is better, and around which every longer step looks.
+_AROUND, _STEP_AROUND = 2, 1
 
 
 @dataclass(frozen=True)
 class LeadCorrection(ReadOnlyArrays):
-    """What is ground on the driver of a mesh besides its present flanks, and what that does.
+    """Lead of the driver of a mesh, in place of its present slope and crowning, and what that does.
 
     Parameters
     ----------
@@ -46,6 +45,8 @@ class LeadCorrection(ReadOnlyArrays):
         K_Hbeta.
     left : ndarray, shape (L,)
         What the shafts' gaps at one round less change of `after`.
+    kept : ndarray, shape (L,)
+        K_Hbeta with this slope and the present crowning.
     """
 
     slope: float
@@ -54,6 +55,7 @@ class LeadCorrection(ReadOnlyArrays):
     before: Array
     after: Array
     left: Array
+    kept: Array
 
 
 def lead_modifications(slope: float, crowning: float, width: float) -> tuple[FlankModification, ...]:
@@ -111,6 +113,7 @@ def correct_leads(
     gearbox: Gearbox,
     meshes: Sequence[MeshForces],
     present: LoadedShafts,
+    leads: Sequence[tuple[float, float]],
     progress: Callable[[float], None] = silent,
 ) -> tuple[LeadCorrection | None, ...]:
     """Correct every mesh whose flanks are loaded with the shafts; None for the others.
@@ -122,19 +125,23 @@ def correct_leads(
         With the present flanks.
     present : LoadedShafts
         Under them.
+    leads : sequence of (float, float)
+        Helix slope and crowning of the driver of every mesh that its present flanks contain: a correction takes their
+        place, and may be less crowning [m].
     progress : callable, optional
     """
     scales = [state.scale for state in present.states]
     feeding = [n for n, mesh in enumerate(meshes) if isinstance(mesh, FlankForces)]
-    amounts: dict[int, tuple[float, float]] = dict.fromkeys(feeding, (0.0, 0.0))
+    amounts: dict[int, tuple[float, float]] = {n: leads[n] for n in feeding}
     found, before = present, present
     for turn in range(_ROUNDS):
         before = found
         for k, n in enumerate(feeding):
             mesh = gearbox.meshes[n]
-            amounts[n] = _searched(_flanks(meshes[n]), before.gaps_of(mesh.pair), scales, mesh.load, amounts[n])
+            start = None if turn == 0 else amounts[n]
+            amounts[n] = _searched(_flanks(meshes[n]), before.gaps_of(mesh.pair), scales, mesh.load, leads[n], start)
             progress((turn * (len(feeding) + 1) + k + 1) / (_ROUNDS * (len(feeding) + 1)))
-        corrected = [_with(mesh, *amounts[n]) if n in amounts else mesh for n, mesh in enumerate(meshes)]
+        corrected = [_with(mesh, leads[n], amounts[n]) if n in amounts else mesh for n, mesh in enumerate(meshes)]
         found = LoadedShafts(gearbox, load_gearbox(gearbox, corrected, scales), present.feeding)
     made: list[LeadCorrection | None] = []
     for n, mesh in enumerate(gearbox.meshes):
@@ -142,11 +149,14 @@ def correct_leads(
             made.append(None)
             continue
         own, loads = _flanks(meshes[n]), np.array(scales) * mesh.load
-        factors = [
-            face_load_factors(_with(own, *one) if any(one) else own, shafts.gaps_of(mesh.pair), loads, mesh.load)
-            for one, shafts in (((0.0, 0.0), present), (amounts[n], before), (amounts[n], found))
-        ]
-        made.append(LeadCorrection(*amounts[n], loads, factors[0], factors[2], np.abs(factors[2] - factors[1])))
+        slope, crowning = amounts[n]
+        was, last, now, kept = (
+            face_load_factors(_with(own, leads[n], lead), shafts.gaps_of(mesh.pair), loads, mesh.load)
+            for lead, shafts in (
+                (leads[n], present), (amounts[n], before), (amounts[n], found), ((slope, leads[n][1]), found)
+            )
+        )  # fmt: skip
+        made.append(LeadCorrection(slope, crowning, loads, was, now, np.abs(now - last), kept))
     progress(1.0)
     return tuple(made)
 
@@ -163,10 +173,10 @@ def _flanks(mesh: MeshForces) -> FlankForces:
     return mesh
 
 
-def _with(mesh: MeshForces, slope: float, crowning: float) -> FlankForces:
-    """The same with a correction on the driver."""
+def _with(mesh: MeshForces, present: tuple[float, float], lead: tuple[float, float]) -> FlankForces:
+    """The same with this slope and crowning of the driver in place of the present ones."""
     own = _flanks(mesh)
-    return replace(own, gaps=_ground(own, slope, crowning))
+    return replace(own, gaps=_ground(own, lead[0] - present[0], lead[1] - present[1]))
 
 
 def _ground(mesh: FlankForces, slope: float, crowning: float) -> FlankGaps:
@@ -181,23 +191,69 @@ def _tilt(mesh: FlankForces, shafts: ShaftGaps, load: float) -> float:
 
 
 def _searched(
-    mesh: FlankForces, shafts: ShaftGaps, scales: Sequence[float], nominal: float, start: tuple[float, float]
+    mesh: FlankForces,
+    shafts: ShaftGaps,
+    scales: Sequence[float],
+    nominal: float,
+    present: tuple[float, float],
+    start: tuple[float, float] | None = None,
 ) -> tuple[float, float]:
-    """Slope and crowning of the least mean K_Hbeta over the loads, each weighted by itself, in whole graduations."""
+    """Slope and crowning of the minimum mean K_Hbeta over the loads, each weighted by itself, in whole graduations.
+
+    It begins at the slope that the shafts want without crowning, with long steps, or at `start` with the shortest. The
+    present lead stays where nothing is better.
+    """
     loads = np.array(scales) * nominal
-    size = max(abs(_tilt(mesh, shafts, float(loads[-1]))), 2.0 * GRADUATION)
+    flanks, known = mesh.flanks, mesh.known
+    if flanks.positions < POSITIONS:  # the minimum of what is stated is searched: of the whole base pitch
+        flanks = replace(flanks, positions=POSITIONS)
+        known = flanks.compliance(nominal)
 
-    def uneven(amounts: Array) -> float:
-        slope, crowning = (float(one) * size for one in amounts)
-        gaps = replace(_ground(mesh, slope, max(crowning, 0.0)), shafts=shafts)
-        factors = mesh.flanks.solve(loads, gaps, mesh.known).face_load_factor
-        return float(factors @ loads / loads.sum()) + 10.0 * max(-crowning, 0.0) / size
+    def uneven(slope: float, crowning: float) -> float:
+        gaps = replace(_ground(mesh, slope - present[0], crowning - present[1]), shafts=shafts)
+        return float(flanks.solve(loads, gaps, known).face_load_factor @ loads / loads.sum())
 
-    first = np.array([start[0] / size if any(start) else 1.0, start[1] / size if any(start) else 0.2])
-    corners = first + 0.4 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    best = minimize(
-        uneven, first, method="Nelder-Mead",
-        options={"initial_simplex": corners, "maxfev": _EVALUATIONS, "xatol": _AMOUNT / size, "fatol": _FACTOR},
-    ).x  # fmt: skip
-    slope, crowning = (GRADUATION * round(float(one) * size / GRADUATION) for one in (best[0], max(best[1], 0.0)))
-    return (slope, crowning) if uneven(np.array([slope, crowning]) / size) < uneven(np.zeros(2)) else (0.0, 0.0)
+    if start is None:
+        tilt = _tilt(mesh, shafts, float(loads[-1]))
+        first, longest = (round(tilt / GRADUATION), 0), max(1, round(0.25 * abs(tilt) / GRADUATION))
+    else:
+        first, longest = (round(start[0] / GRADUATION), round(start[1] / GRADUATION)), 1
+    found = least_of_grid(lambda k, n: uneven(k * GRADUATION, n * GRADUATION), first, longest)
+    slope, crowning = (GRADUATION * one for one in found)
+    return (slope, crowning) if uneven(slope, crowning) < uneven(*present) else present
+
+
+def least_of_grid(value: Callable[[int, int], float], first: tuple[int, int], longest: int) -> tuple[int, int]:
+    """Where a function of two whole numbers, the second not negative, has its minimum.
+
+    A pattern search: to the best of the eight neighbours at a step as long as one is better, then with half the step
+    (R. Hooke and T. A. Jeeves, J. ACM 8, 1961). At step one all numbers up to `_AROUND` away are neighbours, as
+    valleys of a largest value of several have sharp floors, along which neighbours on both sides lie higher.
+
+    Parameters
+    ----------
+    value : callable
+        Every place is asked for once.
+    first : (int, int)
+    longest : int
+        Longest step, at least 1.
+    """
+    known: dict[tuple[int, int], float] = {}
+
+    def at(place: tuple[int, int]) -> float:
+        if place not in known:
+            known[place] = value(*place)
+        return known[place]
+
+    best, step = first, longest
+    while True:
+        for around in (_STEP_AROUND, _AROUND) if step == 1 else (_STEP_AROUND,):
+            ways = range(-around * step, around * step + 1, step)
+            near = min(((best[0] + k, best[1] + n) for k in ways for n in ways if best[1] + n >= 0), key=at)
+            if at(near) < at(best):
+                best = near
+                break
+        else:
+            if step == 1:
+                return best
+            step //= 2

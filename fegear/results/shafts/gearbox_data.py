@@ -64,6 +64,8 @@ class MeshAtGlance:
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
     lead : LevelLead or None
         Helix slope against the tilt of the shafts, and what it is worth; None where it gains nothing.
+    remaining : float
+        Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
     """
 
     safety: Safety | None
@@ -81,6 +83,7 @@ class MeshAtGlance:
     te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
     margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
     lead: LevelLead | None = None
+    remaining: float = math.nan
 
     @property
     def main_cause(self) -> int:

@@ -64,6 +64,8 @@ if TYPE_CHECKING:
     from fegear.shafts.life import LifeRating
 
 
+#: Linear gap [m] that modifications change by less is that of the shafts.
+_MODIFIED = 0.1e-6
 #: A cause with less of the sum of all is none: seats that are rigid leave round-off.
 _ROUND_OFF = 1e-12
 
@@ -194,14 +196,17 @@ def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
+    from fegear.contact.wide.load_factors import straight_gap
+
     pair, none = shafts.gearbox.meshes[n].pair, math.nan
     every, *by_cause = (float(one) for one in state[0].over_face)
     least = _ROUND_OFF * sum(map(abs, by_cause))
     by_cause = [one if abs(one) > least else 0.0 for one in by_cause]
-    factor = factor_error = peak = swing = swing_error = none
+    factor = factor_error = peak = swing = swing_error = remaining = none
     if inputs.wide[n]:
         teeth = loaded_flanks(upstream, pair)
         factor, factor_error = (float(of.face_load_factor[teeth.at]) for of in (teeth.stated, teeth.error))
+        remaining = straight_gap(teeth.pair, teeth.gaps.under(teeth.nominal))
         peak = _peak(teeth.found.cells, teeth.found.mean_over_face[:, teeth.at])
     if inputs.loaded[n]:
         found = cast("TransmissionErrorData", upstream[Task("transmission-error", pair)]).found
@@ -213,7 +218,7 @@ def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: in
     margin = none if safety is None else min(safety.margins)
     return MeshAtGlance(
         safety, factor_error, swing_error, peak, pair, every, tuple(by_cause), factor, contact, required[0], bending,
-        required[1], swing, margin,
+        required[1], swing, margin, remaining=remaining,
     )  # fmt: skip
 
 
@@ -255,7 +260,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
     data: GearboxData = seen.data
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
-    known = []
+    known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
     if math.isfinite(first.margin):
         known += [
             f"{symbol} {value:.2f}" + (f" (minimum {figures(minimum)})" if value < minimum else "")
@@ -263,9 +268,14 @@ def _sentences(seen: Seen) -> Iterator[str]:
                 ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
             )
         ]  # fmt: skip
+        if rated and first.safety is not None:
+            known[-1] += f" with K_Hβ {first.safety.face_load_factor:.2f} of the rating"
     if math.isfinite(first.face_load_factor):
-        known.append(f"K_Hβ {first.face_load_factor:.2f}")
-    known.append(f"misaligned by {figures(first.over_face * 1e6)} µm")
+        known.append(f"K_Hβ {first.face_load_factor:.2f}" + (" of the loaded flanks" if rated else ""))
+    modified = ""
+    if abs(first.remaining - first.over_face) > _MODIFIED:
+        modified = f" (linear gap with the flank modifications {figures(first.remaining * 1e6, 2)} µm)"
+    known.append(f"misaligned by {figures(first.over_face * 1e6)} µm{modified}")
     if math.isfinite(first.te_peak_to_peak):
         known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
     yield f"Pair {first.pair}{many}: {', '.join(known)}."

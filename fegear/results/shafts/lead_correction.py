@@ -68,6 +68,8 @@ class GroundLead:
     before: Array = shown("", "K_Hbeta with the present lead", name="K_Hbeta_before", label="K_Hβ")
     after: Array = shown("", "K_Hbeta with the corrected lead", name="K_Hbeta_after", label="K_Hβ")
     left: Array | None = None
+    kept: Array | None = None
+    present: float = 0.0
     pair: str = shown("", "gear pair", default="")
     gear: str = shown("", "gear that is corrected", default="")
     slope: float = shown(
@@ -100,19 +102,20 @@ def _compute(inputs: LeadInputs, upstream: Upstream, work: Work) -> LeadData:
 
     box = inputs.shafts.gearbox
     meshes = mesh_forces(inputs.shafts, upstream, work)
-    found = correct_leads(box, meshes, loaded_shafts(upstream), work.progress)
+    leads = list(zip(inputs.slopes, inputs.crownings, strict=True))
+    found = correct_leads(box, meshes, loaded_shafts(upstream), leads, work.progress)
     radii = tuple(mesh.found.driver.base_radius for mesh in box.meshes)
     return LeadData(tuple(mesh.pair for mesh in box.meshes), radii, found)
 
 
 def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
     """Of every corrected mesh, the one that gains most first."""
-    rows = zip(data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, strict=True)
+    rows = zip(data.pairs, data.radii, data.found, asked.drivers, asked.crownings, strict=True)
     made = [
         GroundLead(
-            one.loads * radius, one.before, one.after, one.left, pair, gear, slope + one.slope, crowning + one.crowning
+            one.loads * radius, one.before, one.after, one.left, one.kept, crowning, pair, gear, one.slope, one.crowning
         )
-        for pair, radius, one, gear, slope, crowning in rows
+        for pair, radius, one, gear, crowning in rows
         if one is not None
     ]
     return sorted(made, key=lambda one: float(one.after[-1] - one.before[-1]))
@@ -121,16 +124,23 @@ def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
 def _sentences(seen: Seen) -> Iterator[str]:
     for one in seen.data:
         slope, crowning = figures(one.slope * 1e6), figures(one.crowning * 1e6)
+        kept = ""
+        if one.kept is not None and one.present != one.crowning:
+            kept = f", {one.kept[-1]:.2f} with the present crowning of {figures(one.present * 1e6)} µm"
         yield (
             f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of {crowning} µm on gear "
-            f"{one.gear}: K_Hβ {one.before[-1]:.2f} -> {one.after[-1]:.2f} at {figures(one.torque[-1])} N m."
+            f"{one.gear}: K_Hβ {one.before[-1]:.2f} -> {one.after[-1]:.2f} at {figures(one.torque[-1])} N m{kept}."
         )
 
 
 def _remarks(seen: Seen) -> Iterator[str]:
     yield (
-        "Lead correction: for the deflections of shafts, bearings and housing only; add the crowning that "
-        "manufacturing deviations require."
+        "Lead correction: for the deflections of shafts, bearings and housing only; the crowning is the total one, "
+        "present crowning is not kept: add the crowning that manufacturing deviations require."
+    )
+    yield (
+        "Lead correction: K_Hbeta before and after is that of the loaded flanks at nominal load. Not that of S_H and "
+        "S_F (K_Hbeta_rated, ISO 6336-1 with manufacturing deviations) nor K_Hbeta_iso (linear part of the gap only)."
     )
     if seen.data:
         yield (
