@@ -49,7 +49,14 @@ if TYPE_CHECKING:
         """Keys of the spec."""
 
 else:
-    _SectionKeys, _LifeKeys = keys_of(Section), keys_of(LifeRating)
+    _SectionKeys = keys_of(Section)
+    _LifeKeys = keys_of(
+        LifeRating,
+        otherwise={
+            "dynamic_rating": "that of `catalogue`, otherwise estimated from the dimensions",
+            "kind": "that of the designation, of `catalogue` or `elements`; ball otherwise",
+        },
+    )
     _CatalogueKeys = keys_of(
         PrintedBearing,
         otherwise={
@@ -183,10 +190,6 @@ class RollingElementsPart(Part):
 class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
     """``life = { dynamic_rating = "32.5 kN", axial_factor = 1.6, ... }`` of the catalogue, for ISO 281."""
 
-    def build(self) -> LifeRating:
-        """Make the rating."""
-        return LifeRating(self.dynamic_rating, self.kind, self.radial_factor, self.axial_factor, self.limit)
-
 
 class CataloguePart(_CatalogueKeys):  # type: ignore[misc]  # frozen by pydantic
     """``catalogue = { kind = "ball", bore = "30 mm", outside_diameter = "62 mm", width = "16 mm", ... }``."""
@@ -220,7 +223,10 @@ class BearingPart(Part):
     housing_axial: StiffnessOrZero | None = Field(
         default=None, description="Axial stiffness of the bearing seat in the housing. Default: rigid."
     )
-    life: BearingLifePart | None = Field(default=None, description="Catalogue ratings, for bearing life to ISO 281.")
+    life: BearingLifePart | None = Field(
+        default=None,
+        description="Catalogue ratings, for bearing life to ISO 281; `{}` for an estimate from the dimensions.",
+    )
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -235,6 +241,8 @@ class BearingPart(Part):
             )  # fmt: skip
         if printed:
             self._refuse_printed()
+        elif self.life is not None and "dynamic_rating" not in self.life.given:
+            raise refuse("is required without a designation or catalogue", "specify it", key="life.dynamic_rating")
         if self.matrix is not None and any(len(row) != 5 for row in self.matrix):
             raise refuse("must have 5 numbers per row", "specify five numbers per row", key="matrix", value="(rows)")
         if (self.radial_clearance or self.axial_clearance) and (self.radial is None or self.fixed):
@@ -263,6 +271,18 @@ class BearingPart(Part):
             if error.key == "dynamic_rating" and not (self.catalogue and self.catalogue.dynamic_rating):
                 key = "life.dynamic_rating"
             raise refuse(error.rule, error.remedy, key=key, value=error.value) from None
+
+    @property
+    def rating(self) -> LifeRating | None:
+        """What its life follows from; C and exponent are those of the bearing where they are not given."""
+        if (life := self.life) is None:
+            return None
+        printed, rated = self.printed, life.dynamic_rating
+        if printed is not None and "dynamic_rating" not in life.given:
+            rated = printed.dynamic_rating or printed.estimated_rating
+        known = printed.inside if printed else self.elements
+        kind = life.kind if "kind" in life.given else known.kind if known else "ball"
+        return LifeRating(rated, kind, life.radial_factor, life.axial_factor, life.limit)
 
     @property
     def printed(self) -> CatalogueBearing | None:

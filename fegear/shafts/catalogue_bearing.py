@@ -63,8 +63,16 @@ class Shares:
 _ASSUMED: dict[Kind, tuple[Shares, Shares]] = {
     "ball": (Shares(math.radians(187.0), 0.605, 0.0, 0.0, 1.05), Shares(math.radians(12.0), 0.05, 0.0, 0.007, 0.15)),
     "cylindrical": (Shares(0.83, 0.52, 0.55, 0.0, 1.15), Shares(0.07, 0.05, 0.16, 0.0, 0.15)),
-    "tapered": (Shares(0.88, 0.45, 0.67), Shares(0.07, 0.1, 0.13, angle=math.radians(3.0))),
+    "tapered": (
+        Shares(0.88, 0.45, 0.67, rating_factor=1.15),
+        Shares(0.07, 0.1, 0.13, rating_factor=0.0, angle=math.radians(3.0)),
+    ),
 }
+#: How far C may be off that follows from the envelope, relative to it: printed bearings lie within (see the tests).
+#: Cylindrical ones have two designs of one designation, with rollers of two sizes.
+_RATING_ERROR: dict[Kind, float] = {"ball": 0.17, "cylindrical": 0.3, "tapered": 0.2}
+#: A rating belongs to another bearing where it is off by more than this share of that error, up or down.
+_BEYOND = 1.5
 #: Contact angle of tapered bearings of which none is given [rad].
 _TAPERED_ANGLE = math.radians(14.0)
 #: Elements are no smaller and no larger than these shares of the section, rollers no shorter and no longer than these
@@ -97,6 +105,39 @@ class CatalogueBearing(PrintedBearing):
             f"{made.count} {'rollers' if rollers else 'balls'} of {size} on {self._pitch * 1e3:.4g} mm{angle} assumed, "
             f"estimated from {whence[self._rating]}; error of its radial stiffness {percent(self.error)}, "
             f"at a clearance of {self.clearance * 1e6:.3g} um"
+        )
+
+    @property
+    def estimated_rating(self) -> float:
+        """C that makers print for such an inside: that of ISO 281 with what b_m is more than its value [N]."""
+        made = self.inside
+        return dynamic_rating(made, _ASSUMED[self.kind][0].rating_factor * RATING_FACTOR[made.kind])
+
+    @property
+    def rating_error(self) -> float:
+        """Relative error of the estimated C."""
+        return _RATING_ERROR[self.kind]
+
+    def misfits(self, **given: float | None) -> tuple[tuple[str, float, float], ...]:
+        """Ratings that other bearings than one of this envelope have.
+
+        Parameters
+        ----------
+        **given : float, optional
+            C or C_0 [N] by ``dynamic_rating``, ``static_rating``.
+
+        Returns
+        -------
+        tuple of (str, float, float)
+            Name of each rating that does not fit, the given value and the estimated one [N].
+        """
+        bare = replace(self, dynamic_rating=None, static_rating=None)
+        typical = {"dynamic_rating": bare.estimated_rating, "static_rating": static_rating(bare.inside)}
+        most = 1.0 + _BEYOND * self.rating_error
+        return tuple(
+            (key, one, typical[key])
+            for key, one in given.items()
+            if one is not None and not 1.0 / most <= one / typical[key] <= most
         )
 
     @property

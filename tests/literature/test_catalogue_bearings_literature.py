@@ -131,3 +131,31 @@ def test_estimates_of_printed_insides_are_within_the_stated_error(known, count, 
         assert estimated.error < useful
     assert len(shares) == count
     assert max(shares) < 1.0
+
+
+@pytest.mark.parametrize(("known", "low", "high"), [(printed_balls, 0.92, 1.16), (printed_rollers, 0.72, 1.27)])
+def test_printed_ratings_are_within_the_error_of_those_that_a_designation_gives(known, low, high):
+    """C without any rating; no printed C or C_0 is taken for that of another designation."""
+    ratios = []
+    for printed, _ in known():
+        bare = replace(printed, dynamic_rating=None, static_rating=None)
+        ratios.append(printed.dynamic_rating / bare.estimated_rating)
+        assert abs(ratios[-1] - 1.0) < printed.rating_error
+        given = {"dynamic_rating": printed.dynamic_rating, "static_rating": printed.static_rating}
+        assert printed.misfits(**given) == ()
+        # with C_0 the estimate is no worse
+        by_static = printed.dynamic_rating / replace(printed, dynamic_rating=None).estimated_rating
+        assert abs(by_static - 1.0) < printed.rating_error
+    assert (min(ratios), max(ratios)) == (pytest.approx(low, abs=0.01), pytest.approx(high, abs=0.01))
+
+
+def test_ratings_of_tapered_bearings_are_within_the_error_of_those_that_a_designation_gives():
+    """Rows from memory of a maker's catalogue, not verified against a printed source."""
+    rows = (("30203", 23.4, 18.6), ("30205", 38.1, 33.5), ("30206", 50.1, 44), ("30208", 75.8, 68),
+            ("30210", 94.6, 91.5), ("30304", 42.1, 32.5), ("30306", 69.2, 56), ("30308", 106, 95),
+            ("30310", 154, 140), ("32208", 92.2, 86.5), ("32308", 145, 140))  # fmt: skip
+    for name, c, c_0 in rows:
+        one = envelope_of(name)
+        bare = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, contact_angle=one.contact_angle)
+        assert abs(c * 1e3 / bare.estimated_rating - 1.0) < bare.rating_error
+        assert bare.misfits(dynamic_rating=c * 1e3, static_rating=c_0 * 1e3) == ()

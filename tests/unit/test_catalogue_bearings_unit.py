@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from pydantic import ValidationError
 from rexs_cases import case, imported, same, text_of, there_and_back
 from rexs_models import part, two_stages
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.notes import NoteClass, class_of
+from fegear.case.built.shafts import said_of_bearings
 from fegear.case.shaft import BearingPart
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN, envelope_of
@@ -127,3 +131,69 @@ def test_what_a_bearing_is_refused_for_is_said_under_the_key_that_was_given(give
         BearingPart.model_validate(given)
     (said,) = refused.value.errors()
     assert said["ctx"]["key"] == key
+
+
+def notes_of(given: dict) -> list:
+    """Notes on a bearing of a shaft, without that on its inside."""
+    part = BearingPart.model_validate(given)
+    shaft = SimpleNamespace(bearings=[SimpleNamespace(bearing="one")])
+    scene = SimpleNamespace(case=SimpleNamespace(shaft={"in": shaft}, bearing={"one": part}))
+    return list(said_of_bearings(scene))[1:]
+
+
+@pytest.mark.parametrize(("given", "said", "remedy"), [
+    ({"designation": "6306", "life": {"dynamic_rating": "20 kN"}}, "C = 20 kN does not fit 6306",
+     "bearing.one.life.dynamic_rating"),
+    ({"designation": "6306", "life": {"dynamic_rating": "20 kN"}, "catalogue": {"static_rating": "16 kN"}},
+     "C = 20 kN does not fit 6306", "bearing.one.life.dynamic_rating"),
+    ({"designation": "6306", "catalogue": {"static_rating": "11.2 kN"}}, "C_0 = 11.2 kN does not fit 6306",
+     "bearing.one.catalogue.static_rating"),
+    ({"designation": "NU206", "catalogue": {"dynamic_rating": "65 kN"}}, "C = 65 kN does not fit NU206",
+     "bearing.one.catalogue.dynamic_rating"),
+])  # fmt: skip
+def test_a_rating_of_another_designation_is_a_warning_with_its_remedy(given, said, remedy):
+    (note,) = notes_of(given)
+    assert class_of(note) is NoteClass.BEYOND_TOLERANCE
+    assert said in note
+    assert remedy in note
+    assert "bearing.one.designation" in note
+
+
+@pytest.mark.parametrize("given", [
+    {"designation": "6306", "life": {"dynamic_rating": "29.6 kN"}, "catalogue": {"static_rating": "16 kN"}},
+    {"designation": "6306", "catalogue": {"bore": "31 mm", "outside_diameter": "60 mm", "dynamic_rating": "18 kN"}},
+    {"designation": "6306"},
+    {"radial": "200 N/um", "life": {"dynamic_rating": "20 kN"}},
+])  # fmt: skip
+def test_ratings_that_fit_or_belong_to_given_dimensions_are_no_warning(given):
+    assert not notes_of(given)
+
+
+def test_a_life_without_rating_takes_that_of_the_catalogue_else_an_estimate_of_the_designation():
+    def rating(**given: object) -> object:
+        return BearingPart.model_validate({"life": {}, **given}).rating
+
+    small, large = rating(designation="6206"), rating(designation="6306")
+    assert (large.kind, large.dynamic_rating) == ("ball", pytest.approx(29.6e3, rel=0.17))
+    assert large.dynamic_rating > 1.3 * small.dynamic_rating
+    assert rating(designation="NU206").kind == rating(designation="30206").kind == "roller"
+    assert rating(designation="6306", catalogue={"dynamic_rating": "28 kN"}).dynamic_rating == 28e3
+    (note,) = notes_of({"designation": "6306", "life": {}})
+    assert class_of(note) is NoteClass.ASSUMED
+    assert "C = 28.4 kN estimated from 6306, error 17 %" in note
+    assert "life.dynamic_rating" in note
+    assert not notes_of({"designation": "6306", "life": {}, "catalogue": {"dynamic_rating": "28 kN"}})
+    # the estimate as a given C makes the same inside
+    given = {"designation": "6306", "life": {"dynamic_rating": f"{large.dynamic_rating!r} N"}}
+    bare = BearingPart.model_validate({"designation": "6306", "life": {}}).printed.inside
+    assert BearingPart.model_validate(given).printed.inside.element_diameter == pytest.approx(bare.element_diameter)
+    with pytest.raises(ValidationError, match="is required without a designation or catalogue") as refused:
+        rating(radial="200 N/um")
+    assert refused.value.errors()[0]["ctx"]["key"] == "life.dynamic_rating"
+
+
+def test_an_exponent_follows_from_what_rolls_unless_given():
+    life = {"dynamic_rating": "40 kN"}
+    assert BearingPart.model_validate({"designation": "NU206", "life": life}).rating.kind == "roller"
+    assert BearingPart.model_validate({"designation": "NU206", "life": life | {"kind": "ball"}}).rating.kind == "ball"
+    assert BearingPart.model_validate({"radial": "200 N/um", "life": life}).rating.kind == "ball"

@@ -474,7 +474,7 @@ def test_bearings_of_two_drafted_stages_last_and_hold_what_fits_them(given):
     for shaft, bent, speed in zip(case.shaft.values(), state.bent, speeds, strict=True):
         for place, force in zip(shaft.bearings, bent.bearing_forces, strict=True):
             bearing = case.bearing[place.bearing]
-            rolls = bearing.life.build().revolutions(np.hypot(*force[:2]), force[2])
+            rolls = bearing.rating.revolutions(np.hypot(*force[:2]), force[2])
             assert rolls * 2.0 * np.pi / speed > 20e3 * 3600.0
             assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
 

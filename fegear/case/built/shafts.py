@@ -9,13 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import assuming, exceeding
+from fegear.base.printed import figures, percent
 from fegear.case.nearest import nearest
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.geometry.plausible import THICKEST_BELOW_GEARS
+from fegear.shafts.life import EXPONENT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.base.notes import Note
     from fegear.case.built.gears_on_shafts import StiffenedShaft
+    from fegear.case.shaft import BearingPart
     from fegear.shafts.gearbox import Gearbox
     from fegear.shafts.held import Around
     from fegear.shafts.mesh import MeshPlace
@@ -28,6 +35,9 @@ _OVERLAP = 0.01
 _ELEMENTS = {"element_diameter": "elements.diameter"} | {
     key: f"elements.{key}" for key in ("count", "pitch_diameter", "contact_angle", "groove_ratio", "roller_length")
 }
+#: Load ratings of a bearing, and the keys that replace dimensions of a designation.
+_SYMBOLS = {"dynamic_rating": "C", "static_rating": "C_0"}
+_ENVELOPE = {"kind", "bore", "outside_diameter", "width"}
 #: Shafts and bearings that are solved together at most.
 _SHAFTS, _BEARINGS = 100, 300
 
@@ -177,7 +187,35 @@ def said_of_bearings(scene: Scene) -> tuple[str, ...]:
     """What is assumed of bearings on shafts of which only a catalogue is known."""
     used = dict.fromkeys(place.bearing for part in scene.case.shaft.values() for place in part.bearings)
     printed = {name: scene.case.bearing[name].printed for name in used if name in scene.case.bearing}
-    return tuple(f"bearing {name}: {one.said}" for name, one in printed.items() if one is not None)
+    found: list[str] = [f"bearing {name}: {one.said}" for name, one in printed.items() if one is not None]
+    for name in printed:
+        found += _said_of_ratings(name, scene.case.bearing[name])
+    return tuple(found)
+
+
+def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
+    """Ratings of another bearing than the designation's, and a C that is estimated."""
+    printed, life, said = part.printed, part.life, part.catalogue
+    if printed is None:
+        return
+    key = f"bearing.{name}"
+    if part.designation is not None and not (said and said.given & _ENVELOPE):
+        for table, given in (("life", life), ("catalogue", said)):
+            ratings = {one: getattr(given, one, None) for one in _SYMBOLS}
+            for rating, value, typical in printed.misfits(**ratings):
+                yield exceeding(
+                    f"bearing {name}: {_SYMBOLS[rating]} = {figures(value * 1e-3)} kN does not fit {part.designation} "
+                    f"(typical: {figures(typical * 1e-3)} kN); correct {key}.{table}.{rating} or {key}.designation, or "
+                    "remove the rating to have it estimated"
+                )
+    rated = part.rating
+    if rated is not None and printed.dynamic_rating is None:
+        off = (1.0 + printed.rating_error) ** EXPONENT[rated.kind]
+        yield assuming(
+            f"bearing {name}: C = {figures(rated.dynamic_rating * 1e-3)} kN estimated from "
+            f"{part.designation or 'its dimensions'}, error {percent(printed.rating_error)} (of the life a factor of "
+            f"{figures(off, 2)}); specify {key}.life.dynamic_rating"
+        )
 
 
 def _stiffened(scene: Scene, meshes: tuple[MeshPlace, ...]) -> list[StiffenedShaft]:

@@ -96,11 +96,11 @@ bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name
 _BEARINGS = """\
 [bearing.{name}_locating]
 designation = "{locating}"
-life = {{ dynamic_rating = "{ball} kN", radial_factor = {X}, axial_factor = {Y}, limit = {e} }}     # C assumed
+life = {{ radial_factor = {X}, axial_factor = {Y}, limit = {e} }}     # assumed; C of the designation
 
 [bearing.{name}_floating]
 designation = "{floating}"
-life = {{ dynamic_rating = "{roller} kN", kind = "roller" }}     # C assumed
+life = {{}}     # C of the designation
 """
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
@@ -390,15 +390,14 @@ def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
     bearings = "\n".join(
         _BEARINGS.format(
             name=_SHAFTS[n], locating=one.locating.designation, floating=one.floating.designation,
-            ball=f"{one.locating.rating * 1e-3:g}", roller=f"{one.floating.rating * 1e-3:g}",
             X=LOCATING["radial_factor"], Y=LOCATING["axial_factor"], e=LOCATING["limit"],
         )
         for n, one in enumerate(found.shafts)
     )  # fmt: skip
     said = (
         "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
-        "from\n# them (ISO 281): replace C, X, Y, e by those of the catalogue, which also has C_0: catalogue = { "
-        'static_rating = "16 kN" }.\n'
+        "from\n# them (ISO 281). Values of a catalogue are better and belong to one designation, as of a 6306:\n"
+        '# life = { dynamic_rating = "29.6 kN" } (also X, Y, e), catalogue = { static_rating = "16 kN" }.\n'
     )
     return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": f"{shafts}\n{said}\n{bearings}"}
 

@@ -99,7 +99,8 @@ def _bearing(
     made.say("tilting stiffness", bending_stiffness=part.tilting if "tilting" in part.model_fields_set else None)
     if part.radial_clearance:
         made.say("small length", operating_radial_bearing_clearance=2.0 * part.radial_clearance)
-    kind = (elements or life).kind if elements or life else None  # type: ignore[union-attr]  # one of them is there
+    rating = part.rating
+    kind = elements.kind if elements else rating.kind if rating else None
     angle = elements.contact_angle if elements else 0.0
     if printed is not None:
         kind, angle = printed.inside.kind, printed.given_angle
@@ -107,13 +108,14 @@ def _bearing(
         made.say("small length", operating_radial_bearing_clearance=printed.clearance or None)
         made.say("large force", radial_static_load_rating=printed.static_rating)
         made.word(catalogue_designation=part.designation)
-        if life is None:
+        if life is None or "dynamic_rating" not in life.given:
             made.say("large force", radial_dynamic_load_rating=printed.dynamic_rating)
         row = written.part("rolling_bearing_row").say("angle", pressure_angle=abs(angle))
         written.relate("ordered_assembly", 1, assembly=made, part=row)
     made.word(bearing_type=_TYPES.get((kind or "", bool(angle))))
     if life is not None:
-        made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
+        if "dynamic_rating" in life.given:
+            made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
         given = life.axial_factor or life.limit
         made.say(
             "number", radial_factor_x_2=life.radial_factor if given else None,

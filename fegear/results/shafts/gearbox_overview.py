@@ -135,7 +135,7 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
     part = scene.case.bearing
     shafts = scene.case.shaft
     names = tuple(tuple(place.bearing for place in one.bearings) for one in shafts.values())
-    lives = tuple(tuple(rating.build() if (rating := part[one].life) else None for one in row) for row in names)
+    lives = tuple(tuple(part[one].rating for one in row) for row in names)
     spins = _speeds(scene)
     speeds = tuple(tuple(_against(spins, name, place.around) for place in one.bearings) for name, one in shafts.items())
     required = max((life for pair in meshes if (life := scene.case.pair[pair].operation.life)), default=math.nan)

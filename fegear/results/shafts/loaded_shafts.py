@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
-from fegear.base.notes import assuming, neglecting
+from fegear.base.notes import Note, assuming, class_of, neglecting
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
@@ -112,7 +112,7 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
 
 def _remarks(data: LoadedShafts, assumed: tuple[str, ...]) -> list[str]:
     """What the model assumes and neglects, and what is not from a print at hand."""
-    said = [f"Shafts: {one}." for one in assumed]
+    said: list[str] = [Note(f"Shafts: {one}.", class_of(one)) for one in assumed]
     if any(one.shaft.gears for one in data.gearbox.shafts):
         said.append(
             "Shafts: gear bodies are treated as rigidly connected to the shaft over their seats and stiffen it in "

@@ -58,7 +58,7 @@ class DeflectedShaft:
 def _inputs(scene: Scene, _name: str) -> DeflectionInputs:
     names = tuple(tuple(one.bearing for one in part.bearings) for part in scene.case.shaft.values())
     known = scene.case.bearing
-    lives = tuple(tuple(life.build() if (life := known[one].life) else None for one in row) for row in names)
+    lives = tuple(tuple(known[one].rating for one in row) for row in names)
     errors = tuple(tuple(printed.error if (printed := known[one].printed) else None for one in row) for row in names)
     return DeflectionInputs(names, lives, errors)
 
