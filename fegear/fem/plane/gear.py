@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.base.errors import RangeError
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.estimate import QUANTITIES, Estimate
 from fegear.fem.plane.influence import Influence
@@ -132,10 +133,22 @@ class GearInfluence:
         return c / self.gear.material.young_modulus
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k(p, q): deflection at p of tooth k per unit line load at q of tooth 0, shape (P, Q) [m^2/N]."""
+        """c_k(p, q): deflection at p of tooth k per unit line load at q of tooth 0, shape (P, Q) [m^2/N].
+
+        Raises
+        ------
+        RangeError
+            If the gear was solved for fewer neighbours.
+        """
+        self._check_reach(k)
         a = self.settings.patch_half_width
         c = self.fine.neighbour(k, self._modules(radius_p), self._modules(radius_q), a)
         return c / self.gear.material.young_modulus
+
+    def _check_reach(self, k: int) -> None:
+        if abs(k) > self.reach:
+            known = f"was not solved: teeth {-self.reach} to {self.reach} are known" if self.reach else "was not solved"
+            raise RangeError("k", f"{k}", known, f"set reach={abs(k)} in solve_gear")
 
     def _half_width(self, half_width: ArrayLike | None) -> Array:
         if half_width is None:
@@ -208,6 +221,7 @@ class GearInfluence:
 
     def neighbour_with_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> tuple[Array, Array]:
         """`neighbour` and its estimated error [m^2/N], shape (P, Q) each."""
+        self._check_reach(k)
         if self.estimate is None:
             value = self.neighbour(k, radius_p, radius_q)
             return value, np.full(value.shape, np.nan)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from fegear.base.errors import InputError
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.bore import check_bore
@@ -130,9 +131,12 @@ def solve_gear(
 
     Raises
     ------
+    InputError
+        If it is not a gear of the geometry package.
     RangeError
         If the bore lies too near the centre or the outline to be meshed.
     """
+    check_gear(gear)
     started = time.perf_counter()
     settings = settings or MeshSettings()
     cache = SolutionCache() if cache is None else cache
@@ -162,6 +166,23 @@ def solve_gear(
             _estimate, fine, coarser.corner_distance, settings.patch_half_width, coarser.patch_half_width
         ).value
     return GearInfluence(gear, fine, estimate, replace(settings), seconds)
+
+
+def check_gear(gear: object) -> None:
+    """Refuse what is not a gear of the geometry package: gears of scripts have other attributes.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(gear, Gear):
+        kind = type(gear)
+        raise InputError(
+            "gear",
+            f"{kind.__module__.partition('.')[0]}.{kind.__qualname__}" if kind.__module__ != "builtins" else repr(gear),
+            "must be a fegear.geometry.gear.Gear",
+            "for a fegear.Gear use gear.geometry, or fegear.stiffness_table(gear)",
+        )
 
 
 def solve_to_tolerance(
@@ -196,6 +217,7 @@ def solve_to_tolerance(
         Its `rounds` list what was tried; the last one may miss the tolerance at the finest level or after the last
         round.
     """
+    check_gear(gear)
     level, rounds = first_level(gear.tooth, tolerance), []
     cache = SolutionCache() if cache is None else cache
     while True:

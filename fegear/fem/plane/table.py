@@ -17,7 +17,7 @@ from fegear.fem.plane.contact_width import check_half_widths
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.settings import MeshSettings
-from fegear.fem.plane.solution import Progress, solve_gear
+from fegear.fem.plane.solution import Progress, check_gear, solve_gear
 from fegear.geometry.gear import Gear
 
 #: Load positions at a time: compliances between neighbours come as a matrix over all of them.
@@ -110,9 +110,12 @@ def stiffness_table(
 
     Raises
     ------
+    InputError
+        If it is not a gear of the geometry package.
     RangeError
         If a radius lies off the flank, or a half-width is one that no flank holds (`check_half_widths`).
     """
+    check_gear(gear)
     started = time.perf_counter()
     r = np.atleast_1d(np.asarray(radii, dtype=float))
     b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()

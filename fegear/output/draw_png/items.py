@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from fegear.engine.figure.items import (
 from fegear.engine.figure.panel import Panel
 from fegear.output.draw_png.texts import words
 from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 #: They reach so much farther where notes stand beside points.
 _ROOM_FOR_NOTES = 1.6
@@ -133,7 +136,8 @@ def _heat(axes: Any, _panel: Panel, item: HeatMap) -> Any:
         scale = LinearSegmentedColormap.from_list("diverging", [tuple(v / 255 for v in c) for c in DIVERGING])
     x, y, z = np.asarray(item.x), np.asarray(item.y), np.asarray(item.z)
     axes.set_facecolor("0.75")
-    image = axes.pcolormesh(x, y, np.ma.masked_invalid(z), cmap=scale, vmin=low, vmax=high, shading="nearest")
+    sides = _sides(x), _sides(y)
+    image = axes.pcolormesh(*sides, np.ma.masked_invalid(z), cmap=scale, vmin=low, vmax=high, shading="flat")
     if item.numbers:
         for (row, column), value in np.ndenumerate(z):
             known = bool(np.isfinite(value))
@@ -142,6 +146,12 @@ def _heat(axes: Any, _panel: Panel, item: HeatMap) -> Any:
                 color="white" if known and _dark(item, float(value)) else "black",
             )  # fmt: skip
     return image
+
+
+def _sides(middles: NDArray[Any]) -> NDArray[Any]:
+    """Where tiles end: halfway between their middles; a single one is as wide as a category."""
+    half = 0.5 * np.diff(middles) if middles.size > 1 else np.array([0.5])
+    return np.concatenate([middles[:1] - half[:1], middles[:-1] + half[: middles.size - 1], middles[-1:] + half[-1:]])
 
 
 def _dark(item: HeatMap, value: float) -> bool:

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.printed import figures
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import citing
 from fegear.engine.declared import drawn
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure, View
-from fegear.engine.figure.items import HeatMap, Mark
-from fegear.engine.figure.panel import Panel
+from fegear.engine.figure.figure import Figure
+from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
@@ -27,7 +26,8 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
-from fegear.results.gear.root_stress_spread import WORDS, sentences, spread_figure
+from fegear.results.gear.root_stress_spread import WORDS, fe_error, sentences, spread_figure
+from fegear.results.gear.root_stress_varied import ratios_figure, tiles_figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -43,15 +43,12 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
 
 
-#: Ratios beyond 1 -+ this have the full colour; height of a row of tiles; steps and end of the histogram.
-_FULL, _TILE, _BIN, _WIDEST = 0.4, 0.1, 0.05, 2.0
+#: Steps and end of the histogram.
+_BIN, _WIDEST = 0.05, 2.0
 
 
-#: Share of the room of a number of teeth in which the formulas stand next to each other.
-_LANES = 0.8
-
-
-_RATIO = "root stress, formula / FE"
+#: Of the time of a gear with its neighbours that of one without.
+_EACH = 0.5
 
 
 def _gear(scene: Scene) -> str:
@@ -113,7 +110,9 @@ def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[Varia
         study.profile_shift or [tooth.profile_shift],
         study.rack_tip_radius or [tooth.rack.tip_radius],
     )
-    return tuple(root_stress_study(gears, study.load_position, asked.settings, work.progress, work.cache))
+    return tuple(
+        root_stress_study(gears, study.load_position, asked.settings, work.progress, work.cache, estimate_error=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -139,9 +138,15 @@ class StudyRows:
     pressure_angle: Array | None = shown("deg", "of the basic rack", default=None)
     stress_fe_error: Array | None = shown("MPa.mm/N", "estimated error of FE", default=None)
 
+    def varied(self) -> dict[str, NDArray[Any]]:
+        """Columns over which ratios are drawn, none of which has a unit."""
+        keys = ("teeth", "profile_shift", "rack_tip_radius", "load_position", "formula", "ratio_to_fe")
+        return {key: getattr(self, key) for key in keys}
+
     def read(self) -> dict[str, NDArray[Any]]:
-        """What is said of drawn gears, in the units in which it is read."""
+        """What is said of drawn gears, in the units in which it is read; without what is known of these only."""
         keys = (*WORDS, "ratio_to_fe", "stress_fe", "stress_fe_error")
+        keys = tuple(key for key in keys if getattr(self, key) is not None)
         return {"formula": self.formula, **{key: drawn(self, key) for key in keys}}
 
 
@@ -166,8 +171,9 @@ def _rows(found: tuple[VariantStress, ...], names: tuple[str, ...], module: floa
                     pressure_angle, one.fe_error[i] / module,
                 ))  # fmt: skip
     *columns, reasons, dedendums, angles, errors = (np.array(column) for column in zip(*rows, strict=True))
-    more = {"rack_dedendum": dedendums, "pressure_angle": angles, "stress_fe_error": errors} if of_drawn else {}
-    return StudyRows(*columns, reason=reasons, **more)
+    of_racks = {"rack_dedendum": dedendums, "pressure_angle": angles} if of_drawn else {}
+    more = {"reason": reasons, "stress_fe_error": errors, **of_racks}
+    return StudyRows(*columns, **more)
 
 
 @dataclass(frozen=True)
@@ -188,15 +194,11 @@ class OfFormula:
     ----------
     shares : mapping of str to Share
         By verdict.
-    notes : tuple of str
-        Of its points.
     edge, count : ndarray
         Steps of the histogram, and points in each.
     """
 
     shares: dict[str, Share]
-    notes: tuple[str, ...]
-    place: Array = shown("", "number of teeth, offset for other formulas")
     ratio: Array = shown("", "formula / FE")
     edge: Array = shown("", "formula / FE, start of the step")
     count: NDArray[np.intp] = shown("", "points")
@@ -244,15 +246,12 @@ def _shown(found: tuple[VariantStress, ...], asked: StudyInputs) -> ShownStudy:
 
     names, of_drawn = tuple(ROOT_STRESS_SOURCES), asked.study.samples is not None
     rows = _rows(found, names, asked.base.module, of_drawn=of_drawn)
-    lane, of = _LANES / len(names), {}
-    for number, name in enumerate(names):
-        shift = lane * (number - 0.5 * (len(names) - 1))
-        of[name] = _of_formula(rows, name, shift, of_drawn=of_drawn)
+    of = {name: _of_formula(rows, name, of_drawn=of_drawn) for name in names}
     return ShownStudy(rows, of, of_drawn, len(found))
 
 
-def _of_formula(rows: StudyRows, name: str, shift: float, *, of_drawn: bool) -> OfFormula:
-    """`shift` is that of its points beside the number of teeth; shares of drawn gears have a standard error."""
+def _of_formula(rows: StudyRows, name: str, *, of_drawn: bool) -> OfFormula:
+    """Shares of drawn gears have a standard error."""
     from fegear.contact.compared.population import LOADS, share_error
 
     own, shares = rows.formula == name, {}
@@ -260,52 +259,27 @@ def _of_formula(rows: StudyRows, name: str, shift: float, *, of_drawn: bool) -> 
         hits = rows.verdict[own] == key
         error = share_error(hits.reshape(-1, LOADS)) if of_drawn else 0.0
         shares[key] = Share(key.replace(" %", "_percent").replace(" ", "_"), name, error, float(np.mean(hits)))
-    teeth, ratio = rows.teeth[own], rows.ratio_to_fe[own]
-    gears = zip(teeth, rows.profile_shift[own], rows.rack_tip_radius[own], rows.load_position[own], strict=True)
-    notes = tuple(
-        f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load position {p:.3g}" for z, x, r, p in gears
-    )
+    ratio = rows.ratio_to_fe[own]
     edges = np.arange(0.0, _WIDEST + 0.5 * _BIN, _BIN)
     count, _ = np.histogram(ratio[np.isfinite(ratio)], edges)
-    place = np.searchsorted(np.unique(rows.teeth), teeth) + shift
-    return OfFormula(shares, notes, place, ratio, edges, np.append(count, 0))
+    return OfFormula(shares, ratio, edges, np.append(count, 0))
 
 
-def _tiles(seen: Seen) -> tuple[Figure, ...]:
-    """A tile for every gear, load position and formula; none of gears that were drawn."""
-    rows, names = seen.data.rows, tuple(seen.data.formulas)
+def _about(seen: Seen) -> str:
+    """What all gears have in common, and how exact the finite elements are."""
+    base, off = seen.asked.base, fe_error(seen.data.rows.read())
+    return (
+        f"The bore follows the number of teeth: {base.bore_radius / base.root_radius:.4g} of the root radius in all "
+        f"gears. Estimated error of the finite elements: {percent(off)} at 95 % of the points."
+    )
+
+
+def _ratios(seen: Seen) -> tuple[Figure, ...]:
+    """A tile for every gear, load position and formula, and all ratios over what is varied; none of drawn gears."""
     if seen.data.drawn:
         return ()
-    gears = list(dict.fromkeys(zip(rows.teeth, rows.profile_shift, rows.rack_tip_radius, strict=True)))
-    positions = list(dict.fromkeys(float(p) for p in rows.load_position))
-    labels = tuple(f"{z:.0f} | {x:+.2g} | {r:.2g}" for z, x, r in gears)
-    shares = tuple(f"{p:g}" for p in positions)
-    edges = np.flatnonzero(np.diff([z for z, *_ in gears]))
-    marks = tuple(Mark("y", len(gears) - 1.5 - int(edge)) for edge in edges)
-    axes = (
-        Axis("load position: fraction of roll angle (0 start, 1 end)", categories=shares),
-        Axis("teeth | profile shift | rack tip radius in modules", categories=labels[::-1]),
-    )
-    tiles = rows.ratio_to_fe.reshape(len(gears), len(names), len(positions))
-    across, down = np.arange(len(positions)), np.arange(len(gears))[::-1]
-    views = tuple(
-        View(name, (Panel(
-            *axes, (HeatMap(across, down, tiles[:, i], _RATIO, centre=(1.0, _FULL), numbers=True),),
-            marks, height=_TILE * len(gears),
-        ),))
-        for i, name in enumerate(names)
-    )  # fmt: skip
-    return (
-        Figure(
-            "root_stress_study",
-            "Over- and underestimation of each root-stress formula",
-            "Root stress of one tooth under a load normal to the flank, formula over finite elements: white: "
-            "agreement, orange: overestimate (conservative), blue: underestimate, × on grey: formula not applicable "
-            "(reason in the table).",
-            views=views,
-            most_views=len(views),
-        ),
-    )
+    table, about = seen.data.rows.varied(), _about(seen)
+    return tiles_figure(table, about), ratios_figure(table, about)
 
 
 def _spread(seen: Seen) -> tuple[Figure, ...]:
@@ -341,16 +315,6 @@ def _answers(_seen: Seen) -> type:
     return RootStressAnswers
 
 
-def _numbers_of_teeth(seen: Seen) -> Axis:
-    ticks = tuple((float(k), f"{z:.0f}") for k, z in enumerate(np.unique(seen.data.rows.teeth)))
-    return Axis("number of teeth; one bar per formula", ticks=ticks)
-
-
-def _between_numbers(seen: Seen) -> tuple[Mark, ...]:
-    edges = (Mark("x", k + 0.5) for k in range(np.unique(seen.data.rows.teeth).size - 1))
-    return *edges, Mark("y", 1.0, "finite elements")
-
-
 _SHEET = Sheet(
     of=_shown,
     name=lambda _asked: "",
@@ -375,25 +339,7 @@ _SHEET = Sheet(
         ),
     ),
     figures=(
-        _tiles,
-        Chart(
-            "root_stress_ratios", "Root-stress formulas relative to FE",
-            "One point for each gear and load position; 1 agrees, above 1 is safe. In the report, hover over a point "
-            "to identify the gear.",
-            (
-                Over(
-                    _numbers_of_teeth,
-                    (
-                        Line(
-                            "ratio", x="place", kind="points", each=Family("formulas", most=None),
-                            look=lambda seen: {"size": 4.5, "notes": seen.one.notes},
-                        ),
-                    ),
-                    Axis("formula / FE"), _between_numbers,
-                ),
-            ),
-            when=lambda seen: not seen.data.drawn,
-        ),
+        _ratios,
         Chart(
             "root_stress_histogram", "Distribution of formula / FE",
             f"Distribution of the ratio formula / FE over the points of the study, in steps of {_BIN:g}.",
@@ -420,15 +366,13 @@ _SHEET = Sheet(
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
-    """One gear without neighbours and without its error for each combination."""
+    """One gear without neighbours for each combination."""
     study, settings = scene.case.study, mesh_settings(scene.case.accuracy)
     if study is None:
         return Forecast()
     count = math.prod(len(values or [0]) for values in (study.teeth, study.profile_shift, study.rack_tip_radius))
-    each = 0.3
-    if study.samples:
-        count, each = study.samples, 0.5
-    seconds = forecasts.LIBRARIES + each * count * seconds_of_gear(settings)
+    count = study.samples or count
+    seconds = forecasts.LIBRARIES + _EACH * count * seconds_of_gear(settings)
     return Forecast({"gears": count, **asdict(settings)}, seconds)
 
 

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.engine.sheet.seen import Seen
+    from fegear.fem.plane.neighbour_table import NeighbourTable
     from fegear.fem.plane.table import StiffnessTable
 
 
@@ -203,6 +204,13 @@ def _at_a_load(seen: Seen) -> Iterator[str]:
         yield f"Gear {seen.name}: {_EXAMPLE * 1e-3:g} N/mm deflect the loaded tooth by {moved} µm."
 
 
+def _neighbours(seen: Seen) -> NeighbourTable | None:
+    """Deflection of the next teeth over a grid of radii; None of a gear solved without neighbours."""
+    from fegear.fem.plane.neighbour_table import neighbour_table
+
+    return neighbour_table(seen.data.influence) if seen.data.influence.reach else None
+
+
 _SHEET = Sheet(
     tables=(
         Rows(
@@ -212,6 +220,10 @@ _SHEET = Sheet(
                 *(Off(key, f"errors.{key}") for key in ("root_tension", "root_compression")),
                 "root_tension_angle", "root_compression_angle", "c_self_reduction",
             ),
+        ),
+        Rows(
+            "neighbour_compliance_{name}", "Compliance between the teeth of gear {name} at two radii",
+            (Every("neighbours"),), of=_neighbours, matlab=True,
         ),
     ),
     values=(
