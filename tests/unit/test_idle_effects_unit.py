@@ -11,12 +11,12 @@ from fegear.geometry.pair import MEMBERS
 
 
 def engagement(*, corners=(False, False), reach=(0, 0), log_slope=(0.0, 0.0), power=(0.0, 0.0)):
-    both = [SimpleNamespace(reach=r, log_slope=s, power=p) for r, s, p in zip(reach, log_slope, power, strict=True)]
+    both = [SimpleNamespace(reach=one) for one in reach]
     return SimpleNamespace(
         meshing=SimpleNamespace(corners=[SimpleNamespace(exists=one) for one in corners]),
         compliance=SimpleNamespace(
             both=both,
-            source=dict(zip(MEMBERS, both, strict=True)).get,
+            contact_slope=dict(zip(MEMBERS, log_slope, strict=True)).get,
             power=dict(zip(MEMBERS, power, strict=True)).get,
         ),
     )
