@@ -40,9 +40,10 @@ def rows(folder: Path, name: str) -> list[dict[str, str]]:
 
 
 def share(error: float) -> str:
-    """An error as the page writes it: per cent down to one, below in one digit."""
-    if error < 0.01:
-        return f"{error:.0e}".replace("e-0", "e-")
+    """An error as the page writes it: in per cent, below one of them with one digit that is not zero."""
+    if 0.0 < error < 0.01:
+        digits = -int(f"{100.0 * error:.0e}".partition("e")[2])
+        return f"{100.0 * error:.{digits}f} %"
     return f"{100.0 * error:.0f} %" if error >= 0.0995 else f"{100.0 * error:.1f} %"
 
 

@@ -1,6 +1,6 @@
 """Hook of mkdocs: the prose writes symbols and numbers as the standards do, where case files and tables spell them.
 
-K_Hβ for K_Hbeta, µm for um, N·m for N m, 0.5 for .5.
+K_Hβ for K_Hbeta, µm for um, 0.5 for .5.
 Code, equations, links, comments and headings (whose anchors are linked to) stay as they are.
 """
 
@@ -27,7 +27,6 @@ _SYMBOL = re.compile(
 _PRINTED = (
     (re.compile(r"(?<![\w.)\]])\.(?=\d)"), "0."),
     (re.compile(r"\bum\b"), "µm"),
-    (re.compile(r"(?<=\d )N (?=mm?\b)"), "N·"),
 )
 
 

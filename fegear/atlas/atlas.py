@@ -226,7 +226,7 @@ class Atlas:
         raise RangeError(
             KEYS[number],
             _WRITTEN.get(KEYS[number], "{:.6g}").format(place[number]),
-            f"is outside the atlas, {low:.6g} to {high:.6g}",
+            f"is outside the range of the atlas, {low:.6g} to {high:.6g}",
             REMEDY,
         )
 

@@ -153,7 +153,8 @@ def open_and_folded(notes: Sequence[Note]) -> tuple[Sequence[Note], Sequence[Not
 
 
 def counted(notes: Sequence[Note]) -> str:
-    """How many of which class: ``"5 more notes: 2 neglected, 3 assumed"``."""
+    """How many of which class: ``"5 further notes (2 neglected, 3 assumed)"``, ``"2 further notes (assumed)"``."""
     count = Counter(note.kind for note in notes)
-    kinds = ", ".join(f"{count[kind]} {kind.words}" for kind in NoteClass if count[kind])
-    return f"{len(notes)} more note{'' if len(notes) == 1 else 's'}: {kinds}"
+    kinds = [kind for kind in NoteClass if count[kind]]
+    counts = kinds[0].words if len(kinds) == 1 else ", ".join(f"{count[kind]} {kind.words}" for kind in kinds)
+    return f"{len(notes)} further note{'' if len(notes) == 1 else 's'} ({counts})"

@@ -32,7 +32,8 @@ class CrackGrowthPart(_ParisKeys):  # type: ignore[misc]  # frozen by pydantic
     )
     load_factors: Annotated[list[PositiveNumber], Field(min_length=1, max_length=1000)] = Field(
         default_factory=lambda: [1.0],
-        description="Loads of a spectrum over the nominal load; stress intensity is proportional to them. Default: 1.",
+        description="Loads of a spectrum divided by the nominal load; stress intensity is proportional to them. "
+        "Default: 1.",
     )
     cycle_shares: Annotated[list[PositiveNumber], Field(min_length=1, max_length=1000)] | None = Field(
         default=None, description="Shares of the load cycles for `load_factors` (sum 1). Default: equal."

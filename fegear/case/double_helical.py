@@ -44,10 +44,11 @@ class DoubleHelicalPart(_PlacedKeys):  # type: ignore[misc]  # frozen by pydanti
     )
     torque_in: End | None = Field(
         default=None,
-        description="End at which the driver is driven: its shaft twists between the halves. Default: no twist.",
+        description="End at which the driver is driven, for the torsion of its shaft between the halves. Default: no "
+        "torsion.",
     )
     torque_out: End | None = Field(
-        default=None, description="End at which the driven gear delivers its torque. Default: no twist."
+        default=None, description="End at which the driven gear delivers its torque. Default: no torsion."
     )
     second_driver: str | None = Field(
         default=None,

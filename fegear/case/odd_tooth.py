@@ -40,8 +40,8 @@ class CrackPart(Part):
     )
     depth_ratio: Annotated[PositiveNumber, Field(lt=1.0)] | None = Field(
         default=None,
-        description="Length of the crack as a share of the way through the tooth in its direction, to the opposite "
-        "fillet.",
+        description="Crack depth over the tooth thickness along the crack: length of the crack over the distance in "
+        "its direction to the opposite fillet.",
     )
     path: Annotated[list[Annotated[list[Length], Field(min_length=2, max_length=2)]], Field(min_length=1)] | None = (
         Field(

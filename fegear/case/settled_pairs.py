@@ -65,7 +65,7 @@ def settled_pairs(
             torque = part.power / part.speed
             made[name] = part.model_copy(update={"torque": torque})
             said.append(
-                f"Pair {name}: torque {torque:.6g} N*m derived from power = {part.power * 1e-3:.6g} kW and speed."
+                f"Pair {name}: torque {torque:.6g} N m derived from power = {part.power * 1e-3:.6g} kW and speed."
             )
     for name, part in known.items():
         if part.shift_distribution is not None:

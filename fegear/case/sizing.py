@@ -243,8 +243,8 @@ class SizingPart(Part):
     )
     screened: Annotated[int, Field(ge=0, le=5000)] = Field(
         default=24,
-        description="Number of variants outside the atlas (helical, other racks) whose transmission error is "
-        "estimated by FE (coarse); of helical ones the best by thin slices from the atlas.",
+        description="Number of variants outside the range of the atlas of pre-solved gears (helical, other racks) "
+        "whose transmission error is estimated by FE (coarse); of helical ones the best by thin slices from the atlas.",
     )
     verified: Annotated[int, Field(ge=0, le=200)] | None = Field(
         default=None,

@@ -29,7 +29,7 @@ def open(  # noqa: A001 - it is the name of the command
         bool, typer.Option("--read-only-link", help="Print a second address for viewers who can change nothing.")
     ] = False,
 ) -> None:
-    """Open the live workbench in the browser: change a case and see the gears answer.
+    """Open the live workbench in the browser: change a case and see the results follow.
 
     It listens on this machine alone, fetches nothing, and ends with Ctrl-C.
     """

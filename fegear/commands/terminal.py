@@ -61,7 +61,7 @@ class Voice:
         for one in shown:
             self.note(one)
         if others:
-            self.note(f"{counted(others)} ({where}).")
+            self.note(f"{counted(others)} in {where}.")
 
     def tell(self, content: Mapping[str, object]) -> None:
         """Print what programs read."""

@@ -29,6 +29,10 @@ Member = Literal["driver", "driven"]
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
 
 
+#: What a sentence calls them.
+MEMBER_WORDS: dict[str, str] = {"driver": "driver", "driven": "driven gear"}
+
+
 #: Difference of two involute angles that is none [rad].
 _ROUND_OFF = 1e-14
 

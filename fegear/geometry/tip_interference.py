@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fegear.base.errors import GeometryError
-from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.pair import MEMBER_WORDS, MEMBERS, GearPair, Member
 
 #: Less than this is no interference [m], as round-off and printed diameters leave it.
 _MEETS = 1e-6
@@ -41,7 +41,7 @@ class Interference:
     @property
     def sentence(self) -> str:
         """What a designer should know, in one sentence; empty when all is well."""
-        tip = f"the tip of the {self.tip_of} gear"
+        tip = f"the tip of the {MEMBER_WORDS[self.tip_of]}"
         if self.root_clearance <= 0.0:
             return f"{tip} interferes with the mating root circle by {-self.root_clearance * 1e3:.4g} mm"
         if self.fillet_gap < 0.0:

@@ -79,6 +79,6 @@ def _job(bench: Bench, name: str, job: Job, cases: tuple[tuple[str, str], ...]) 
         if cases:
             with ui.element("details"):
                 count = f"{len(cases)} examples" if len(cases) > 1 else "1 example"
-                ui.html(f"Copy of one of {count}" if len(cases) > 1 else f"Copy of {count}", tag="summary")
+                ui.html(count, tag="summary")
                 for case, title in cases:
                     _offer("", title, lambda case=case: bench.from_gallery(case))  # type: ignore[misc]  # mypy cannot infer a lambda with a default

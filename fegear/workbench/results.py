@@ -98,7 +98,7 @@ class Results(Found):
         shown, others = open_and_folded(self.notes())
         lines += [f"  Note: {textwrap.shorten(note, _CLAUSE, placeholder=' ...')}" for note in shown]
         if others:
-            lines.append(f"  {counted(others)}, in .notes()")
+            lines.append(f"  {counted(others)} in .notes()")
         return "\n".join([self._headline(), *lines])
 
     def _headline(self) -> str:

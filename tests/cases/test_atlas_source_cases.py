@@ -66,7 +66,7 @@ def test_auto_solves_what_the_atlas_has_not_and_says_so(tmp_path):
     ("change", "text"),
     [
         (OTHER, r"gear\.b\.rack\.dedendum = 1\.3: must be 1\.25 in this atlas"),
-        ("gear.b.teeth=420", r"gear\.b\.teeth = 420: is outside the atlas, 12 to 400"),
+        ("gear.b.teeth=420", r"gear\.b\.teeth = 420: is outside the range of the atlas, 12 to 400"),
     ],
 )
 def test_what_no_atlas_has_is_refused_with_its_key(tmp_path, change, text):

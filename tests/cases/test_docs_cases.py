@@ -149,7 +149,7 @@ def test_the_menu_refuses_a_lost_page_and_a_long_group(tmp_path):
         ("[x](rating.md#k_gamma_x) cases/khbeta_spur.toml tables/K_Hbeta.csv", None),
         ("### K_Hbeta\n```text\nI.K_Hbeta = 1.3\n```", None),
         ("beta, a Greek letter; mode_alphabet", None),
-        ("by .5 um (-.2 %), +.25 of 3 N m", "by 0.5 µm (-0.2 %), +0.25 of 3 N·m"),
+        ("by .5 um (-.2 %), +.25 of 3 N m", "by 0.5 µm (-0.2 %), +0.25 of 3 N m"),
         ("`.5 um` file.7z 1.5, 0.2.0, [1](a.md)", None),
     ],
 )

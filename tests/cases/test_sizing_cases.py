@@ -238,7 +238,7 @@ def test_a_present_design_that_cannot_be_rated_is_behind_every_variant_that_is_n
     (said,) = [sentence for sentence in results.answer.sentences if "Present design (11/41 teeth" in sentence]
     assert "breaks undercut, interference" in said
     assert said.endswith("not rated.")
-    assert any("is better by all criteria" in sentence for sentence in results.answer.sentences)
+    assert any("is better than the present design by all criteria" in sentence for sentence in results.answer.sentences)
     better = dict(zip(tables["placed_design"]["criterion"], tables["placed_design"]["better"], strict=True))
     assert better["safety"] == results_of(results)["sizing.variants_feasible"]
 

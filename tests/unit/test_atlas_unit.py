@@ -148,8 +148,8 @@ def test_size_and_steel_scale_and_a_thickness_allowance_is_a_shift(atlas):
 @pytest.mark.parametrize(
     ("gear", "text"),
     [
-        (lambda: steel_gear(50), "teeth = 50: is outside the atlas, 24 to 48"),
-        (lambda: steel_gear(30, 0.31), "profile_shift = 0.31: is outside the atlas, 0.1 to 0.3"),
+        (lambda: steel_gear(50), "teeth = 50: is outside the range of the atlas, 24 to 48"),
+        (lambda: steel_gear(30, 0.31), "profile_shift = 0.31: is outside the range of the atlas, 0.1 to 0.3"),
         (lambda: replace(steel_gear(), bore_radius=0.02), "bore_radius = "),
         (
             lambda: replace(steel_gear(), tooth=replace(steel_gear().tooth, tip_radius=16.6)),

@@ -35,5 +35,5 @@ def test_an_error_that_is_not_known_leaves_its_cell_empty(tmp_path):
     )  # fmt: skip
     assert cost_study.errors(tmp_path).splitlines()[2:] == [
         "| cornell, compliance | 10 % (0.001 s) |  |  |  |  |",
-        "| tolerance = 1e-01 | 7e-4 (0.053 s) |  |  |  |  |",
+        "| tolerance = 1e-01 | 0.07 % (0.053 s) |  |  |  |  |",
     ]

@@ -95,8 +95,8 @@ def test_at_most_three_stand_open(count, shown):
 
 
 def test_folded_notes_are_counted_by_class():
-    assert counted([assuming("a"), neglecting("b"), assuming("c")]) == "3 more notes: 1 neglected, 2 assumed"
-    assert counted([assuming("a")]) == "1 more note: 1 assumed"
+    assert counted([assuming("a"), neglecting("b"), assuming("c")]) == "3 further notes (1 neglected, 2 assumed)"
+    assert counted([assuming("a")]) == "1 further note (assumed)"
 
 
 @dataclass(frozen=True)

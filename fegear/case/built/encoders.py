@@ -112,7 +112,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     placed, mesh = scene.pairs[pair], scene.case.pair[pair]
     loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
     lever, traces = placed.driver.base_radius, []
-    said = f"pair {pair} ({', '.join(f'{load * lever:.5g}' for load in loads)} N*m)"
+    said = f"pair {pair} ({', '.join(f'{load * lever:.5g}' for load in loads)} N m)"
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
         wanted = nominal if one.torque is None else one.torque / lever
@@ -126,7 +126,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
                 raise InputError(
                     f"{key}.file", f'"{one.file}"',
                     f"has no run of samples within ±{percent(part.torque_band)} of a torque of {said}; its column "
-                    f"{part.torque_column} has {low:.4g} to {high:.4g} N*m",
+                    f"{part.torque_column} has {low:.4g} to {high:.4g} N m",
                     _of_driven(float(np.median(read.torque)), torques, placed.ratio, part.torque_band)
                     or f"add the measured torques to pair.{pair}.torques, or set torque_band",
                 )  # fmt: skip

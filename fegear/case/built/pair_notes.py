@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.base.notes import failing, neglecting
 from fegear.case.built.members import gear_name
 from fegear.case.built.table_ends import table_end_notes
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.pair import MEMBER_WORDS, MEMBERS
 from fegear.geometry.plausible_flanks import heavy_load
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     if effects.corner_contact:
         notes += [
             failing(
-                f"Pair {name}: tip of the {member} gear reaches below the root form circle of the mating gear "
+                f"Pair {name}: tip of the {MEMBER_WORDS[member]} reaches below the root form circle of the mating gear "
                 "(interference); the path of contact ends there and no corner contact is computed at that end."
             )
             for member in MEMBERS

@@ -104,6 +104,6 @@ def _refuse_open(torque: Array, key: str, file: str) -> None:
     """Refuse a torque that ends elsewhere than it began: its period is not all there."""
     if abs(torque[-1] - torque[0]) > _CLOSED * np.ptp(torque):
         raise InputError(
-            key, f'"{file}"', f"begins with {torque[0]:.6g} N*m and ends with {torque[-1]:.6g} N*m: not a full period",
+            key, f'"{file}"', f"begins with {torque[0]:.6g} N m and ends with {torque[-1]:.6g} N m: not a full period",
             "add a last line one period after the first with the same torque",
         )  # fmt: skip

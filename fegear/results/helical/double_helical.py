@@ -106,7 +106,8 @@ def _remarks(seen: Seen) -> Iterator[str]:
         )
     if asked.rigid:
         yield neglecting(
-            f"Pair {name}: shafts do not twist between the halves (set double_helical.torque_in and torque_out)."
+            f"Pair {name}: torsion of the shafts between the halves is not included (set double_helical.torque_in "
+            "and torque_out)."
         )
 
 

@@ -16,6 +16,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Upstream, Work
+from fegear.geometry.pair import MEMBER_WORDS
 from fegear.results.pair.flank_surface_data import FlankSurfaceData, ShownSurface
 from fegear.results.pair.flank_surface_sheet import FIGURES, TABLES, VALUES
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
@@ -160,8 +161,8 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
         reach = float(np.abs(pair.flank_curvature_radius(np.array([pair.x_start, pair.x_end]), member)).min())
         if reach < 0.02 * gear.base_radius:
             told.append(
-                f"Pair {name}: contact close to the base circle of the {member} gear: specific sliding becomes very "
-                "large, film thickness and curvature radius approach zero."
+                f"Pair {name}: contact close to the base circle of the {MEMBER_WORDS[member]}: specific sliding "
+                "becomes very large, film thickness and curvature radius approach zero."
             )
     return told
 

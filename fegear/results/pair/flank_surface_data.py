@@ -130,7 +130,7 @@ class ShownSurface:
         return self.asked.rated.at(self.computed.x)
 
     @property
-    @shows("deg", "roll angle of the driver gear")
+    @shows("deg", "roll angle of the driver")
     def roll_angle_driver(self) -> Array:
         """[rad]."""
         return np.asarray(self.data.pair.roll_angle(self.computed.x, "driver"))
@@ -142,7 +142,7 @@ class ShownSurface:
         return np.asarray(self.data.pair.roll_angle(self.computed.x, "driven"))
 
     @property
-    @shows("", "specific sliding of the driver gear")
+    @shows("", "specific sliding of the driver")
     def specific_sliding_driver(self) -> Array:
         """Along the path."""
         return specific_sliding(self.data.pair, self.computed.x, "driver")

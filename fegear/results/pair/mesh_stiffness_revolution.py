@@ -268,9 +268,9 @@ def _not_listed(seen: Seen) -> Iterator[str]:
         teeth = data.pair.gear(member).teeth
         if 1 < one.tooth.size < teeth:
             yield (
-                f"Pair {seen.name}: root stress of {one.tooth.size} of the {teeth} identical teeth of gear {one.gear}: "
-                f"those that mesh in the {data.base_pitches} base pitches after which it repeats, tooth 0 with tooth 0 "
-                "of the other gear."
+                f"Pair {seen.name}: root stress of gear {one.gear} is listed for {one.tooth.size} of its "
+                f"{teeth} identical teeth: the meshing repeats after {data.base_pitches} base pitches, counted from "
+                "the mesh of tooth 0 with tooth 0 of the other gear."
             )
 
 

@@ -164,7 +164,7 @@ _SHEET = Sheet(
         Remark(
             neglecting(
                 "Pair {name}: the crack of tooth {one.tooth} of gear {one.gear} closes where K_I is negative; open "
-                "faces are assumed, so that K_I is then zero and K_II smaller."
+                "faces are assumed; in reality the faces close, K_I is zero and K_II smaller."
             ),
             each="cracks", when="closes",
         ),

@@ -17,7 +17,7 @@ from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE
 from fegear.formulas.iso6336.part5_materials import recommended
-from fegear.geometry.pair import MEMBERS, Member
+from fegear.geometry.pair import MEMBER_WORDS, MEMBERS, Member
 from fegear.results.rating.flank_fracture_data import (
     DEPTHS,
     Below,
@@ -152,7 +152,9 @@ FRACTURE_SHEET = Sheet(
             "flank_fracture_{name}", "Flank fracture of pair {name} over the path of contact",
             (
                 "x", "sharing", "radius", "pressure", "half_width",
-                Cell("over_path", each="gears", name="exposure_{key}", further=", {key} gear"),
+                Cell(
+                    "over_path", each="gears", name="exposure_{key}", further=lambda seen: f", {MEMBER_WORDS[seen.key]}"
+                ),
             ),
         ),
         Rows(

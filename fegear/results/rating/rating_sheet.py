@@ -18,7 +18,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.formulas.symbols import ISO_6336
-from fegear.geometry.pair import MEMBERS, Member
+from fegear.geometry.pair import MEMBER_WORDS, MEMBERS, Member
 from fegear.results.rating.face_load_factors import FaceLoadFactor, face_load_factors
 from fegear.results.rating.rated_life import nominal_damage, service_life, transmittable_power
 from fegear.results.rating.rated_methods import ByMethod, computed_flanks, methods
@@ -49,7 +49,7 @@ class FactorRow:
     """A factor of a standard in its unit; None where there is no such column."""
 
     symbol: str = shown("", "symbol in the standard", table="factors")
-    driver: float = shown("", "of the driver gear", table="factors")
+    driver: float = shown("", "of the driver", table="factors")
     driven: float = shown("", "of the driven gear", table="factors")
     driver_computed: float | None = shown("", "with FE load factors and root stress", table="factors")
     driven_computed: float | None = shown("", "with FE load factors and root stress", table="factors")
@@ -282,7 +282,7 @@ def _safety(part: str) -> Number:
 
 def _both(quantity: str, *, each: Where = "gears") -> Cell:
     """A quantity of driver and driven gear, a row for each method."""
-    return Cell(quantity, of="methods", each=each, ending="_{key}", further=", {key} gear")
+    return Cell(quantity, of="methods", each=each, ending="_{key}", further=lambda seen: f", {MEMBER_WORDS[seen.key]}")
 
 
 def _estimated(seen: Seen) -> dict[Member, RatedGear] | None:
@@ -370,7 +370,7 @@ RATING_SHEET = Sheet(
                 Every("level"),
                 *(f"factors.{one}" for one in _FACTORS),
                 Each("gears", *(
-                    Cell(one, of="levels", ending="_{key}", further=", {key} gear")
+                    Cell(one, of="levels", ending="_{key}", further=lambda seen: f", {MEMBER_WORDS[seen.key]}")
                     for one in ("cycles", "contact_stress", "contact_damage", "bending_stress", "bending_damage")
                 )),
                 *(Cell(f"computed.{one}", ending="_computed", further=_AT_LEVEL) for one in _FACTORS),

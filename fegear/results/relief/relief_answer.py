@@ -8,6 +8,7 @@ import numpy as np
 
 from fegear.base.printed import figures
 from fegear.engine.sheet.answer import Answer
+from fegear.geometry.pair import MEMBER_WORDS
 from fegear.results.relief.relief_over_range import said_of_range
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ def _grind(seen: Seen) -> Iterator[str]:
     if not shape:
         return
     amounts = [
-        f"{_microns(tip.relief.amount)} µm from d {figures(2e3 * tip.start_radius, 4)} mm on the {tip.member} gear"
+        f"{_microns(tip.relief.amount)} µm from d {figures(2e3 * tip.start_radius, 4)} mm "
+        f"on the {MEMBER_WORDS[tip.member]}"
         for tip in seen.data.tips
         if tip.shape == shape and tip.relief.amount > _NOTHING
     ]

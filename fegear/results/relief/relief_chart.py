@@ -21,6 +21,7 @@ from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Upstream, Work
+from fegear.geometry.pair import MEMBER_WORDS
 from fegear.geometry.relief import CombinedRelief, EndRelief, roll_of_radius
 from fegear.results import forecasts
 from fegear.results.relief.grinding import NOTHING
@@ -273,7 +274,7 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
     """The optimum of each gear on its own for all loads, and the best equal reliefs of the chart."""
     chart, ground = seen.data.chart, [tip for tip in seen.data.tips if tip.relief.amount > NOTHING]
     amounts = " and ".join(
-        f"{figures(tip.relief.amount * 1e6, 2)} µm on the {tip.member} gear" for tip in ground
+        f"{figures(tip.relief.amount * 1e6, 2)} µm on the {MEMBER_WORDS[tip.member]}" for tip in ground
     )  # fmt: skip
     amount, length = chart.best()
     equal = f"{figures(amount * 1e6, 2)} µm over {figures(length * chart.unit_length * 1e3, 2)} mm"

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from fegear.design.sizing.space import Variant
     from fegear.results.sizing.by_fe import FromFE
 
+#: What the load margin is: the load at the minimum safety factors over the load, by the contact or the bending.
+MARGIN = "minimum of (S_H/S_Hmin)² and S_F/S_Fmin"
+
 
 @dataclass(frozen=True)
 class BestRelief:
@@ -75,7 +78,7 @@ class SizedVariant:
     sliding: float = shown("", "minimum specific sliding", name="specific_sliding", table="sizing")
     contact_safety: float = shown("", "minimum safety factor for pitting", name="S_H", table="sizing")
     bending_safety: float = shown("", "minimum safety factor for tooth breakage", name="S_F", table="sizing")
-    margin: float = shown("", "load margin: load at the minimum safety factors / load", name="load_margin",
+    margin: float = shown("", f"load margin: {MARGIN}", name="load_margin",
                           table="sizing")  # fmt: skip
     variant: Variant = field(kw_only=True)
     costs: tuple[float, ...] = field(kw_only=True)

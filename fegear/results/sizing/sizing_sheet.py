@@ -18,7 +18,7 @@ from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.results.sizing.parallel_coordinates import parallel_coordinates
-from fegear.results.sizing.sizing_data import SizedVariant
+from fegear.results.sizing.sizing_data import MARGIN, SizedVariant
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -109,7 +109,8 @@ def _answers(seen: Seen) -> Iterator[str]:
         yield f"None of {data.count:,} variants keeps all limits: {named}."
         return
     best = data.best
-    yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}."
+    margin = f" ({MARGIN})" if math.isfinite(best.margin) else ""
+    yield f"Best of {data.count:,} variants: number {best.number}, {best.words}; {_said_of(best)}{margin}."
     if best.on_bounds:
         yield f"Variant {best.number} lies at the end of the range of {', '.join(best.on_bounds)}."
     known = f"; of {data.known:,} with known transmission error" if data.known < data.feasible and data.known else ","
@@ -127,7 +128,10 @@ def _present(seen: Seen) -> Iterator[str]:
     yield f"Present design ({own.words}) {breaks}; {_said_of(own)}."
     better = placed.better
     if better is not None:
-        yield f"Variant {better.number} is better by all criteria: {better.words}; {_said_of(better)}."
+        yield (
+            f"Variant {better.number} is better than the present design by all criteria: {better.words}; "
+            f"{_said_of(better)}."
+        )
         return
     by = "of all" if placed.by_all else "by formulas"
     yield f"No variant shown is better than the present design by all criteria ({by}: {placed.dominating:,})."
@@ -160,7 +164,7 @@ def _unseen(seen: Seen) -> tuple[Note, ...]:
     data: SizingData = seen.data
     if not data.known or data.known >= data.feasible:
         return ()
-    key, outside = "screened", " outside the atlas" if data.by_atlas else ""
+    key, outside = "screened", " outside the range of the atlas (pre-solved gears)" if data.by_atlas else ""
     if data.by_atlas and data.feasible > seen.asked.part.estimated:
         key, outside = "estimated", ""
     return (
