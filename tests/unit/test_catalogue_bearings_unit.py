@@ -180,7 +180,7 @@ def test_a_life_without_rating_takes_that_of_the_catalogue_else_an_estimate_of_t
     assert rating(designation="6306", catalogue={"dynamic_rating": "28 kN"}).dynamic_rating == 28e3
     (note,) = notes_of({"designation": "6306", "life": {}})
     assert class_of(note) is NoteClass.ASSUMED
-    assert "C = 28.4 kN estimated from 6306, error 17 %" in note
+    assert "C = 28.4 kN estimated from the dimensions, error 17 %" in note
     assert "life.dynamic_rating" in note
     assert not notes_of({"designation": "6306", "life": {}, "catalogue": {"dynamic_rating": "28 kN"}})
     # the estimate as a given C makes the same inside

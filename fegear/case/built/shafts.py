@@ -187,7 +187,7 @@ def said_of_bearings(scene: Scene) -> tuple[str, ...]:
     """What is assumed of bearings on shafts of which only a catalogue is known."""
     used = dict.fromkeys(place.bearing for part in scene.case.shaft.values() for place in part.bearings)
     printed = {name: scene.case.bearing[name].printed for name in used if name in scene.case.bearing}
-    found: list[str] = [f"bearing {name}: {one.said}" for name, one in printed.items() if one is not None]
+    found: list[str] = [f"Bearing {name}: {one.said}" for name, one in printed.items() if one is not None]
     for name in printed:
         found += _said_of_ratings(name, scene.case.bearing[name])
     return tuple(found)
@@ -204,7 +204,7 @@ def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
             ratings = {one: getattr(given, one, None) for one in _SYMBOLS}
             for rating, value, typical in printed.misfits(**ratings):
                 yield exceeding(
-                    f"bearing {name}: {_SYMBOLS[rating]} = {figures(value * 1e-3)} kN does not fit {part.designation} "
+                    f"Bearing {name}: {_SYMBOLS[rating]} = {figures(value * 1e-3)} kN does not fit {part.designation} "
                     f"(typical: {figures(typical * 1e-3)} kN); correct {key}.{table}.{rating} or {key}.designation, or "
                     "remove the rating to have it estimated"
                 )
@@ -212,9 +212,8 @@ def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
     if rated is not None and printed.dynamic_rating is None:
         off = (1.0 + printed.rating_error) ** EXPONENT[rated.kind]
         yield assuming(
-            f"bearing {name}: C = {figures(rated.dynamic_rating * 1e-3)} kN estimated from "
-            f"{part.designation or 'its dimensions'}, error {percent(printed.rating_error)} (of the life a factor of "
-            f"{figures(off, 2)}); specify {key}.life.dynamic_rating"
+            f"Bearing {name}: C = {figures(rated.dynamic_rating * 1e-3)} kN estimated from the dimensions, error "
+            f"{percent(printed.rating_error)} (of the life a factor of {figures(off, 2)}); specify life.dynamic_rating"
         )
 
 

@@ -112,7 +112,9 @@ def _compute(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> Load
 
 def _remarks(data: LoadedShafts, assumed: tuple[str, ...]) -> list[str]:
     """What the model assumes and neglects, and what is not from a print at hand."""
-    said: list[str] = [Note(f"Shafts: {one}.", class_of(one)) for one in assumed]
+    said: list[str] = [
+        Note(f"{one}." if one.startswith("Bearing ") else f"Shafts: {one}.", class_of(one)) for one in assumed
+    ]
     if any(one.shaft.gears for one in data.gearbox.shafts):
         said.append(
             "Shafts: gear bodies are treated as rigidly connected to the shaft over their seats and stiffen it in "
