@@ -110,25 +110,23 @@ class ReliefChart:
         """Excitation at the worst of the loads, in proportion to load and weight, shape (A, B) [m]."""
         return np.asarray((self._of(metric) * proportions(self.loads, self.weights)).max(axis=2))
 
-    def near_optimum(self, within: float = NEAR, metric: Metric = "effective_error") -> tuple[Array, Array, Array]:
-        """Reliefs whose worst excitation is at most so much above that of `best`; linear between two lengths.
+    def boundary(self, within: float = NEAR, metric: Metric = "effective_error") -> tuple[Array, Array]:
+        """Amounts [m] and lengths at which the worst excitation is so much above that of `best`, linear between points.
 
-        Parameters
-        ----------
-        within : float
-            Over the least.
-        metric : {"effective_error", "peak_to_peak"}
-
-        Returns
-        -------
-        amounts, shortest, longest : ndarray, shape (N,)
-            Amounts that have such a length [m], and from which to which length.
+        Shape (N,) each, with nan between separate parts; empty where there is one amount or one length only.
         """
+        from contourpy import contour_generator
+
         worst = self.worst(metric)
-        limit = (1.0 + within) * worst.min()
-        there = (worst <= limit).any(axis=1)
-        ends = np.array([_ends(self.lengths, row, limit) for row in worst[there]])
-        return self.amounts[there], ends[:, 0], ends[:, 1]
+        if min(worst.shape) < 2:
+            return np.empty(0), np.empty(0)
+        level = (1.0 + within) * float(worst.min())
+        parts = contour_generator(self.lengths, self.amounts, worst).lines(level)
+        if not parts:
+            return np.empty(0), np.empty(0)
+        gap = np.full((1, 2), np.nan)
+        points = np.concatenate([one for part in parts for one in (np.asarray(part), gap)])[:-1]
+        return points[:, 1], points[:, 0]
 
     def finer(self) -> tuple[Array, Array]:
         """Amounts and lengths of a finer chart around the optimum."""
@@ -147,19 +145,6 @@ class ReliefChart:
 
     def _of(self, metric: Metric) -> Array:
         return self.effective_error if metric == "effective_error" else self.peak_to_peak
-
-
-def _ends(lengths: Array, row: Array, limit: float) -> tuple[float, float]:
-    """First and last length at which a row of values, linear between points, is at most the limit."""
-    good = np.flatnonzero(row <= limit)
-
-    def end(i: int, beyond: int) -> float:
-        if not 0 <= beyond < row.size:
-            return float(lengths[i])
-        share = (limit - row[i]) / (row[beyond] - row[i])
-        return float(lengths[i] + share * (lengths[beyond] - lengths[i]))
-
-    return end(int(good[0]), int(good[0]) - 1), end(int(good[-1]), int(good[-1]) + 1)
 
 
 def relief_chart(

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
+import numpy as np
+
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.drafts.answers import ends
@@ -19,6 +21,8 @@ from fegear.workbench.run import run_scene
 
 #: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
 DAMPING_RATIO = 0.1
+#: Torques of a range "150 to 300 N m": both ends and the middle.
+_IN_RANGE = 3
 
 
 #: What each result is called in the title of its case.
@@ -81,6 +85,10 @@ def _loaded(
     _one_load(pair, torque, load)
     given, dimension = (load, "force") if torque is None else (torque, "torque")
     key = "load" if torque is None else "torque"
+    both = ends(given) if isinstance(given, str) else None
+    if both is not None:
+        first, last = (in_si(one, dimension, key) for one in both)
+        given = np.linspace(first, last, _IN_RANGE).tolist()
     several = listed(given, key)
     if several is None:
         return pair.document(**{key: given})
@@ -95,7 +103,7 @@ def _designed_for(
     _one_load(pair, torque, load)
     both = ends(torque) if isinstance(torque, str) else None
     if both is not None:
-        torque = {"start": both[0], "stop": both[1], "count": 3}
+        torque = {"start": both[0], "stop": both[1], "count": _IN_RANGE}
     if torque is not None and (isinstance(torque, Mapping) or listed(torque, "torque") is not None):
         return pair.document(torques=torque), {}
     several = load is not None and listed(load, "load") is not None
@@ -226,7 +234,7 @@ def transmission_error(
     pair : Pair
         Spur or helical; helical ones, and spur ones with ``width``, are loaded with their width.
     torque : torque or iterable of torques
-        On the driver; single values are for the largest of several.
+        On the driver; single values are for the largest of several. ``"150 to 300 N m"`` is both ends and the middle.
     load : force or iterable of forces
         Along the line of action, in place of the torque.
     effects : mapping, optional

@@ -96,8 +96,6 @@ def test_the_boundary_of_a_chart_is_where_its_values_are_so_much_above_the_least
     )
     assert chart.worst() == pytest.approx(cone)  # at half the load half of it counts twice
     assert chart.best() == pytest.approx((2.0, 0.6))
-    found, shortest, longest = chart.near_optimum(0.3)
-    assert found == pytest.approx([2.0])
     fine = (chart.finer()[0][:, None], chart.finer()[1])
     assert fine[0].ravel() == pytest.approx(np.linspace(0.0, 4.0, 17))  # one beyond those that double it at most
     assert fine[1] == pytest.approx(np.linspace(0.3, 0.9, 25))
@@ -105,14 +103,32 @@ def test_the_boundary_of_a_chart_is_where_its_values_are_so_much_above_the_least
     finer = replace(
         chart, amounts=fine[0].ravel(), lengths=fine[1], effective_error=np.stack([0.5 * cone, cone], axis=2)
     )
-    found, shortest, longest = finer.near_optimum(0.3)
-    assert found == pytest.approx([1.75, 2.0, 2.25])
-    assert longest - 0.6 == pytest.approx((0.3 - np.abs(found - 2.0)) / 4.0)
-    assert 0.6 - shortest == pytest.approx(longest - 0.6)
-    _, shortest, longest = chart.near_optimum(1e3)
-    assert np.all((shortest == 0.2) & (longest == 1.0))
+    a, b = finer.boundary(0.3)
+    assert np.abs(a - 2.0) + 4.0 * np.abs(b - 0.6) == pytest.approx(0.3)  # a closed rhombus: the cone is linear
+    assert (a[0], b[0]) == (a[-1], b[-1])
+    assert chart.boundary(1e3)[0].size == 0  # all of the chart
     weighted = replace(chart, weights=np.array([0.5, 1.0]))
     assert weighted.worst() == pytest.approx(0.9 * chart.worst())
+
+
+def test_the_contour_of_a_bent_valley_has_no_point_off_its_level():
+    """1 + 20 |length - valley(amount)| + |amount - 2|, the valley bent: all of the contour lies in it."""
+    amounts, lengths = np.linspace(0.0, 4.0, 161), np.linspace(0.0, 1.0, 401)
+
+    def field(amount, length):
+        return 1.0 + 4.0 * np.abs(length - 0.4 - 0.1 * (amount - 2.0) ** 2) + 0.1 * np.abs(amount - 2.0)
+
+    values = field(amounts[:, None], lengths)[:, :, None]
+    chart = ReliefChart(amounts, lengths, np.array([5.0]), 1.0, values, np.zeros(()))
+    a, b = chart.boundary(0.1)
+    there = np.isfinite(a)
+    level = 1.1 * chart.worst().min()
+    assert np.ptp(a[there]) > 1.8
+    assert field(a[there], b[there]) == pytest.approx(level, abs=0.01)  # of cells that the kink crosses
+    middle = field(0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))
+    assert middle[np.isfinite(middle)] == pytest.approx(level, abs=0.01)
+    alone = replace(chart, amounts=amounts[:1], effective_error=values[:1])
+    assert alone.boundary()[0].size == 0
 
 
 def test_a_chart_marks_optimum_present_reliefs_and_the_worst_of_all_loads():

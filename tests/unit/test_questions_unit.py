@@ -43,6 +43,8 @@ def test_loads_along_the_line_of_action_are_torques_over_the_base_radius(pair, a
     assert (one.torque, one.load, one.loads) == (90.0, None, None)
     several = fegear.transmission_error(pair, torque=["30 N*m", 90.0]).case.pair["I"]
     assert several.loads == pytest.approx([30.0 / BASE, 90.0 / BASE])
+    between = fegear.transmission_error(pair, torque="30 to 90 N m").case.pair["I"]
+    assert between.loads == pytest.approx([30.0 / BASE, 60.0 / BASE, 90.0 / BASE])
     forces = fegear.load_sharing(pair, load=["1 kN", 2500.0])
     assert forces.case.pair["I"].loads == pytest.approx([1000.0, 2500.0])
     assert forces.case.results == ["load-sharing"]

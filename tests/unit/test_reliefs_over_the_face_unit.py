@@ -15,6 +15,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.results.relief.relief_over_face import misaligned
 
 RACK = BasicRack(1.0, 1.25, 0.38)
 GEAR = Gear(Tooth(24, RACK), 2e-3, 0.01, face_width=0.02)
@@ -364,3 +365,16 @@ def test_the_length_of_least_excitation_is_the_vertex_of_the_lowest_three_and_of
     nearest = lengths[np.abs(lengths[None, :, None] - tops[:, None, :]).argmin(axis=1)]
     inside = (lengths[0] < nearest) & (nearest < lengths[-1])
     assert chart.lowest(values) == pytest.approx(np.where(inside, tops, nearest))
+
+
+@pytest.mark.parametrize(
+    ("on", "gap", "said"),
+    [(True, 4e-6, "pair.I.line_error.over_face = +4 um"), (True, -4e-6, "= -4 um"), (False, 4e-6, ""), (True, 0.0, "")],
+)
+def test_a_design_names_the_misalignment_whose_sign_it_takes_as_given(on, gap, said):
+    line_error = SimpleNamespace(over_face=gap, file=None)
+    pair = SimpleNamespace(line_error=line_error, misalignment=None)
+    case = SimpleNamespace(pair={"I": pair}, effects=SimpleNamespace(misalignment=on))
+    found = misaligned(SimpleNamespace(case=case), "I")
+    assert found.endswith(said)
+    assert bool(found) == bool(said)

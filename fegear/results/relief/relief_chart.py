@@ -58,7 +58,7 @@ class MarkedReliefs:
     best_amount, best_length : ndarray, shape (1,)
         The optimum for all loads.
     near_amounts, near_lengths : ndarray, shape (N,)
-        Boundary of those that are equally good.
+        Boundary of those that are equally good, nan between its parts.
     present_amounts, present_lengths : ndarray, shape (M,)
         Tip reliefs of the case inside the chart, each gear on its own.
     """
@@ -187,11 +187,7 @@ class ReliefChartData:
         """Optimum, the equally good ones and the present reliefs."""
         chart = self.chart
         amount, length = self.finer.best()
-        amounts, shortest, longest = self.finer.near_optimum()
-        boundary = (
-            np.concatenate([way, way_back[::-1], way[:1]])
-            for way, way_back in ((amounts, amounts), (shortest, longest))
-        )
+        boundary = self.finer.boundary()
         present = np.array([one for one in self._present if _inside(chart, *one)]).reshape(-1, 2).T
         return MarkedReliefs(np.array([amount]), np.array([length]), *boundary, *present)
 
@@ -316,9 +312,9 @@ CHART_SHEET = Sheet(
         Chart(
             "relief_chart_{name}", "Tip relief chart of pair {name}",
             lambda seen: seen.said(
-                "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length "
-                "with minimum A_e for each amount; star: optimum for all loads (relative to load); dashed: within "
-                "10 % of it; diamonds: tip reliefs of the case. Dotted: "
+                "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White with grey "
+                "edges: length with minimum A_e for each amount; star: optimum for all loads (relative to load); "
+                "dashed: within 10 % of it; diamonds: tip reliefs of the case. Dotted: "
             ) + f"{seen.data.unit_words} at {load_words(seen.data.pair.nominal)}, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
@@ -333,8 +329,12 @@ CHART_SHEET = Sheet(
                             si="marked.near_amounts", x_si="marked.near_lengths",
                             look={"width": 1.8, "dash": "dash", "markers": False},
                         ),
+                        Line(  # its sample in the legend is seen on white, too
+                            "chart.amounts", lambda _: "length with minimum A_{e}", "grey", x_si="best_lengths",
+                            look={"width": 4.6, "markers": False},
+                        ),
                         Line(
-                            "chart.amounts", lambda _: "length with minimum A_{e}", "over map", x_si="best_lengths",
+                            "chart.amounts", "", "over map", x_si="best_lengths",
                             look={"width": 2.2, "markers": False},
                         ),
                         Line(

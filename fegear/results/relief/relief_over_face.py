@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
@@ -77,8 +78,22 @@ def _inputs(scene: Scene, name: str) -> TipReliefInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     return TipReliefInputs(
         design_part(scene), design_range(scene, name), tip_tolerances(scene, name), scene.case.effects.relief, name,
-        gears,
+        gears, misaligned(scene, name),
     )  # fmt: skip
+
+
+def misaligned(scene: Scene, name: str) -> str:
+    """The misalignment that a design counts as given, in words: its sign is that of the case."""
+    part, said = scene.case.pair[name], []
+    if not scene.case.effects.misalignment:
+        return ""
+    if part.line_error is not None and part.line_error.over_face:
+        said.append(f"line_error.over_face = {figures(part.line_error.over_face * 1e6, signed=True)} um")
+    if part.line_error is not None and part.line_error.file is not None:
+        said.append("line_error.file")
+    if part.misalignment is not None:
+        said.append("misalignment")
+    return " and ".join(f"pair.{name}.{one}" for one in said)
 
 
 def _compute(inputs: TipReliefInputs, upstream: Upstream, work: Work) -> TipReliefData:

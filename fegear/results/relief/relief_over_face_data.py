@@ -51,6 +51,8 @@ class TipReliefInputs:
         Of the pair.
     gears : mapping of str to str
         Names by member.
+    misaligned : str
+        Keys of the misalignment that they are designed for; empty for none.
     """
 
     part: DesignPart
@@ -59,6 +61,7 @@ class TipReliefInputs:
     present: bool
     name: str
     gears: Mapping[Member, str]
+    misaligned: str = ""
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fegear.base.notes import assuming
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
@@ -92,6 +93,14 @@ RELIEF_OVER_FACE_SHEET = Sheet(
         HARRIS_CHART,
     ),
     remarks=(
+        Remark(
+            lambda seen: assuming(
+                f"Pair {seen.name}: designed for {seen.asked.misaligned} with its sign; with the opposite sign or none "
+                "this relief can result in more transmission error than no relief. If the sign varies, request "
+                "flank-design with flank_design.scatter, which designs for both."
+            ),
+            when=lambda seen: bool(seen.asked.misaligned),
+        ),
         Remark(
             "Pair {name}: shaft deflection is kept at that of the present flanks during the design; rerun with the "
             "designed relief to update it.",
