@@ -143,7 +143,7 @@ def test_nonsense_is_refused_with_its_key(way, said):
 @pytest.mark.parametrize(
     ("lines", "said"),
     [
-        ("0,1\n90,-1\n180,0.5", "begins with 1 N\\*m and ends with 0.5 N\\*m: not a full period"),
+        ("0,1\n90,-1\n180,0.5", "begins with 1 N m and ends with 0.5 N m: not a full period"),
         ("0,1\n90,-1\n80,1", "with angle strictly increasing"),
         ("0,1\n180,1", "needs at least 3 lines"),
         ("0,1\n90,nan\n180,1", "is not finite"),

@@ -169,3 +169,9 @@ def test_a_step_file_is_a_disc_and_says_so_where_the_case_has_a_body(tmp_path, b
         == list(said)
         == ([said[0]] if body else [])
     )
+
+
+def test_a_hatch_line_that_only_touches_a_corner_is_none():
+    """Hub and web of one length and offset: two lines met corners of parts without extent."""
+    made = gear(13.2, 3.0, rim_thickness=2.0, web_thickness=0.5, web_offset=-6.35)
+    assert hatched(made, made.body).shape[1] % 3 == 0

@@ -73,7 +73,8 @@ def hatched(gear: Gear, body: GearBody) -> Array:
         after = np.roll(rank, -1)
         for level in step * np.arange(math.ceil(rank.min() / step), math.floor(rank.max() / step) + 1):
             cut = (rank < level) != (after < level)  # two sides of a convex part, or none
-            lines.append(here[:, cut] + (level - rank[cut]) / (after - rank)[cut] * (there - here)[:, cut])
+            if cut.any():  # none where the line only touches a corner
+                lines.append(here[:, cut] + (level - rank[cut]) / (after - rank)[cut] * (there - here)[:, cut])
     return polylines(lines)
 
 
