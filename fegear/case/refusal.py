@@ -25,7 +25,7 @@ _ALL_BUT = 0.9
 
 def meant(word: str, known: Collection[str] = ()) -> Meaning | None:
     """What an unknown key means: a word of the trade, or a key of another table unless it is all but one of these."""
-    found = of_key(word)
+    found = of_key(word, known)
     places = () if found or get_close_matches(word, known, n=1, cutoff=_ALL_BUT) else tuple(places_of(word))
     return Meaning(places) if 0 < len(places) <= _FEW_PLACES else found
 

@@ -6,8 +6,12 @@ Whoever types one of them means a certain key, and spelling would lead to anothe
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+
+#: How alike a misspelt word is to one of the trade, 0 to 1.
+_MISSPELT = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +40,16 @@ class Meaning:
         return self.how
 
 
-def of_key(word: str) -> Meaning | None:
-    """What a word means among the keys of a case; None for one that is not in the list."""
-    return _KEYS.get(plain(word))
+def of_key(word: str, known: Collection[str] = ()) -> Meaning | None:
+    """What a word means among the keys of a case, also one that is misspelt, unless a known key is as near to it.
+
+    None for one that is not in the list.
+    """
+    typed = plain(word)
+    if typed in _KEYS:
+        return _KEYS[typed]
+    near = difflib.get_close_matches(typed, [*_KEYS, *map(plain, known)], n=1, cutoff=_MISSPELT)
+    return _KEYS.get(near[0]) if near and near[0] not in map(plain, known) else None
 
 
 def of_result(word: str) -> Meaning | None:

@@ -10,7 +10,9 @@ from fegear.base.errors import InputError
 from fegear.case import trade_words
 from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
+from fegear.case.nearest import nearest
 from fegear.case.reading import build_scene, set_key
+from fegear.case.refusal import meant
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
@@ -212,3 +214,16 @@ def test_what_is_not_possible_is_said_of_values_too(change, told, tmp_path):
     with pytest.raises(InputError) as refusal:
         build_scene({"results": ["geometry"], **change}, "case", tmp_path)
     assert told in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("typed", "remedy"),
+    [
+        ("bore_diamter", 'did you mean "bore_radius"'),  # nearer to ball_diameter by its letters than to any key
+        ("pitch_diamter", 'did you mean "module"'),
+        ("tip_diamter", 'did you mean "tip_diameter"'),  # a misspelt key stays one
+    ],
+)
+def test_a_misspelt_word_of_the_trade_is_one(typed, remedy):
+    known = ("ball_diameter", "bore_radius", "tip_diameter", "module", "teeth")
+    assert nearest(typed, known, words=meant).startswith(remedy)
