@@ -17,11 +17,11 @@ from fegear.case.set_pairs import set_of_pair
 from fegear.contact.plane.both_flanks import AlternatingStress
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.each import Each
-from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
+from fegear.results.pair.alternating_rows import ALTERNATING, ALTERNATING_VALUES
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
     from fegear.results.pair.root_stress_history import RootStressData
 
-#: Columns of the table.
-_SHOWN = ("highest", "lowest", "range", "mean", "ratio")
 #: What the rows are, by the role of the gear in the mesh that pulls the fillet.
 _FILLETS: dict[Member, tuple[str, str]] = {
     "driven": ("driven_side", "fillet below the flank that its driver loads"),
@@ -167,26 +165,20 @@ def _bent(seen: Seen) -> str:
     )
 
 
-def _value(quantity: str, said: str) -> Number:
-    return Number(
-        quantity, f"found.{quantity}_error", "found", owner="{name}.{key}", meaning=f"{{one.what}}: {said}"
-    )  # fmt: skip
-
-
 _SHEET = Sheet(
     tables=(
         Rows(
             "idler_root_stress_{name}", "Root stress of gear {name} over one revolution",
             (
                 Cell("fillet", of=lambda seen: list(_fillets(seen).values())),
-                *(Cell(key, error=f"{key}_error") for key in _SHOWN),
+                *ALTERNATING,
                 "place",
             ),
             of=lambda seen: list(seen.data.found.values()), printed=True,
         ),
     ),
     values=(
-        Each(_fillets, _value("range", "stress range"), _value("mean", "mean stress"), _value("ratio", "R")),
+        Each(_fillets, *ALTERNATING_VALUES),
     ),
     remarks=(Remark(_bent),),
 )  # fmt: skip

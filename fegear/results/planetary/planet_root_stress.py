@@ -25,7 +25,6 @@ from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.each import Each
-from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
@@ -33,6 +32,7 @@ from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.geometry.pair import Member
 from fegear.results import forecasts
 from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution_of
+from fegear.results.pair.alternating_rows import ALTERNATING, ALTERNATING_VALUES
 from fegear.results.pair.idler_root_stress import check_along_fillet
 from fegear.results.pair.loaded_teeth import gears_of
 from fegear.results.pair.root_stress_history import RootStressData
@@ -40,8 +40,6 @@ from fegear.results.planetary.planet_set import planetary_sets
 
 #: Of the mesh that pulls a fillet, and of the one that presses it.
 Traces = tuple[FilletTrace, FilletTrace | None]
-#: Columns of the summary.
-_SHOWN = ("highest", "lowest", "range", "mean", "ratio")
 
 
 @dataclass(frozen=True)
@@ -235,19 +233,13 @@ def _bent(seen: Seen) -> str:
     )
 
 
-def _value(quantity: str, said: str) -> Number:
-    return Number(
-        quantity, f"found.{quantity}_error", "found", owner="{name}.{key}", meaning=f"{{one.what}}: {said}"
-    )  # fmt: skip
-
-
 _SHEET = Sheet(
     tables=(
         Rows(
             "planet_root_stress_{name}", "Root stress over one revolution in set {name}",
             (
                 Cell("tooth", of=lambda seen: list(_teeth(seen).values())),
-                *(Cell(key, error=f"{key}_error") for key in _SHOWN),
+                *ALTERNATING,
                 "place",
             ),
             of=lambda seen: list(seen.data.found.values()), printed=True,
@@ -262,7 +254,7 @@ _SHEET = Sheet(
     ),
     values=(
         Each(
-            _teeth, _value("range", "stress range"), _value("mean", "mean stress"), _value("ratio", "R")
+            _teeth, *ALTERNATING_VALUES
         ),
     ),
     figures=(
