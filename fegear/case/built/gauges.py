@@ -139,16 +139,10 @@ def check_gauge(scene: Scene, name: str) -> None:
         place_gauge(found, FilletProfile.of_tooth(gear.symmetric_tooth, gear.module))
 
 
-def check_plane_gauge(scene: Scene, name: str) -> None:
-    """The same for results of plane pairs only."""
-    found = gauge_of(scene, name)
-    if found.pair in scene.wide_pairs:
-        helical = scene.pairs[found.pair].driver.helix_angle != 0.0
-        raise InputError(
-            f"gauge.{name}.pair", f'"{found.pair}"', "must be a plane (2D) pair; its teeth are 3D",
-            "remove the gauge, or request gauge only" if helical else f'set pair.{found.pair}.width = "plane"',
-        )  # fmt: skip
-    check_gauge(scene, name)
+def sharper_strain(scene: Scene, pair: str) -> str:
+    """The setting that makes the computed strain of a pair's gears more accurate."""
+    sliced = pair in scene.wide_pairs and scene.width_of(pair) == "slices"
+    return f'set pair.{pair}.width = "solid"' if sliced else "reduce accuracy.tolerance"
 
 
 def _check_on_face(scene: Scene, name: str, found: Gauge) -> None:

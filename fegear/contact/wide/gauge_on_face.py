@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.gauge_strain import GaugeHistory
+from fegear.contact.wide.mesh_matrix import mesh_stiffness
 from fegear.fem.solid.gauge import grid_on_face
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
+    from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.root_stress import RootedLines
     from fegear.fem.plane.gauge import Grid
@@ -20,6 +24,29 @@ if TYPE_CHECKING:
 
 #: Steps between positions below this share of the usual one are the two sides of a jump.
 _JUMP = 0.1
+
+
+@dataclass(frozen=True)
+class GaugeAboutLoad(ReadOnlyArrays):
+    """What a gauge sees under one load, and how that changes as the gears approach; P positions of its tooth.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Of the tooth's contact at mid-face, ascending [m].
+    strain : ndarray, shape (P, G)
+        By displacement of the grid.
+    slope : ndarray, shape (P, G)
+        Change of the strain per change of the transmission error [1/m].
+    error, slope_error : ndarray, shape (P,)
+        Estimated, of the grid that is not displaced; NaN if unknown.
+    """
+
+    x: Array
+    strain: Array
+    slope: Array
+    error: Array
+    slope_error: Array
 
 
 def wide_gauge_history(
@@ -56,28 +83,11 @@ def wide_gauge_history(
     """
     other: Side = "compression" if side == "tension" else "tension"
     at = int(np.argmin(np.abs(displacement)))
-    seen = _Gauges(loaded, member, grid, z, bool(loaded.missed))
+    seen, force = _Gauges(loaded, member, grid, z, influence), loaded.found.contact.force
     rooted = loaded.rooted(member, loaded.found, influence.fine)
-    strain, stress = seen.means(rooted, side, middle + displacement, loaded.found.contact.force)
-    opposite = seen.means(rooted, other, np.array([middle]), loaded.found.contact.force)[0][..., 0]
-    coarse, key = loaded.error.coarse, f"root_{side}"
-    if not loaded.estimated:
-        off = off_stress = np.full(opposite.shape, np.nan)
-    elif influence.coarse is None:
-        share = influence.error.get(key, np.nan)
-        off, off_stress = share * np.abs(strain[..., at]), share * np.abs(stress[..., at])
-    else:
-        again = loaded.rooted(member, coarse, influence.coarse)
-        pair = seen.means(again, side, middle + displacement, coarse.contact.force)
-        share = influence.entry_shares[key]
-        off, off_stress = (
-            share * np.abs(_between(rooted.x, again.x, other_one) - one).max(axis=-1)
-            for one, other_one in zip((strain, stress), pair, strict=True)
-        )
-    off, off_stress = (
-        error + _between_positions(rooted.x, one[..., at])
-        for error, one in ((off, strain), (off_stress, stress))
-    )  # fmt: skip
+    strain, stress = seen.means(rooted, side, middle + displacement, force)
+    opposite = seen.means(rooted, other, np.array([middle]), force)[0][..., 0]
+    off, off_stress = seen.errors(side, middle + displacement, at, (strain, stress), loaded.error.coarse.contact.force)
     sense = 1.0 if side == "tension" else -1.0
     if grid.strain_per_stress(loaded.pair.gear(member).material, "stress") < 0.0:
         sense = -sense
@@ -87,12 +97,49 @@ def wide_gauge_history(
     )  # fmt: skip
 
 
+def gauge_about_load(
+    loaded: LoadedWidePair,
+    member: Member,
+    side: Side,
+    grid: Grid,
+    middle: float,
+    displacement: Array,
+    z: float,
+    influence: SolidInfluence,
+    load: float,
+) -> GaugeAboutLoad:
+    """What a gauge sees while the gears vibrate about a load [N]: its strain there, and its tangent.
+
+    As the transmission error grows by d, every station that touches carries more by its part of the tangent mesh
+    stiffness times d (`fegear.contact.wide.mesh_matrix`). Errors are those at the nominal load. Parameters are those of
+    `wide_gauge_history`.
+    """
+    at, arc = int(np.argmin(np.abs(displacement))), middle + displacement
+    seen = _Gauges(loaded, member, grid, z, influence)
+    rooted = loaded.rooted(member, loaded.found, influence.fine)
+
+    def forces(found: LoadedFlanks, case: int) -> tuple[Array, Array]:
+        """On the stations, and what they gain per approach, shape (P, M, 1) each."""
+        each = slice(case, case + 1)
+        return found.contact.force[:, :, each], mesh_stiffness(found, loaded.flanks.points).stations[:, :, each]
+
+    about = loaded.flanks.solve([load], loaded.gaps, loaded.known)
+    strain, slope = (seen.means(rooted, side, arc, force)[0] for force in forces(about, 0))
+    fine, coarse = (forces(one, loaded.at) for one in (loaded.found, loaded.error.coarse))
+    error, slope_error = (
+        seen.errors(side, arc, at, (seen.means(rooted, side, arc, force)[0],), rough)[0][:, 0]
+        for force, rough in zip(fine, coarse, strict=True)
+    )
+    return GaugeAboutLoad(rooted.x, strain[:, 0], slope[:, 0], error, slope_error)
+
+
 class _Gauges:
     """Grids of one kind at one place along the face."""
 
-    def __init__(self, loaded: LoadedWidePair, member: Member, grid: Grid, z: float, sliced: bool):
+    def __init__(self, loaded: LoadedWidePair, member: Member, grid: Grid, z: float, influence: SolidInfluence):
         self._module, self._material = loaded.pair.driver.module, loaded.pair.gear(member).material
-        self._grid, self._z, self._sliced = grid, z, sliced
+        self._grid, self._z, self._sliced = grid, z, bool(loaded.missed)
+        self._loaded, self._member, self._influence = loaded, member, influence
 
     def means(self, rooted: RootedLines, side: Side, arc: Array, force: Array) -> tuple[Array, Array]:
         """Mean strain, and mean stress along the profile [Pa], under every load, shape (T, L, G) each.
@@ -116,6 +163,39 @@ class _Gauges:
         ]
         strain, stress = (np.stack([one.T for one in each], axis=1) for each in zip(*found, strict=True))
         return strain, stress
+
+    def errors(
+        self, side: Side, arc: Array, at: int, fine: tuple[Array, ...], coarse_force: Array
+    ) -> tuple[Array, ...]:
+        """Estimated errors of the strain, and of the stress where it is given, of one of the grids, shape (T, L) each.
+
+        Parameters
+        ----------
+        side : {"tension", "compression"}
+        arc : ndarray, shape (G,)
+        at : int
+            Number of that grid.
+        fine : tuple of ndarray, shape (T, L, G)
+            Strain, or strain and stress.
+        coarse_force : ndarray, shape (P, M, L)
+            What the coarser solution has on its stations [N].
+        """
+        loaded, influence = self._loaded, self._influence
+        x = loaded.rooted(self._member, loaded.found, influence.fine).x
+        key = f"root_{side}"
+        if not loaded.estimated:
+            return tuple(np.full(one.shape[:2], np.nan) for one in fine)
+        if influence.coarse is None:
+            off = [influence.error.get(key, np.nan) * np.abs(one[..., at]) for one in fine]
+        else:
+            again = loaded.rooted(self._member, loaded.error.coarse, influence.coarse)
+            rough = self.means(again, side, arc, coarse_force)
+            share = influence.entry_shares[key]
+            off = [
+                share * np.abs(_between(x, again.x, other) - one).max(axis=-1)
+                for one, other in zip(fine, rough, strict=False)
+            ]
+        return tuple(error + _between_positions(x, one[..., at]) for error, one in zip(off, fine, strict=True))
 
 
 def _between(x: Array, at: Array, values: Array) -> Array:

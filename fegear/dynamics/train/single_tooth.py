@@ -144,20 +144,43 @@ def mesh_force(data: GearTrain, i: int, speed: float, count: int, harmonics: int
             tooth = force_at(data, i, speed, (phase[on] - j) * pitch, harmonics, j, other_phases=1)
             total[on] += tooth.with_others
             pairs[on] += tooth.static > 0.0
+    time = phase / float(data.train.mesh_frequencies(speed / data.speed_ratio)[i])
+    own, others = error_increments(data, i, speed, phase, harmonics)
+    linear = data.forces[i] + data.train.meshes[i].stiffness * (own + others)
+    return MeshForce(phase, time, total, linear, pairs)
+
+
+def error_increments(data: GearTrain, i: int, speed: float, phase: Array, harmonics: int) -> tuple[Array, Array]:
+    """What vibration adds to the transmission error of mesh `i`: by its own one, and by all that excites it besides.
+
+    Parameters
+    ----------
+    data : GearTrain
+    i : int
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    phase : ndarray, shape (n,)
+        Of the mesh [its base pitches]; the others are at those of the case.
+    harmonics : int
+
+    Returns
+    -------
+    own, others : ndarray, shape (n,)
+        [m].
+    """
     reference, errors, train = speed / data.speed_ratio, data.errors, data.train
     frequency = train.mesh_frequencies(reference)
-    time = phase / float(frequency[i])
-    increment = errors[i].mean - errors[i](phase)
+    own = errors[i].mean - errors[i](phase) + dynamic_error(train, errors, i, i, reference, phase, harmonics)
+    others = np.zeros(phase.shape)
     for j, ahead in enumerate(data.phases):
-        since = (phase - data.phases[i]) * float(frequency[j] / frequency[i])
-        at = phase if j == i else ahead + since
-        increment = increment + dynamic_error(train, errors, i, j, reference, at, harmonics)
+        if j != i:
+            at = ahead + (phase - data.phases[i]) * float(frequency[j] / frequency[i])
+            others += dynamic_error(train, errors, i, j, reference, at, harmonics)
     since = (phase - data.phases[i]) / float(frequency[i])
     for one in data.ripple:
         found = ripple_increment(train, one, reference, i)
-        increment = increment + np.real(np.exp(2j * math.pi * np.outer(since, one.frequencies(reference))) @ found)
-    linear = data.forces[i] + train.meshes[i].stiffness * increment
-    return MeshForce(phase, time, total, linear, pairs)
+        others += np.real(np.exp(2j * math.pi * np.outer(since, one.frequencies(reference))) @ found)
+    return own, others
 
 
 #: Positions over the flank at which the source's own error is asked for.

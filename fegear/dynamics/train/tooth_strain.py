@@ -1,4 +1,8 @@
-"""Strain under a gauge in a root fillet of a vibrating train: forces on its tooth and those around it (Mark, 3.37)."""
+"""Strain under a gauge in a root fillet of a vibrating train: forces on its tooth and those around it (Mark, 3.37).
+
+On a 3D tooth the forces along the contact lines change with the transmission error, each station's by its part of the
+tangent mesh stiffness: the strain is the quasi-static one and its slope times what vibration adds to that error.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +15,13 @@ from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.root_stress import Felt, RootStress
-from fegear.dynamics.train.single_tooth import force_at, forces_around, positions, rows_around
+from fegear.dynamics.train.single_tooth import error_increments, force_at, forces_around, positions, rows_around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.base.arrays import Array
+    from fegear.contact.wide.gauge_on_face import GaugeAboutLoad
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.tooth_force import ToothForce
     from fegear.fem.plane.gauge import GaugesOnFillet
@@ -154,6 +159,47 @@ def tooth_strain(
     return ToothStrain(
         pair, member, displacement, displaced, _error(gauges.only(at), roots, pair, around),
         x, force.time, displaced[:, at], own[:, at], static[:, at],
+    )  # fmt: skip
+
+
+def strain_on_face(
+    train: GearTrain, mesh: int, member: Member, known: GaugeAboutLoad, displacement: Array, speed: float, count: int,
+    harmonics: int,
+) -> ToothStrain:  # fmt: skip
+    """Follow a gauge on a 3D tooth over all positions at which its strain is known, at one speed.
+
+    Parameters
+    ----------
+    train : GearTrain
+    mesh : int
+    member : {"driver", "driven"}
+        What the gear of the gauge is as the mesh runs.
+    known : GaugeAboutLoad
+        About the mean force of the mesh.
+    displacement : ndarray, shape (G,)
+        Zero is among them [m].
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    count : int
+        Even positions, beside those at which the strain is known.
+    harmonics : int
+    """
+    made, at = train.meshes[mesh], int(np.argmin(np.abs(displacement)))
+    # where the named driven gear drives, x counts the other way
+    places, rows = (known.x, slice(None)) if made.a_drives else (-known.x[::-1], slice(None, None, -1))
+    x = np.unique(np.concatenate([places, np.linspace(places[0], places[-1], count)]))
+    phase = x / made.pair.base_pitch
+    own, others = error_increments(train, mesh, speed, phase, harmonics)
+
+    def over(values: Array) -> Array:
+        return np.stack([np.interp(x, places, one) for one in values[rows].reshape(places.size, -1).T], axis=-1)
+
+    static, slope = over(known.strain), over(known.slope)
+    total, alone = static + slope * (own + others)[:, None], static + slope * own[:, None]
+    error = over(known.error)[:, 0] + over(known.slope_error)[:, 0] * np.abs(own + others)
+    time = phase / float(train.train.mesh_frequencies(speed / train.speed_ratio)[mesh])
+    return ToothStrain(
+        made.pair, member, displacement, total, error, x, time, total[:, at], alone[:, at], static[:, at]
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.printed import figures, with_rough_error
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, place_gauge
+from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -29,8 +29,8 @@ from fegear.results.pair.placed_gauge import (
     comparison_table,
     comparison_values,
     gauges_on,
-    placed,
     placed_gauge,
+    placed_on_face,
 )
 
 if TYPE_CHECKING:
@@ -80,9 +80,8 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     speed, pair = scene.case.pair[gauge.pair].speed, scene.pairs[gauge.pair]
     if speed is not None and gauge.member == "driven":
         speed /= pair.ratio
-    sliced = gauge.pair in scene.wide_pairs and scene.width_of(gauge.pair) == "slices"
-    sharper = f'set pair.{gauge.pair}.width = "solid"' if sliced else "reduce accuracy.tolerance"
-    return GaugeInputs(gauge, speed, scene.estimates, gauge.pair in scene.wide_pairs, sharper, name)
+    wide, sharper = gauge.pair in scene.wide_pairs, sharper_strain(scene, gauge.pair)
+    return GaugeInputs(gauge, speed, scene.estimates, wide, sharper, name)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -115,16 +114,10 @@ def _in_plane(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, Gaug
 
 def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
     from fegear.contact.wide.gauge_on_face import wide_gauge_history
-    from fegear.fem.solid.gauge import half_up_fillet, lean_at, profile_of_solid
 
     gauge, solved = asked.gauge, solid_solution_of(upstream, asked.gauge.gear)
     teeth = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
-    gear, fillet = teeth.pair.gear(gauge.member), solved.fine.fillets[gauge.side]
-    profile = profile_of_solid(fillet, gear)
-    skew, across = lean_at(fillet, solved.fine.tau, place_gauge(gauge, profile) / gear.module)
-    half = half_up_fillet(gauge.grid, skew / across)
-    place = placed(gauge, profile, half)
-    profile.check(place.middle, gauge.grid, half)
+    place = placed_on_face(gauge, solved, teeth.pair.gear(gauge.member))
     history = wide_gauge_history(
         teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved
     )

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
     from fegear.fem.plane.trace import LoadedFlank
+    from fegear.fem.solid.influence import SolidInfluence
+    from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
 
 #: Places to either side of the grid's at which the peak is computed.
@@ -94,6 +96,19 @@ def placed_gauge(gauge: Gauge, solved: GearInfluence) -> PlacedGauge:
     """A gauge on the fillet of a plane gear as it is meshed."""
     profile = FilletProfile.of_mesh(solved.fine.fillets[gauge.side], solved.gear)
     return placed(gauge, profile, gauge.grid.half)
+
+
+def placed_on_face(gauge: Gauge, solved: SolidInfluence, gear: Gear) -> PlacedGauge:
+    """A gauge on the fillet of a 3D gear as it is solved, in its transverse section."""
+    from fegear.fem.solid.gauge import half_up_fillet, lean_at, profile_of_solid
+
+    fillet = solved.fine.fillets[gauge.side]
+    profile = profile_of_solid(fillet, gear)
+    skew, across = lean_at(fillet, solved.fine.tau, place_gauge(gauge, profile) / gear.module)
+    half = half_up_fillet(gauge.grid, skew / across)
+    place = placed(gauge, profile, half)
+    profile.check(place.middle, gauge.grid, half)
+    return place
 
 
 def gauges_on(gauge: Gauge, at: PlacedGauge, solved: GearInfluence) -> tuple[GaugesOnFillet, GaugesOnFillet]:

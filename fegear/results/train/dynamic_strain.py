@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.case.built.gauges import Gauge, check_plane_gauge, gauge_of
+from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
@@ -19,8 +20,9 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
-from fegear.results.gear.solved_gear import needs_solution, solution_of
+from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import thinned, verdict
+from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     MEASURED,
     RESIDUAL,
@@ -29,6 +31,7 @@ from fegear.results.pair.placed_gauge import (
     comparison_values,
     gauges_on,
     placed_gauge,
+    placed_on_face,
 )
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
@@ -38,7 +41,9 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.tooth_strain import ToothStrain
+    from fegear.engine.sheet.seen import Seen
     from fegear.results.train.tooth_force import ToothForceData
 
 #: Seconds of the forces on a tooth and on those around it.
@@ -60,6 +65,12 @@ class DynamicStrainInputs:
         Whether the forces on the teeth around count.
     effects : RootEffects
     name : str
+    wide : bool
+        Whether its gear is 3D.
+    halves : int
+        2 of a double helical pair, whose teeth are one half.
+    sharper : str
+        What makes the computed strain of 3D gears more accurate.
     odd : bool
         Whether some of the teeth differ from the others.
     """
@@ -70,6 +81,9 @@ class DynamicStrainInputs:
     positions: int
     coupled: bool
     effects: RootEffects
+    wide: bool
+    halves: int
+    sharper: str = field(compare=False)
     name: str = field(compare=False)
     odd: bool = field(default=False, compare=False)
 
@@ -85,12 +99,15 @@ class DynamicStrain:
         Whether nothing but the own mesh excites the train.
     load_tolerance : float
     compared : FittedCurve or None
+    sharper : str
+        The setting that makes the computed strain of 3D gears more accurate; empty of plane ones.
     """
 
     found: ToothStrain
     alone: bool
     load_tolerance: float
     compared: FittedCurve | None
+    sharper: str = ""
 
     @property
     def drawn(self) -> FittedCurve | None:
@@ -109,13 +126,22 @@ class DynamicStrain:
 
     @property
     def verdict(self) -> str:
-        """Measured against computed strain; empty where nothing was measured."""
-        if self.compared is None:
-            return ""
+        """Measured against computed strain; empty where nothing was measured, and in drafts of 3D gears."""
+        return self._verdict(brief=False)
+
+    @property
+    def judged(self) -> str:
+        """The same without what its limit is made of."""
+        return self._verdict(brief=True)
+
+    def _verdict(self, *, brief: bool) -> str:
         found = self.found
+        if self.compared is None or (self.sharper and found.peak_error is None):
+            return ""
         return verdict(
-            self.compared, found.peak, found.change_by_placement, found.peak_error or 0.0, self.load_tolerance
-        )
+            self.compared, found.peak, found.change_by_placement, found.peak_error or 0.0, self.load_tolerance,
+            brief=brief, sharper=self.sharper,
+        )  # fmt: skip
 
 
 def _mesh(scene: Scene, name: str) -> str:
@@ -134,37 +160,75 @@ def _mesh(scene: Scene, name: str) -> str:
 def _check(scene: Scene, name: str) -> None:
     _mesh(scene, name)
     needs_one_speed(scene, name)
-    check_plane_gauge(scene, name)
+    check_gauge(scene, name)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (Task("tooth-force", _mesh(scene, name)), *needs_solution(gauge_of(scene, name).gear))
+    gauge, force = gauge_of(scene, name), Task("tooth-force", _mesh(scene, name))
+    if gauge.pair in scene.wide_pairs:
+        return (force, *needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
+    return (force, *needs_solution(gauge.gear))
 
 
 def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
-    part = scene.case.dynamics
+    part, gauge = scene.case.dynamics, gauge_of(scene, name)
     return DynamicStrainInputs(
-        gauge_of(scene, name), _mesh(scene, name), part.one_speed, part.positions,
-        scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), name,
-        bool(odd_gears_of(scene, gauge_of(scene, name).pair)),
+        gauge, _mesh(scene, name), part.one_speed, part.positions,
+        scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), gauge.pair in scene.wide_pairs,
+        scene.case.pair[gauge.pair].halves, sharper_strain(scene, gauge.pair), name,
+        bool(odd_gears_of(scene, gauge.pair)),
     )  # fmt: skip
 
 
 def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> DynamicStrain:
+    force: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
+    gauge = asked.gauge
+    found = (_on_face if asked.wide else _in_plane)(asked, upstream, force)
+    alone = len(force.train.exciters) == 1
+    measured = compared(gauge, found.angle, found.total)
+    return DynamicStrain(found, alone, gauge.load_tolerance, measured, asked.sharper if asked.wide else "")
+
+
+def _in_plane(asked: DynamicStrainInputs, upstream: Upstream, force: ToothForceData) -> ToothStrain:
     from fegear.dynamics.train.tooth_strain import tooth_strain
 
-    force: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
     gauge, mesh = asked.gauge, force.train.meshes[force.mesh]
     solved = solution_of(upstream, gauge.gear)
     place = placed_gauge(gauge, solved)
     gauges = gauges_on(gauge, place, solved)[0]
     number = gauge.tooth if mesh.error.pitches > 1 else 0
-    found = tooth_strain(
+    return tooth_strain(
         force.train, force.mesh, mesh.role(gauge.member), gauges, place.displacement, asked.speed,
         asked.positions, force.harmonics, number, coupled=asked.coupled, effects=asked.effects,
     )  # fmt: skip
-    alone = len(force.train.exciters) == 1
-    return DynamicStrain(found, alone, gauge.load_tolerance, compared(gauge, found.angle, found.total))
+
+
+def _on_face(asked: DynamicStrainInputs, upstream: Upstream, force: ToothForceData) -> ToothStrain:
+    from fegear.contact.wide.gauge_on_face import gauge_about_load
+    from fegear.dynamics.train.tooth_strain import strain_on_face
+
+    gauge, mesh = asked.gauge, force.train.meshes[force.mesh]
+    solved = solid_solution_of(upstream, gauge.gear)
+    teeth = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
+    place = placed_on_face(gauge, solved, teeth.pair.gear(gauge.member))
+    known = gauge_about_load(
+        teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved,
+        mesh.force / asked.halves or teeth.nominal,
+    )  # fmt: skip
+    return strain_on_face(
+        force.train, force.mesh, mesh.role(gauge.member), known, place.displacement, asked.speed, asked.positions,
+        force.harmonics,
+    )  # fmt: skip
+
+
+def _peak(seen: Seen) -> list[str]:
+    speed = f"{seen.asked.speed * RPM:.6g} rpm"
+    return [
+        seen.said(
+            f"Gauge {{name}} (gear {seen.asked.gauge.gear}) in motion at {speed}: peak strain "
+            "{v[dynamic_peak_strain]}, {v[dynamic_strain_ratio]} times the quasi-static one."
+        )
+    ]
 
 
 _SHEET = Sheet(
@@ -204,9 +268,16 @@ _SHEET = Sheet(
             of="found", under=lambda seen: f"{seen.asked.speed * RPM:.6g} rpm",
         ),
     ),
+    answer=Answer(
+        lambda seen: [f"Gauge {seen.name}, in motion: {seen.data.judged}."] if seen.data.judged else [],
+        _peak,
+        "Gauge {name}: displaced within its tolerance the dynamic peak changes by up to "
+        "{v[dynamic_change_by_placement]}.",
+        figure="dynamic_strain_{name}",
+    ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
-        Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="compared"),
+        Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="verdict"),
     ),
     sharper_by="",
 )  # fmt: skip
