@@ -307,7 +307,11 @@ def test_a_3d_pair_has_its_odd_teeth_over_a_revolution():
     load, angle = (column(found, "tooth_loads_revolution_I", name) for name in ("share", "driver_angle"))
     for at in np.unique(angle)[::100]:
         assert load[angle == at].sum() == pytest.approx(1.0)
-    assert not any(table.name.startswith("root_stress_teeth") for table in found.tables)
+    tooth, change = (column(found, "root_stress_teeth_I_pinion", name) for name in ("tooth", "root_tension_change"))
+    assert tooth.tolist() == list(range(25))
+    assert change.argmin() == 0
+    assert -1.0 < change[0] < -0.5
+    assert np.median(change) == 0.0
     assert any("contact of the crack faces of tooth 0 is neglected (3D pair)" in said for said in found.remarks)
 
 

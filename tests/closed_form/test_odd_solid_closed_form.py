@@ -10,13 +10,23 @@ from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import cache_on_disk
 from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
 from fegear.contact.pair_spec import FlankSpec, PairSpec
-from fegear.contact.wide.over_revolution import revolving_flanks, wide_over_revolution
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.odd_compliance import odd_compliance
+from fegear.contact.plane.over_revolution import stress_over_revolution
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.wide.over_revolution import follow_flanks, revolving_flanks, wide_over_revolution
+from fegear.contact.wide.root_stress import places_along, rooted_lines
+from fegear.contact.wide.stress_over_revolution import wide_stress_over_revolution
 from fegear.contact.wide_spec import WideSpec
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
+from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.other_outline import Missing
 from fegear.fem.plane.odd.tooth_kind import OddTooth
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.odd.odd_solid_influence import odd_solid_influence
 from fegear.fem.solid.odd.odd_solid_solution import solve_odd_solid
@@ -176,10 +186,10 @@ def gear(hand, teeth, beta):
     return Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, 9e-3, steel, "strain", hand if beta else "spur")
 
 
-def made(one, odd=None):
+def made(one, odd=None, **how):
     m = one.module
     parts = one.symmetric_tooth, one.flank_twist * m, one.face_width / m, 0.3, one.bore_radius / m, SETTINGS
-    return solve_odd_solid(*parts, odd=odd, reach=3) if odd else solve_solid(*parts, reach=3)
+    return solve_odd_solid(*parts, odd=odd, reach=3, **how) if odd else solve_solid(*parts, reach=3, **how)
 
 
 class Mesh:
@@ -197,9 +207,15 @@ class Mesh:
     def cracked(self, member, number):
         return {**self.plain, member: made(self.gears[member], {number: self.crack[member]})}
 
-    def over(self, gears=None, **how):
+    def revolving(self, gears=None, **how):
         spec = PairSpec(self.pair, (LOAD,), width="solid", wide=WideSpec(panels=8), **how)
-        return wide_over_revolution(revolving_flanks(spec, gears or self.plain, None, positions=12))
+        return revolving_flanks(spec, gears or self.plain, None, positions=12)
+
+    def over(self, gears=None, **how):
+        return wide_over_revolution(self.revolving(gears, **how))
+
+    def roots(self, member, gears=None, side="tension"):
+        return wide_stress_over_revolution(follow_flanks(self.revolving(gears)), member, side)
 
 
 @pytest.fixture(scope="module")
@@ -299,3 +315,59 @@ def test_beside_a_missing_tooth_tip_edges_carry(spur):
     ordinary = np.median(found.transmission_error, axis=0)
     assert found.transmission_error.max() > 3.0 * ordinary.max()
     assert found.loads.sum(axis=1) == pytest.approx(LOAD, rel=1e-9)
+
+
+# ---- root stress of each tooth -------------------------------------------------------------------------------------
+@pytest.mark.dear
+@pytest.mark.parametrize(("mesh", "member"), [("spur", "driver"), ("helical", "driven")])
+def test_root_stress_of_a_tooth_that_differs_in_nothing_is_that_of_all_others(mesh, member, request):
+    """And that of all others is the ordinary root stress over the face, the largest of a base pitch."""
+    mesh = request.getfixturevalue(mesh)
+    one, followed = mesh.gears[member], follow_flanks(mesh.revolving())
+    state = followed.flanks.solve([LOAD])
+    rooted = rooted_lines(mesh.pair, member, state.lines, mesh.plain[member], coupling=True)
+    z = places_along(state.lines, MODULE)
+    like = section_mesh(one.symmetric_tooth, one.bore_radius / MODULE, SETTINGS.section, None, frontal=True)
+    odd = follow_flanks(mesh.revolving({**mesh.plain, member: made(one, {6: like})}))
+    assert len(odd.pitches) > 5
+    for side, sign in (("tension", 1.0), ("compression", -1.0)):
+        usual = sign * (sign * rooted.stress(side, state.contact.force[:, :, 0], z).largest(sign)[0]).max()
+        assert wide_stress_over_revolution(followed, member, side).largest == pytest.approx([usual], rel=1e-12)
+        found = wide_stress_over_revolution(odd, member, side)
+        assert found.teeth == one.teeth
+        assert found.largest == pytest.approx(np.full(one.teeth, usual), rel=1e-10)
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize(("mesh", "member"), [("spur", "driver"), ("helical", "driven")])
+def test_root_stress_of_a_cracked_tooth_falls_and_its_number_is_the_right_one(mesh, member, request):
+    mesh = request.getfixturevalue(mesh)
+    found = mesh.roots(member, mesh.cracked(member, 6)).largest
+    usual = float(np.median(found))
+    assert found.argmin() == 6
+    assert found[6] < 0.4 * usual  # the crack takes the stress away on either side of its mouth
+    beside = found[[5, 7]] / usual - 1.0
+    assert np.abs(beside).max() < 0.02
+    assert np.abs(beside).min() > 5e-4
+    far = np.setdiff1d(np.arange(mesh.gears[member].teeth), np.arange(2, 11))
+    assert found[far] == pytest.approx(np.full(far.size, usual), rel=1e-6)
+
+
+@pytest.mark.dear
+def test_root_stress_without_motion_along_the_axis_is_that_of_plane_teeth(spur):
+    """What a crack changes of each tooth's largest stress, by the plane ring and its own contact."""
+    number, driver = 6, spur.gears["driver"]
+    flat = {member: made(one, plane_strain=True) for member, one in spur.gears.items()}
+    odd = {**flat, "driver": made(driver, {number: spur.crack["driver"]}, plane_strain=True)}
+    found = spur.roots("driver", odd).largest / spur.roots("driver", flat).largest
+    plane = {m: solve_gear(one, settings_at(-3), reach=2, estimate_error=False) for m, one in spur.gears.items()}
+    cracked = solve_cracked_gear(plane["driver"], {number: spur.crack["driver"]})
+    driven = finite_element_compliance(plane["driven"])
+    before, after = (
+        stress_over_revolution(Engagement(PairCompliance(spur.pair, one, driven)), LOAD, "driver", positions=24).largest
+        for one in (finite_element_compliance(plane["driver"]), odd_compliance(cracked))
+    )
+    off = np.abs(found - after / before)
+    assert off[number] < 0.01  # the largest stress is beside the crack's mouth
+    assert np.delete(off, number).max() < 2e-4
+    assert np.abs(after / before - 1.0)[[number - 1, number + 1]].min() > 2e-3

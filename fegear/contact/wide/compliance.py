@@ -238,7 +238,7 @@ def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLin
     for member in MEMBERS:
         body, softer = gears[member], _softer(pair, member)
         for places, pressed in _pressed(pair, gears, member, lines):
-            tooth = _teeth(member, lines, places)
+            tooth = teeth_on(member, lines, places)
             found: dict[int, list[tuple[int, int]]] = {}
             for _, group in itertools.groupby(range(len(places)), key=lambda line: places[line][0]):
                 for a, b in itertools.combinations(group, 2):
@@ -260,7 +260,7 @@ def _by_odd_teeth(
     for member in MEMBERS:
         body, softer = gears[member], _softer(pair, member)
         line, (places, spans) = line_bands(pair, member, body, lines), places_of(lines)
-        tooth = _teeth(member, lines, places, cycle)
+        tooth = teeth_on(member, lines, places, cycle)
         found: dict[tuple[int, int], list[tuple[int, int]]] = {}
         for _, group in itertools.groupby(range(len(places)), key=lambda number: places[number][0]):
             for a, b in itertools.combinations_with_replacement(group, 2):
@@ -279,7 +279,7 @@ def _by_odd_teeth(
     return matrix
 
 
-def _teeth(member: Member, lines: ContactLines, places: Sequence[tuple[int, slice]], cycle: int = 0) -> list[int]:
+def teeth_on(member: Member, lines: ContactLines, places: Sequence[tuple[int, slice]], cycle: int = 0) -> list[int]:
     """Numbers of a gear's teeth on contact lines in a base pitch."""
     forward = 1 if member == "driver" else -1
     return [forward * (int(lines.pair[p, s.start]) - cycle) for p, s in places]
@@ -303,7 +303,7 @@ def _pressed(
         start, stop = spans[some[0]].start, spans[some[-1]].stop
         moved = [slice(spans[i].start - start, spans[i].stop - start) for i in some]
         here = [places[i] for i in some]
-        yield here, body.pressed(line.part(slice(start, stop)), moved, _teeth(member, lines, here))
+        yield here, body.pressed(line.part(slice(start, stop)), moved, teeth_on(member, lines, here))
 
 
 def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:

@@ -49,8 +49,6 @@ if TYPE_CHECKING:
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
 
-#: Places along the face per module, at which root stress is looked for, and how many at least.
-_PER_MODULE, _FEWEST = 4.0, 17
 #: Places along path and face at which the state of the flanks is looked at, and the share of both at either end at
 #: which the load is known by extrapolation alone.
 _SURFACE, _MARGIN = (121, 41), 1e-3
@@ -181,9 +179,9 @@ class LoadedWidePair:
     @property
     def places_along(self) -> Array:
         """Places along the face at which root stress is looked for [m], both ends among them."""
-        lines, module = self.found.lines, self.pair.driver.module
-        count = max(_FEWEST, 2 * round(0.5 * _PER_MODULE * (lines.high - lines.low) / module) + 1)
-        return np.linspace(lines.low, lines.high, count)
+        from fegear.contact.wide.root_stress import places_along
+
+        return places_along(self.found.lines, self.pair.driver.module)
 
     def history(self) -> LoadHistory:
         """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""

@@ -105,9 +105,45 @@ def revolving_flanks(
     return RevolvingFlanks(as_specified(spec, bare), open_gaps(spec), coarse, spec.nominal)
 
 
+@dataclass(frozen=True)
+class FollowedFlanks:
+    """A pair with a width that was followed over all base pitches.
+
+    Parameters
+    ----------
+    over : OverRevolution
+    flanks : FlankPair
+        As they were loaded.
+    lines : ContactLines
+    cycles : int
+        Base pitches until the same teeth meet again; 1 where all teeth are alike.
+    pitches : tuple of ndarray of int
+        Numbers of the base pitches in which the same teeth meet.
+    forces : tuple of ndarray, shape (P, M)
+        On the stations in these [N].
+    reaches_the_last_edges : bool
+        Whether tip edges are loaded that are as far off as any.
+    """
+
+    over: OverRevolution
+    flanks: FlankPair
+    lines: ContactLines
+    cycles: int
+    pitches: tuple[Index, ...]
+    forces: tuple[Array, ...]
+    reaches_the_last_edges: bool = False
+
+
 def wide_over_revolution(
     revolving: RevolvingFlanks, base_pitches: int = 1, progress: Callable[[float], None] | None = None
 ) -> OverRevolution:
+    """What `follow_flanks` finds of transmission error, stiffness and loads."""
+    return follow_flanks(revolving, base_pitches, progress).over
+
+
+def follow_flanks(
+    revolving: RevolvingFlanks, base_pitches: int = 1, progress: Callable[[float], None] | None = None
+) -> FollowedFlanks:
     """Follow a pair with a width over all base pitches until the same teeth meet again.
 
     Parameters
@@ -130,52 +166,54 @@ def wide_over_revolution(
             f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
         )  # fmt: skip
     count, report = cycles if cycles > 1 else base_pitches, progress or (lambda _fraction: None)
-    flanks, found = _far_enough(revolving, count)
+    found = _far_enough(revolving, count)
     report(0.4)
     if revolving.coarse is None:
         return found
-    longer, _ = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count)
+    flanks = found.flanks
+    longer = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count)
     report(0.7)
-    coarser, _ = _followed(revolving, replace(flanks, gears=revolving.coarse), count)
-    return replace(found, others=(longer, coarser))
+    coarser = _followed(revolving, replace(flanks, gears=revolving.coarse), count)
+    return replace(found, over=replace(found.over, others=(longer.over, coarser.over)))
 
 
-def _far_enough(revolving: RevolvingFlanks, count: int) -> tuple[FlankPair, OverRevolution]:
+def _far_enough(revolving: RevolvingFlanks, count: int) -> FollowedFlanks:
     """The pair over all base pitches, along tip edges as far as these carry load."""
     flanks = revolving.flanks
     for left in range(_LONGER_EDGES, -1, -1):
         try:
-            found, reached = _followed(revolving, flanks, count)
+            found = _followed(revolving, flanks, count)
         except InputError as error:  # beside a missing tooth the edges of the next ones carry all of the load
             if error.key != "odd_tooth" or not flanks.most_gap or not left:
                 raise
         else:
-            if not (reached and left):
+            if not (found.reaches_the_last_edges and left):
                 break
         flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
-    return flanks, found
+    return found
 
 
-def _followed(revolving: RevolvingFlanks, flanks: FlankPair, count: int) -> tuple[OverRevolution, bool]:
-    """The pair over all base pitches, and whether tip edges are loaded that are as far off as any."""
+def _followed(revolving: RevolvingFlanks, flanks: FlankPair, count: int) -> FollowedFlanks:
+    """The pair over all base pitches."""
     pair, gaps, load = revolving.pair, revolving.gaps, revolving.load
     lines = contact_lines(pair, flanks.roll, flanks.panel * pair.driver.module, most_gap=flanks.most_gap)
     number = np.unique(lines.pair[lines.present])
     alike = together(_teeth_in(flanks, gaps, lines, number, cycle) for cycle in range(count))
     shape = count, flanks.roll.size
     error, stiffness, tangent = (np.empty(shape) for _ in range(3))
-    loads, reached = np.empty((count, number.size, flanks.roll.size)), False
+    loads, forces, reached = np.empty((count, number.size, flanks.roll.size)), [], False
     for pitches in alike:
         state = _loaded(flanks, replace(gaps, base_pitch=int(pitches[0])), load)
         error[pitches], tangent[pitches] = state.transmission_error[:, 0], state.contact.stiffness[:, 0]
         stiffness[pitches] = secant_stiffness(state.known, state.contact.force)[:, 0]
         loads[pitches] = state.pair_load[:, :, 0]
+        forces.append(state.contact.force[:, :, 0])
         reached |= state.reaches_the_last_edges
     found = OverRevolution(
         flanks.roll, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, len(alike),
         tangent,
     )  # fmt: skip
-    return found, reached
+    return FollowedFlanks(found, flanks, lines, revolving.cycles, tuple(alike), tuple(forces), reached)
 
 
 def _loaded(flanks: FlankPair, gaps: FlankGaps, load: float) -> LoadedFlanks:

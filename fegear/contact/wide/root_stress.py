@@ -7,7 +7,7 @@ other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,22 +15,26 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays, first_of_largest
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
-from fegear.contact.wide.compliance import line_bands, places_of
+from fegear.contact.wide.compliance import line_bands, places_of, teeth_on
 from fegear.contact.wide.fillet_ends import FilletEnds, LineOnTooth
 from fegear.contact.wide.lines import ContactLines, base_twist
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.root_stress import extreme
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.fillet import SolidFillet
+from fegear.fem.solid.odd.odd_solid import OddSolid, SolidTooth
+from fegear.fem.solid.rooted_tooth import RootedTooth
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.pair import GearPair, Member
 
 #: Teeth beside the lines in contact that are followed too, where neighbours count.
 _BESIDE = 1
 #: What pulls and what presses counts as large.
-_SIGN: dict[Side, float] = {"tension": 1.0, "compression": -1.0}
+SIGN: dict[Side, float] = {"tension": 1.0, "compression": -1.0}
 #: The largest of points up the fillet misses the largest of the curve through them by much less than this share.
 _FITTED = 0.1
+#: Places along the face per module, at which root stress is looked for, and how many at least.
+_PER_MODULE, _FEWEST = 4.0, 17
 
 
 @dataclass(frozen=True)
@@ -70,12 +74,12 @@ class RootedLines:
     pair : GearPair
     member : {"driver", "driven"}
     lines : ContactLines
-    solution : SolidSolution
-        Of this gear.
+    solution : RootedTooth
+        What tells of the fillets of the teeth that are followed.
     bands : Bands
         Of all stations.
-    loads : ndarray, shape (n, stations)
-        On the flank's ports, per unit force on each station.
+    loads : tuple of ndarray, shape (n, stations of the line)
+        Of each line on its flank's ports, per unit force on each station.
     teeth : ndarray of int, shape (T, 2)
         Roll position and number of the pair of every tooth that is followed, in the order of its x.
     sources : mapping of int to ndarray of int, shape (m, 2)
@@ -85,9 +89,9 @@ class RootedLines:
     pair: GearPair
     member: Member
     lines: ContactLines
-    solution: SolidSolution
+    solution: RootedTooth
     bands: Bands
-    loads: Array
+    loads: tuple[Array, ...]
     teeth: Index
     sources: dict[int, Index]
 
@@ -110,10 +114,10 @@ class RootedLines:
             What `surface` gives for these, where it is at hand.
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
-        fillet, sign = self.solution.fillets[side], _SIGN[side]
+        fillet, sign = self.solution.fillets[side], SIGN[side]
         total = (self.surface(side, force, places) if surface is None else surface)[0]
         end = self.ends(side).at(places / m, force)
-        value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
+        value, arc = fillet.largest(total.reshape(fillet.arc.size, -1), sign, end.ravel())
         radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m
         shape = places.size, len(self.teeth)
         return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
@@ -145,7 +149,7 @@ class RootedLines:
         shape (P,), only these roll positions count.
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
-        arc, sign = self.solution.fillets[side].arc, _SIGN[side]
+        arc, sign = self.solution.fillets[side].arc, SIGN[side]
         felt = self.surface(side, force, places) if surface is None else surface
         total = _across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]
         teeth = slice(None) if at is None else at[self.teeth[:, 0]]
@@ -171,7 +175,7 @@ class RootedLines:
         at = self.teeth[:, 0]
         parts = tuple(np.ascontiguousarray(felt[:, :, at == p]) for p in range(self.lines.roll.size))
         rows = tuple(np.flatnonzero(at == p) for p in range(self.lines.roll.size))
-        return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], places / m, self.ends(side), rows, parts)
+        return RootInfluence(self.solution.fillets[side].arc, SIGN[side], places / m, self.ends(side), rows, parts)
 
     def surface(self, side: Side, force: Array, z: Array) -> Array:
         """The three stresses of `fegear.fem.solid.fillet.surface_stress` under forces on the stations.
@@ -191,11 +195,12 @@ class RootedLines:
         """
         _, spans = places_of(self.lines)
         on = force[self.lines.present]
-        loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
+        loads = [own @ on[s] for own, s in zip(self.loads, spans, strict=True)]
         moved: Array | float = 0.0
         for k, felt in self.sources.items():
-            under = np.zeros((loads.shape[0], len(self.teeth)))
-            under[:, felt[:, 0]] = loads[:, felt[:, 1]]  # at most one line is k teeth away
+            there = np.stack([loads[line] for line in felt[:, 1]], axis=1)
+            under = np.zeros((there.shape[0], len(self.teeth)))
+            under[:, felt[:, 0]] = there  # at most one line is k teeth away
             moved = moved + self.solution.moved(k, side, under)
         return self.solution.surface_stress(side, np.asarray(moved), z / self.pair.driver.module)
 
@@ -284,25 +289,62 @@ def rooted_lines(
     """
     if solution.period > 1:
         raise InputError("gear", "teeth that differ", "are not available for root stress over the face")
-    places, _ = places_of(lines)
-    bands = line_bands(pair, member, solution, lines)
-    reach = abs(base_twist(pair)) * 0.5 * pair.face_width + (pair.base_pitch if coupling else 0.0)
-    forward, beside = (1 if member == "driver" else -1), (_BESIDE if coupling else 0)
-    number = [int(lines.pair[p, s.start]) for p, s in places]
-    at = np.array([p for p, _ in places])
+    bands, (_, spans) = line_bands(pair, member, solution, lines), places_of(lines)
+    loads = loads_of(bands, solution.flank, solution.face)
+    beside, reach = (_BESIDE if coupling else 0), abs(base_twist(pair)) * 0.5 * pair.face_width
+    number = _numbers(lines)
+    reach += pair.base_pitch if coupling else 0.0
     teeth = []
     for p, roll in enumerate(lines.roll.tolist()):
-        own = [n for n, q in zip(number, at.tolist(), strict=True) if q == p]
+        own = number[p]
         followed = range(min(own) - beside, max(own) + beside + 1)
         teeth += [(p, j) for j in followed if pair.x_start - reach < roll + j * pair.base_pitch < pair.x_end + reach]
     teeth.sort(key=lambda one: float(lines.roll[one[0]] + one[1] * pair.base_pitch))
+    rooted = RootedLines(
+        pair, member, lines, solution, bands, tuple(loads[:, span] for span in spans), np.array(teeth), {}
+    )
+    return replace(rooted, sources=_sources(rooted, coupling=coupling))
+
+
+def rooted_teeth(
+    pair: GearPair, member: Member, lines: ContactLines, gear: OddSolid, cycle: int, *, coupling: bool
+) -> dict[int, RootedLines]:
+    """The same of a gear with odd teeth in a base pitch, by the numbers of the pairs that its teeth are on.
+
+    Each tooth is followed at the roll positions at which its pair has a line; missing ones are left out.
+    """
+    bands, (places, spans) = line_bands(pair, member, gear, lines), places_of(lines)
+    loads = gear.pressed(bands, spans, teeth_on(member, lines, places, cycle)).loads
+    number, found = _numbers(lines), {}
+    for j in sorted(set().union(*number)):
+        tooth = j - cycle if member == "driver" else cycle - j
+        if not gear.is_missing(tooth):
+            teeth = np.array([(p, j) for p, own in enumerate(number) if j in own])
+            one = RootedLines(pair, member, lines, SolidTooth(gear, tooth), bands, tuple(loads), teeth, {})
+            found[j] = replace(one, sources=_sources(one, coupling=coupling))
+    return found
+
+
+def _numbers(lines: ContactLines) -> list[list[int]]:
+    """Numbers of the pairs that have a line at each roll position."""
+    return [[int(lines.pair[p, s.start]) for s in lines.at(p)] for p in range(lines.roll.size)]
+
+
+def _sources(rooted: RootedLines, *, coupling: bool) -> dict[int, Index]:
+    lines, forward = rooted.lines, (1 if rooted.member == "driver" else -1)
+    places, _ = places_of(lines)
+    number = [int(lines.pair[p, s.start]) for p, s in places]
+    at = np.array([p for p, _ in places])
     sources: dict[int, list[tuple[int, int]]] = {0: []}
-    for t, (p, j) in enumerate(teeth):
+    for t, (p, j) in enumerate(rooted.teeth.tolist()):
         for line in np.flatnonzero(at == p).tolist():
             k = forward * (j - number[line])
-            if k == 0 or (coupling and abs(k) <= solution.reach):
+            if k == 0 or (coupling and abs(k) <= rooted.solution.reach):
                 sources.setdefault(k, []).append((t, line))
-    return RootedLines(
-        pair, member, lines, solution, bands, loads_of(bands, solution.flank, solution.face), np.array(teeth),
-        {k: np.array(felt) for k, felt in sources.items()},
-    )  # fmt: skip
+    return {k: np.array(felt) for k, felt in sources.items()}
+
+
+def places_along(lines: ContactLines, module: float) -> Array:
+    """Places along the face at which root stress is looked for, both ends among them, shape (Z,) [m]."""
+    count = max(_FEWEST, 2 * round(0.5 * _PER_MODULE * (lines.high - lines.low) / module) + 1)
+    return np.linspace(lines.low, lines.high, count)

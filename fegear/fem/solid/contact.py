@@ -74,7 +74,7 @@ class PressedLines:
         self.common = [overlap(line.part(span)) for span in spans]
 
     @cached_property
-    def _loads(self) -> list[Array]:
+    def loads(self) -> list[Array]:
         """Loads of each line on its flank's ports, shape (n, P) each."""
         flanks = [self._solution.flank_of(tooth) for tooth in self._teeth]
         found: list[Array] = [np.zeros((0, 0))] * len(flanks)
@@ -94,7 +94,7 @@ class PressedLines:
         logs = np.log(line.half_width) / solution.width
         found, every = [], range(len(self._spans))
         answers = self._answered([(tooth, tooth) for tooth in self._teeth], every)
-        for span, common, loads, answer in zip(self._spans, self.common, self._loads, answers, strict=True):
+        for span, common, loads, answer in zip(self._spans, self.common, self.loads, answers, strict=True):
             taken = seen[span] @ moments[:, span] - 2.0 * logs[span, None]
             block = loads.T @ answer + solution.contact_slope * (_narrow(solution, line.part(span)) + 0.5 * common)
             block -= 0.5 * (slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
@@ -116,14 +116,14 @@ class PressedLines:
     def between(self, i: int, j: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
         """c_ij between lines on teeth i and j, or on teeth like these: seen on the first, pressed on the second."""
         answers = self._answered([(i, j)] * len(pairs), [pressed for _, pressed in pairs])
-        return [self._loads[seen].T @ answer for (seen, _), answer in zip(pairs, answers, strict=True)]
+        return [self.loads[seen].T @ answer for (seen, _), answer in zip(pairs, answers, strict=True)]
 
     def _answered(self, teeth: Sequence[tuple[int, int]], pressed: Sequence[int]) -> list[Array]:
         """Deflections of the ports of teeth i under lines on teeth j, solved for all lines of like teeth together."""
         matrices = [self._solution.coupling(i, j) for i, j in teeth]
         found: list[Array] = [np.zeros((0, 0))] * len(matrices)
         for group in together(id(matrix) for matrix in matrices):
-            loads = [self._loads[pressed[n]] for n in group]
+            loads = [self.loads[pressed[n]] for n in group]
             ends = np.cumsum([one.shape[1] for one in loads])
             answers = np.split(matrices[int(group[0])] @ np.hstack(loads), ends[:-1], axis=1)
             for n, answer in zip(group, answers, strict=True):

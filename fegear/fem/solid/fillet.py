@@ -12,11 +12,13 @@ sigma_tt = (e_tt + nu e_bb) / (1 - nu^2) and so on.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
+from fegear.fem.plane.root_stress import extreme
 from fegear.fem.plane.trace import lagrange, lagrange_slope
 from fegear.fem.solid.section import Section, upward
 
@@ -39,6 +41,8 @@ class SolidFillet(ReadOnlyArrays):
         Angle between tangent and the tooth's centre line [rad].
     length : float
         [modules].
+    mouth : float
+        Where a crack starts, arc length [modules]; NaN without one.
     """
 
     nodes: Index
@@ -49,6 +53,29 @@ class SolidFillet(ReadOnlyArrays):
     arc: Array
     tangent_angle: Array
     length: float
+    mouth: float = math.nan
+
+    def largest(self, stress: Array, sign: float, end: Array) -> tuple[Array, Array]:
+        """Largest (sign 1) or most negative (-1) value up the fillet, and its arc length [modules], shape (N,) each.
+
+        On either side of the mouth of a crack.
+
+        Parameters
+        ----------
+        stress : ndarray, shape (points, N)
+        sign : {1, -1}
+        end : ndarray, shape (N,)
+            Arc length up to which it is looked for [modules].
+        """
+        if math.isnan(self.mouth):
+            return extreme(stress, self.arc, sign, end)
+        n = int(np.searchsorted(self.arc, self.mouth))
+        best, place = np.full(stress.shape[1], -np.inf), np.zeros(stress.shape[1])
+        for start, stop, on in ((0.0, self.mouth, slice(0, n)), (self.mouth, self.length, slice(n, None))):
+            value, arc = extreme(stress[on], self.arc[on] - start, sign, np.minimum(end, stop) - start)
+            better = (sign * value > best) & (end > start)
+            best, place = np.where(better, sign * value, best), np.where(better, arc + start, place)
+        return sign * best, place
 
 
 def solid_fillet(section: Section, name: str) -> SolidFillet:

@@ -19,7 +19,7 @@ from fegear.fem.plane.gauge import FilletProfile, Grid, grid_weights
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.solid.fillet import SolidFillet
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.rooted_tooth import RootedTooth
     from fegear.geometry.gear import Gear, Material
 
 #: Gauss points along and across the direction of a grid.
@@ -38,7 +38,7 @@ class GridOnFace:
 
     Parameters
     ----------
-    solution : SolidSolution
+    solution : RootedTooth
     direction : float
         Of measurement, from up the profile towards end II [rad].
     zeta : ndarray, shape (Z,)
@@ -49,7 +49,7 @@ class GridOnFace:
         Share of the stress at the points up the fillet in the mean, by displacement.
     """
 
-    solution: SolidSolution
+    solution: RootedTooth
     direction: float
     zeta: Array
     at: Index
@@ -108,12 +108,12 @@ def lean_at(fillet: SolidFillet, tau: float, arc: float) -> tuple[float, float]:
     return skew, math.sqrt(1.0 + tau**2 * (x * x + y * y) - skew**2)
 
 
-def grid_on_face(solution: SolidSolution, side: str, grid: Grid, arc: Array, z: float, module: float) -> GridOnFace:
+def grid_on_face(solution: RootedTooth, side: str, grid: Grid, arc: Array, z: float, module: float) -> GridOnFace:
     """Gauss points of a grid at a place on the face.
 
     Parameters
     ----------
-    solution : SolidSolution
+    solution : RootedTooth
     side : {"tension", "compression"}
     grid : Grid
     arc : ndarray, shape (G,)

@@ -19,7 +19,7 @@ from fegear.fem.plane.body import RING
 from fegear.fem.plane.influence import Side
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.ring_closure import closed_ring
-from fegear.fem.plane.root_stress import extreme, search_end
+from fegear.fem.plane.root_stress import search_end
 from fegear.fem.plane.sector_sides import BetweenSides
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands, bands, loads_of
@@ -142,10 +142,9 @@ class SolidSolution(SolidFlank):
             `root_end` says.
         """
         stress = self.fillet_stress(k, side, pressed, zeta)[0]
-        arc, sign = self.fillets[side].arc, 1.0 if side == "tension" else -1.0
-        flat = stress.reshape(stress.shape[0], -1)
+        sign = 1.0 if side == "tension" else -1.0
         end = np.tile(self.root_end(k, side, pressed), stress.shape[1])
-        value, place = extreme(flat, arc, sign, end)
+        value, place = self.fillets[side].largest(stress.reshape(stress.shape[0], -1), sign, end)
         return value.reshape(stress.shape[1:]), place.reshape(stress.shape[1:])
 
     def root_end(self, k: int, side: Side, pressed: Bands) -> Array:

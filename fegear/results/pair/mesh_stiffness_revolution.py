@@ -222,10 +222,15 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
 
 
 def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) -> RevolutionData:
-    from fegear.contact.wide.over_revolution import wide_over_revolution
+    from fegear.contact.wide.over_revolution import follow_flanks
+    from fegear.contact.wide.stress_over_revolution import wide_stress_over_revolution
 
-    over = wide_over_revolution(revolving, revolving.pair.driver.teeth, work.progress)
-    return replace(_data(asked, revolving.pair, over), positions=revolving.flanks.positions)
+    followed = follow_flanks(revolving, revolving.pair.driver.teeth, lambda part: work.progress(0.8 * part))
+    stress = tuple(
+        _by_tooth(wide_stress_over_revolution(followed, member), gear)
+        for member, gear in zip(MEMBERS, asked.gears, strict=True)
+    )
+    return replace(_data(asked, revolving.pair, followed.over, stress), positions=revolving.flanks.positions)
 
 
 def _data(

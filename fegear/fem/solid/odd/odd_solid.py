@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.fem.plane.root_stress import extreme
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.fillet import SolidFillet, surface_stress
@@ -204,19 +203,37 @@ class OddSolid(SolidFlank):
         RangeError
             If a place lies off the face, or tooth i is missing.
         """
-        z = np.atleast_1d(np.asarray(zeta, dtype=float))
-        loads = loads_of(pressed, self.flank_of(j), self.face)
+        for tooth in (i, j):
+            if self.is_missing(tooth):
+                raise RangeError("tooth", tooth, "is missing")
+        moved = self.moved(i, j, side, loads_of(pressed, self.flank_of(j), self.face))
+        return self.surface_stress(i, side, moved, zeta)
+
+    def is_missing(self, tooth: int) -> bool:
+        """Whether there is no such tooth."""
+        found = self._window(tooth, tooth)
+        return found is not None and found[1] in found[0].missing
+
+    def moved(self, i: int, j: int, side: Side, loads: Array) -> Array:
+        """Displacements of a fillet of tooth i under loads on the flank of tooth j, (nodes, 3, functions, P).
+
+        Parameters and errors as of `SolidSolution.moved`; loads on a missing tooth must be none.
+        """
         found = self._window(i, j)
-        if found is None:
-            return self.ordinary.surface_stress(side, self.ordinary.moved(i - j, side, loads), z)
-        window, near, other = found
-        if near in window.missing or other in window.missing:
-            raise RangeError("tooth", i if near in window.missing else j, "is missing")
-        if (off := z[~(np.abs(z) <= 0.5 * self.width * (1.0 + 1e-9))]).size:
-            half = 0.5 * self.width
+        return self.ordinary.moved(i - j, side, loads) if found is None else found[0].moved(*found[1:], side, loads)
+
+    def surface_stress(self, tooth: int, side: Side, moved: Array, zeta: ArrayLike) -> Array:
+        """Surface stress of a fillet of a tooth by such displacements; see `SolidSolution.surface_stress`.
+
+        Raises
+        ------
+        RangeError
+            If a place lies off the face.
+        """
+        z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
+        if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
             raise RangeError("zeta", f"{off[0]:.6g} modules", f"is outside the face width, {-half:.6g} to {half:.6g}")
-        moved = window.moved(near, other, side, loads)
-        fillet = window.kind(near).fillets[side]
+        fillet = self.kind_of(tooth)[1][side]
         return surface_stress(fillet, self.tau, self.poisson_ratio, moved, *self.face.at(z))
 
     def largest_root_stress(self, i: int, j: int, side: Side, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
@@ -226,13 +243,48 @@ class OddSolid(SolidFlank):
         """
         stress = self.fillet_stress(i, j, side, pressed, zeta)[0]
         shape, sign = stress.shape[1:], 1.0 if side == "tension" else -1.0
-        flat, end = stress.reshape(stress.shape[0], -1), np.tile(self.root_end(i - j, side, pressed), shape[0])
-        found = self._window(i, i)
-        fillet = self.kind_of(i)[1][side]
-        pieces = [(0.0, fillet.length, slice(None))] if found is None else found[0].kind(found[1]).pieces(side)
-        best, place = np.full(flat.shape[1], -np.inf), np.zeros(flat.shape[1])
-        for start, stop, points in pieces:
-            value, arc = extreme(flat[points], fillet.arc[points] - start, sign, np.minimum(end, stop) - start)
-            better = (sign * value > best) & (end > start)
-            best, place = np.where(better, sign * value, best), np.where(better, arc + start, place)
-        return (sign * best).reshape(shape), place.reshape(shape)
+        end = np.tile(self.root_end(i - j, side, pressed), shape[0])
+        value, arc = self.kind_of(i)[1][side].largest(stress.reshape(stress.shape[0], -1), sign, end)
+        return value.reshape(shape), arc.reshape(shape)
+
+
+@dataclass(frozen=True)
+class SolidTooth:
+    """One tooth of a gear with odd teeth, as a tooth of a gear whose teeth are all alike answers.
+
+    Parameters
+    ----------
+    gear : OddSolid
+    number : int
+        Of the tooth.
+    """
+
+    gear: OddSolid
+    number: int
+
+    @property
+    def tau(self) -> float:
+        """Twist [rad/module]."""
+        return self.gear.tau
+
+    @property
+    def reach(self) -> int:
+        """K: teeth -K..K beside it are known."""
+        return self.gear.reach
+
+    @property
+    def fillets(self) -> Mapping[Side, SolidFillet]:
+        """Its fillets."""
+        return self.gear.kind_of(self.number)[1]
+
+    def moved(self, k: int, side: Side, loads: Array) -> Array:
+        """Displacements of a fillet under loads on the flank of the tooth of which this one is tooth k."""
+        return self.gear.moved(self.number, self.number - k, side, loads)
+
+    def surface_stress(self, side: Side, moved: Array, zeta: ArrayLike) -> Array:
+        """Stress by such displacements."""
+        return self.gear.surface_stress(self.number, side, moved, zeta)
+
+    def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
+        """Arc length up to which root stress is looked for."""
+        return self.gear.root_end(k, side, pressed)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,10 +59,6 @@ class SolidKind(ReadOnlyArrays):
     axes : mapping of side to ndarray, shape (nodes, 3, 3)
         Of the fillets' nodes.
     motions : tuple of KindOfMotion
-    mouth : float
-        Where its crack starts, arc length up the fillet [modules]; NaN without a crack.
-    back : bool
-        Whether that is the fillet of the flank that is not loaded.
     """
 
     flank: LoadedFlank
@@ -70,16 +66,6 @@ class SolidKind(ReadOnlyArrays):
     fillets: Mapping[Side, SolidFillet]
     axes: Mapping[Side, Array]
     motions: tuple[KindOfMotion, ...]
-    mouth: float = float("nan")
-    back: bool = False
-
-    def pieces(self, side: Side) -> list[tuple[float, float, slice]]:
-        """Start, end and points of the pieces of a fillet: two where a crack starts in it."""
-        fillet = self.fillets[side]
-        if np.isnan(self.mouth) or self.back != (side == "compression"):
-            return [(0.0, fillet.length, slice(None))]
-        n = int(np.searchsorted(fillet.arc, self.mouth))
-        return [(0.0, self.mouth, slice(0, n)), (self.mouth, fillet.length, slice(n, None))]
 
 
 def between(sector: SolidSector, alone: Unknowns) -> BetweenSides:
@@ -106,7 +92,19 @@ def motion(sector: SolidSector, alone: Unknowns, part: BetweenSides) -> KindOfMo
 def solid_kind(
     sector: SolidSector, motions: tuple[KindOfMotion, ...], mouth: float = float("nan"), *, back: bool = False
 ) -> SolidKind:
-    """The kind of a sector with a tooth; parameters as of `SolidKind`."""
+    """The kind of a sector with a tooth.
+
+    Parameters
+    ----------
+    sector : SolidSector
+    motions : tuple of KindOfMotion
+    mouth : float
+        Where its crack starts, arc length up a fillet [modules]; NaN without a crack.
+    back : bool
+        Whether that is the fillet of the flank that is not loaded.
+    """
     ports = int((sector.known.number[sector.ports] >= 0).sum())
     axes = {side: sector.section.axes[fillet.nodes] for side, fillet in sector.fillets.items()}
-    return SolidKind(sector.flank, ports, sector.fillets, axes, motions, mouth, back)
+    cut: Side = "compression" if back else "tension"
+    fillets = {**sector.fillets, cut: replace(sector.fillets[cut], mouth=mouth)}
+    return SolidKind(sector.flank, ports, fillets, axes, motions)
