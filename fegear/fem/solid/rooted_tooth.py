@@ -1,4 +1,4 @@
-"""What is asked of the fillets of a tooth with a width: of any tooth of a solid ring, or of one of a ring with odd teeth."""
+"""What is asked of the fillets of a tooth with a width: of any of a solid ring, or of one that is odd."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from fegear.base.arrays import Array
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.bands import Bands
