@@ -25,6 +25,7 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.geometry.plausible import refuse_shaft
+from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.life import LifeRating
 from fegear.shafts.printed_bearing import PrintedBearing
 from fegear.shafts.section import Section
@@ -55,6 +56,11 @@ else:
         otherwise={
             "dynamic_rating": "that of `catalogue`, otherwise estimated from the dimensions",
             "kind": "that of the designation, of `catalogue` or `elements`; ball otherwise",
+            **dict.fromkeys(
+                ("radial_factor", "axial_factor", "limit"),
+                "ISO 281, from the axial force, the rolling elements and their contact angle, if known and none of X, "
+                "Y and e is specified",
+            ),
         },
     )
     _CatalogueKeys = keys_of(
@@ -282,7 +288,14 @@ class BearingPart(Part):
             rated = printed.dynamic_rating or printed.estimated_rating
         known = printed.inside if printed else self.elements
         kind = life.kind if "kind" in life.given else known.kind if known else "ball"
-        return LifeRating(rated, kind, life.radial_factor, life.axial_factor, life.limit)
+        factors = {
+            key: one for key in ("radial_factor", "axial_factor", "limit") if (one := getattr(life, key)) is not None
+        }
+        axial = None
+        if known is not None and not factors:
+            size = known.diameter if isinstance(known, RollingElementsPart) else known.element_diameter
+            axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2)
+        return LifeRating(rated, kind, **factors, axial=axial)
 
     @property
     def printed(self) -> CatalogueBearing | None:

@@ -73,6 +73,7 @@ class BearingLoads:
     shift: Array = shown("um", "displacement of the shaft at the bearing")
     tilt: Array = shown("arcsec", "tilt of the shaft at the bearing")
     life: Array = shown("", "basic rating life L_10, in revolutions (ISO 281)")
+    equivalent: Array = shown("N", "equivalent dynamic load P (ISO 281)", name="equivalent_load")
 
 
 @dataclass(frozen=True)
@@ -136,14 +137,15 @@ class Deflection:
         """What every bearing carries, and how long by its ratings; NaN without."""
         force, ring = self.bearing_forces, self.rings
         radial = np.hypot(force[:, 0], force[:, 1])
-        turns = [
-            np.nan if life is None else life.revolutions(float(across), float(one[2]))
-            for life, across, one in zip(lives, radial, force, strict=True)
-        ]
+        turns, loads = np.full(len(lives), np.nan), np.full(len(lives), np.nan)
+        for n, life in enumerate(lives):
+            if life is not None:
+                loads[n] = life.equivalent_load(float(radial[n]), float(force[n, 2]))
+                turns[n] = life.revolutions(float(radial[n]), float(force[n, 2]))
         at = np.array([seat.at for seat in self.loaded.seats])
         return BearingLoads(
             at, force[:, 0], force[:, 1], force[:, 2], radial, np.hypot(ring[:, 0], ring[:, 1]),
-            np.hypot(ring[:, 3], ring[:, 4]), np.array(turns),
+            np.hypot(ring[:, 3], ring[:, 4]), turns, loads,
         )  # fmt: skip
 
     @property

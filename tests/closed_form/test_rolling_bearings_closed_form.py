@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import RangeError
+from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.beam import Shaft
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.life import LifeRating
@@ -157,6 +158,41 @@ def test_basic_rating_lives():
     assert LifeRating(1e5, "roller").revolutions(2e4, 0.0) == pytest.approx(1e6 * 5 ** (10 / 3), rel=1e-12)
     assert plain.revolutions(0.0, 0.0) == math.inf
     assert LifeRating(1e4).equivalent_load(300.0, 700.0) == 300.0  # without factors the radial load alone
+
+
+@pytest.mark.parametrize("angle", [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0])
+def test_equivalent_loads_of_balls_have_no_step(angle):
+    """ISO 281, Table 3: X F_r + Y F_a is F_r where F_a = e F_r, within the digits of e and Y; e rises with the load."""
+    factors, last = AxialFactors(True, math.radians(angle), 9 * 12.7e-3**2), 0.0
+    for axial in np.geomspace(1.0, 2e4, 40):
+        x, y, e = factors.at(axial)
+        assert x + y * e == pytest.approx(1.0, abs=0.011)
+        assert e >= last
+        last = e
+    assert factors.at(1.0)[1] >= factors.at(2e4)[1] >= 0.5
+
+
+def test_axial_factors_by_hand():
+    """A 6308 of C_0 = 25 kN, f_0 = 13.2, under 1330 N: f_0 F_a/C_0 = 0.702, between rows 0.689 and 1.03 of Table 3."""
+    area = 25e3 / 13.2 * 1e-6  # Z D_w^2 [m^2]
+    x, y, e = AxialFactors(True, 0.0, area).at(1330.0)
+    share = (13.2 * 1330.0 / 25e3 - 0.689) / (1.03 - 0.689)
+    assert (x, y, e) == pytest.approx((0.56, 1.71 - 0.16 * share, 0.26 + 0.02 * share), rel=1e-12)
+    rated = LifeRating(42.5e3, "ball", axial=AxialFactors(True, 0.0, area))
+    assert rated.equivalent_load(1724.0, -1330.0) == pytest.approx(0.56 * 1724.0 + y * 1330.0, rel=1e-12)
+    assert rated.equivalent_load(1724.0, 200.0) == 1724.0
+    rollers = AxialFactors(False, math.radians(14.0), math.nan).at(500.0)
+    assert rollers == pytest.approx((0.4, 0.4 / math.tan(math.radians(14.0)), 1.5 * math.tan(math.radians(14.0))))
+    assert LifeRating(3e4, "roller", axial=AxialFactors(False, 0.0, 1e-3)).equivalent_load(300.0, 700.0) == 300.0
+
+
+def test_an_axial_force_without_factors_is_overlooked():
+    """Which the results say; not of forces below e of every bearing, nor with factors."""
+    assert LifeRating(1e4).overlooks(300.0, -700.0)
+    assert not LifeRating(1e4).overlooks(300.0, 50.0)
+    assert not LifeRating(1e4, "ball", 0.56, 1.6, 0.27).overlooks(300.0, 700.0)
+    assert not LifeRating(1e4, axial=AxialFactors(True, 0.0, 1e-3)).overlooks(300.0, 700.0)
+    assert LifeRating(1e4, "roller", axial=AxialFactors(False, 0.0, 1e-3)).overlooks(300.0, 700.0)
 
 
 def test_elements_that_do_not_fit_are_refused():

@@ -324,7 +324,7 @@ NOT_WRITTEN = {
         "patch_half_width")),
     *(f"CataloguePart.{key}" for key in (
         "kind", "bore", "outside_diameter", "width", "contact_angle", "dynamic_rating")),
-    "BearingLifePart.dynamic_rating", "BearingLifePart.kind",
+    *(f"BearingLifePart.{key}" for key in ("dynamic_rating", "kind", "radial_factor", "axial_factor", "limit")),
     "BiasPart.end_radius", "BiasPart.start_radius", "ChartPart.amounts_over_delta", "ChartPart.lengths",
     "CompoundPlanetPart.body", "CompoundShaftPart.body",
     "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares",

@@ -13,7 +13,7 @@ from string import Template
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
-from fegear.case.drafts.two_stages import LOCATING, PlacedShaft, TwoStages, centre_distance, two_stages
+from fegear.case.drafts.two_stages import PlacedShaft, TwoStages, centre_distance, two_stages
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -96,7 +96,7 @@ bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name
 _BEARINGS = """\
 [bearing.{name}_locating]
 designation = "{locating}"
-life = {{ radial_factor = {X}, axial_factor = {Y}, limit = {e} }}     # assumed; C of the designation
+life = {{}}     # C, X, Y and e of the designation
 
 [bearing.{name}_floating]
 designation = "{floating}"
@@ -390,14 +390,13 @@ def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
     bearings = "\n".join(
         _BEARINGS.format(
             name=_SHAFTS[n], locating=one.locating.designation, floating=one.floating.designation,
-            X=LOCATING["radial_factor"], Y=LOCATING["axial_factor"], e=LOCATING["limit"],
         )
         for n, one in enumerate(found.shafts)
     )  # fmt: skip
     said = (
         "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
         "from\n# them (ISO 281). Values of a catalogue are better and belong to one designation, as of a 6306:\n"
-        '# life = { dynamic_rating = "29.6 kN" } (also X, Y, e), catalogue = { static_rating = "16 kN" }.\n'
+        '# life = { dynamic_rating = "29.6 kN" }, catalogue = { static_rating = "16 kN" }; X, Y and e are of ISO 281.\n'
     )
     return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": f"{shafts}\n{said}\n{bearings}"}
 

@@ -15,6 +15,7 @@ from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
 from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
+from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN
 from fegear.shafts.life import LifeRating
@@ -30,8 +31,6 @@ _SHOULDER, _HOLE = 1.15, 0.65
 _SHEAR = 25e6
 #: Life that bearings are chosen for [h], of the gearbox and some more: the load over the face moves their forces.
 _LIFE, _MORE = 20e3, 1.25
-#: X, Y and e of deep groove ball bearings, ISO 281 table 3, at about the axial load of helical gears.
-LOCATING = {"radial_factor": 0.56, "axial_factor": 1.5, "limit": 0.28}
 _SERIES = {"ball": ("62", "63"), "roller": ("NU2", "NU3")}
 _FIRST, _LAST = 4, 20
 
@@ -43,14 +42,14 @@ class ChosenBearing:
     Parameters
     ----------
     designation : str
-    rating : float
-        C, estimated from its dimensions [N].
+    rating : LifeRating
+        With C to two digits, estimated from its dimensions.
     bore, width : float
         [m].
     """
 
     designation: str
-    rating: float
+    rating: LifeRating
     bore: float
     width: float
 
@@ -236,10 +235,7 @@ def _bearing(kind: str, seat: float, radial: float, axial: float, rolls: float) 
             continue
         for series in _SERIES[kind]:
             found = _known(f"{series}{number:02d}")
-            rating = (
-                LifeRating(found.rating, "ball", **LOCATING) if kind == "ball" else LifeRating(found.rating, "roller")
-            )
-            if rating.revolutions(radial, axial) >= rolls:
+            if found.rating.revolutions(radial, axial) >= rolls:
                 return found
     assert found is not None  # noqa: S101  (for mypy: there is a largest one)
     return found
@@ -248,5 +244,6 @@ def _bearing(kind: str, seat: float, radial: float, axial: float, rolls: float) 
 def _known(designation: str) -> ChosenBearing:
     one = KNOWN[designation]
     inside = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, None, 0.0).inside
-    rating = float(f"{dynamic_rating(inside):.2g}")
-    return ChosenBearing(designation, rating, one.bore, one.width)
+    rated = float(f"{dynamic_rating(inside):.2g}")
+    factors = AxialFactors(inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2)
+    return ChosenBearing(designation, LifeRating(rated, inside.kind, axial=factors), one.bore, one.width)

@@ -116,10 +116,10 @@ def _bearing(
     if life is not None:
         if "dynamic_rating" in life.given:
             made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
-        given = life.axial_factor or life.limit
+        factors = rating if life.axial_factor or life.limit else None
         made.say(
-            "number", radial_factor_x_2=life.radial_factor if given else None,
-            axial_factor_y_2=life.axial_factor if given else None, catalogue_value_e=life.limit if given else None,
+            "number", radial_factor_x_2=factors and factors.radial_factor,
+            axial_factor_y_2=factors and factors.axial_factor, catalogue_value_e=factors and factors.limit,
         )  # fmt: skip
     if elements is not None:
         made.say("small length", operating_radial_bearing_clearance=elements.clearance or None)

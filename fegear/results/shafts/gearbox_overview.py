@@ -45,6 +45,7 @@ from fegear.results.shafts.loaded_shafts import (
     needs_gears_of_meshes,
     shafts_of,
 )
+from fegear.results.shafts.shaft_deflection import overlooked
 from fegear.shafts.gearbox import CAUSES
 
 if TYPE_CHECKING:
@@ -350,7 +351,10 @@ _SHEET = Sheet(
         ),
     ),
     figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
-    remarks=(lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],),
+    remarks=(
+        lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
+        lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
+    ),
 )  # fmt: skip
 
 

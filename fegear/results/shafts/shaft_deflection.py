@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import neglecting
 from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
@@ -20,9 +21,10 @@ from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shaft
 from fegear.shafts.solution import BearingLoads
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fegear.base.arrays import Array
+    from fegear.base.notes import Note
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.engine.sheet.seen import Seen
@@ -80,6 +82,32 @@ def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedSha
     return found
 
 
+def overlooked(
+    names: Sequence[Sequence[str]], lives: Sequence[Sequence[LifeRating | None]], bent: Sequence[Deflection]
+) -> list[Note]:
+    """Bearings of which the axial force is missing in the life, for want of factors.
+
+    Parameters
+    ----------
+    names, lives : sequence of sequence
+        Of every bearing by shafts: its name and rating.
+    bent : sequence of Deflection
+        The shafts.
+    """
+    found = []
+    for of_names, of_lives, shaft in zip(names, lives, bent, strict=True):
+        for name, life, force in zip(of_names, of_lives, shaft.bearing_forces, strict=True):
+            radial, axial = float(np.hypot(*force[:2])), abs(float(force[2]))
+            if life is not None and life.overlooks(radial, axial):
+                found.append(
+                    neglecting(
+                        f"Bearing {name}: axial force of {figures(axial)} N (radial {figures(radial)} N) not included "
+                        "in its life; specify life.radial_factor, axial_factor and limit, or its catalogue or elements"
+                    )
+                )
+    return found
+
+
 def _most_bent(seen: Seen) -> DeflectedShaft:
     return max(seen.data, key=lambda one: float(np.hypot(one.bent.line.x, one.bent.line.y).max()))
 
@@ -127,6 +155,7 @@ _SHEET = Sheet(
             stacked="",
         ),
     ),
+    remarks=(lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, [one.bent for one in seen.data]),),
     figures=(
         Chart(
             "shaft_deflection_{one.name}", "Deflection of shaft {one.name}",
