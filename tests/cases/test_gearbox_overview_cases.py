@@ -156,6 +156,17 @@ def test_the_remedy_follows_the_cause():
     assert f"S_H about {0.8 * math.sqrt(1.8 / 1.1):.2f}" in weak.remedy
 
 
+def test_the_safety_after_a_lead_correction_is_that_of_the_load_it_leaves():
+    """2.24 -> 1.6 with the named slope and crowning; one that leaves more than the rating has promises none."""
+    weak = replace(mesh(margin=0.64), lead=LevelLead(4e-6, 2.24, 1.6, 3e-6))
+    remedy = _of_mesh(weak).remedy
+    assert "helix slope C_Hβ 4 µm and 3 µm more crowning C_β on the driver: K_Hβ 2.24 -> 1.60" in remedy
+    assert f"S_H about {0.8 * math.sqrt(1.8 / 1.6):.2f} at K_Hβ 1.6 in place of 1.80" in remedy
+    sagging = _of_mesh(replace(weak, lead=LevelLead(0.0, 2.24, 1.6, 3e-6))).remedy
+    assert "(3 µm more crowning C_β on the driver" in sagging
+    assert "face width" in _of_mesh(replace(weak, lead=LevelLead(4e-6, 2.59, 2.5))).remedy
+
+
 def bearing(name, life, margin, exponent=3.0):
     hours = 5000.0 * margin**exponent
     return BearingAtGlance(name, "in", 1000.0, 0.0, life, 3600.0 * hours, margin, exponent)

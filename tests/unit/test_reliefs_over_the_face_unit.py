@@ -279,10 +279,10 @@ class Gaps:
     shafts: object = None
 
 
-def _shafts(tilt):
-    at = SimpleNamespace(
-        given=True, height=np.array([-0.01, 0.0, 0.01]), gap=np.array([[tilt * np.array([-0.5, 0.0, 0.5])]])
-    )
+def _shafts(tilt, sag=0.0):
+    """Opening towards end II by the tilt, and towards both by the sag."""
+    gap = tilt * np.array([-0.5, 0.0, 0.5]) + sag * np.array([1.0, 0.0, 1.0])
+    at = SimpleNamespace(given=True, height=np.array([-0.01, 0.0, 0.01]), gap=gap[None, None])
     return SimpleNamespace(under=lambda load: at)
 
 
@@ -339,6 +339,25 @@ def test_a_single_slope_is_as_many_tilts_as_still_gain(monkeypatch):
     assert (twice.slope, twice.before, twice.after) == pytest.approx((8e-6, 1.84, 1.04))
     assert level(-4e-6, 4e-6) is None  # against what the flanks want
     assert level(4e-6, 0.2e-6) is None  # below what is ground
+
+
+def test_crowning_joins_the_slope_where_shafts_sag(monkeypatch):
+    """K_Hbeta 1 + |slope - wanted| + |crowning - wanted| per 10 um: the slope alone leaves what the sag makes."""
+    monkeypatch.setattr(
+        lead_correction, "face_load_factors",
+        lambda mesh, _shafts, loads, _load: mesh.flanks.solve(loads, mesh.gaps, None).face_load_factor,
+    )  # fmt: skip
+
+    def level(slope, crowning, tilt, sag):
+        return lead_correction.level_lead(Mesh(Flanks(slope, crowning), Gaps()), _shafts(-tilt, -sag), 200.0)
+
+    both = level(4e-6, 6e-6, 4e-6, 6e-6)
+    assert (both.slope, both.crowning, both.after) == pytest.approx((4e-6, 6e-6, 1.0))
+    only = level(0.0, 6e-6, 0.0, 6e-6)
+    assert (only.slope, only.crowning, only.after) == pytest.approx((0.0, 6e-6, 1.0))
+    assert level(4e-6, 0.0, 4e-6, 6e-6).crowning == 0.0  # the flanks want none
+    assert level(4e-6, 0.2e-6, 4e-6, 0.6e-6).crowning == 0.0  # not worth its words
+    assert level(4e-6, 0.0, 4e-6, -6e-6).crowning == 0.0  # a hollow flank is not ground
 
 
 def test_corrections_come_on_top_of_what_the_driver_has():

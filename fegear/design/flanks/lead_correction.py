@@ -27,6 +27,8 @@ GRADUATION = 0.5e-6
 _ROUNDS = 2
 #: Most multiples of the shafts' tilt that a single slope is tried with.
 _TIMES = 4
+#: A crowning is worth naming from this share of the K_Hbeta with the slope alone.
+_WORTH = 0.95
 #: Graduations around the minimum among which none is better, and around which every longer step looks.
 _AROUND, _STEP_AROUND = 2, 1
 
@@ -68,7 +70,7 @@ def lead_modifications(slope: float, crowning: float, width: float) -> tuple[Fla
 
 @dataclass(frozen=True)
 class LevelLead:
-    """A helix slope on the driver against the tilt of the shafts, under one load.
+    """A helix slope on the driver against the tilt of the shafts, and crowning against their sag, under one load.
 
     Parameters
     ----------
@@ -76,17 +78,21 @@ class LevelLead:
         From zero at end I to this at end II, over the driver's own face [m].
     before, after : float
         K_Hbeta in the gaps of the present flanks.
+    crowning : float
+        Besides the present one; zero where the slope is nearly as good without [m].
     """
 
     slope: float
     before: float
     after: float
+    crowning: float = 0.0
 
 
 def level_lead(mesh: FlankForces, shafts: ShaftGaps, load: float) -> LevelLead | None:
     """The helix slope that takes away the tilt of the shafts, or as many times that as still lower K_Hbeta.
 
-    None where the tilt is below what is ground, or a slope against it gains nothing.
+    Shafts that bend over the face leave both ends loaded, whatever the slope: crowning against the sag joins the slope
+    where that is much better. None where tilt and sag are below what is ground, or nothing is gained.
 
     Parameters
     ----------
@@ -96,17 +102,25 @@ def level_lead(mesh: FlankForces, shafts: ShaftGaps, load: float) -> LevelLead |
     load : float
         Along the transverse line of action [N].
     """
-    tilt = GRADUATION * round(_tilt(mesh, shafts, load) / GRADUATION)
-    if not tilt:
-        return None
-    best = LevelLead(0.0, *2 * (float(face_load_factors(mesh, shafts, np.array([load]), load)[0]),))
-    for times in range(1, _TIMES + 1):
-        ground = replace(mesh, gaps=_ground(mesh, times * tilt, 0.0))
-        after = float(face_load_factors(ground, shafts, np.array([load]), load)[0])
-        if after >= best.after:
-            break
-        best = replace(best, slope=times * tilt, after=after)
-    return best if best.slope else None
+    tilt, sag = (GRADUATION * round(one / GRADUATION) for one in _tilt_and_sag(mesh, shafts, load))
+    present = float(face_load_factors(mesh, shafts, np.array([load]), load)[0])
+
+    def best_of(slope: float, crowning: float) -> LevelLead:
+        best = LevelLead(0.0, present, present)
+        for times in range(1, _TIMES + 1):
+            lead = times * slope, times * crowning
+            after = float(
+                face_load_factors(replace(mesh, gaps=_ground(mesh, *lead)), shafts, np.array([load]), load)[0]
+            )
+            if after >= best.after:
+                break
+            best = LevelLead(lead[0], present, after, lead[1])
+        return best
+
+    best = best_of(tilt, 0.0) if tilt else LevelLead(0.0, present, present)
+    if sag > 0.0 and (both := best_of(tilt, sag)).after < _WORTH * best.after:
+        best = both
+    return best if best.after < present else None
 
 
 def correct_leads(
@@ -184,10 +198,15 @@ def _ground(mesh: FlankForces, slope: float, crowning: float) -> FlankGaps:
     return replace(mesh.gaps, driver_flank=(*mesh.gaps.driver_flank, *more))
 
 
-def _tilt(mesh: FlankForces, shafts: ShaftGaps, load: float) -> float:
-    """Helix slope over the driver's face that takes away the linear part of the gap of the shafts [m]."""
+def _tilt_and_sag(mesh: FlankForces, shafts: ShaftGaps, load: float) -> tuple[float, float]:
+    """Helix slope and crowning over the driver's face that take away tilt and sag of the shafts' gap [m]."""
     at, width = shafts.under(load), mesh.flanks.pair.driver.face_width
-    return -float(np.polyfit(at.height, at.gap[-1, 0], 1)[0]) * width if at.given else 0.0
+    if not at.given:
+        return 0.0, 0.0
+    height, gap = at.height, at.gap[-1, 0]
+    slope = float(np.polyfit(height, gap, 1)[0])
+    sag = float(np.polyfit(height, gap, 2)[0]) if len(height) > 2 else 0.0
+    return -slope * width, -sag * (0.5 * width) ** 2
 
 
 def _searched(
@@ -214,7 +233,7 @@ def _searched(
         return float(flanks.solve(loads, gaps, known).face_load_factor @ loads / loads.sum())
 
     if start is None:
-        tilt = _tilt(mesh, shafts, float(loads[-1]))
+        tilt, _ = _tilt_and_sag(mesh, shafts, float(loads[-1]))
         first, longest = (round(tilt / GRADUATION), 0), max(1, round(0.25 * abs(tilt) / GRADUATION))
     else:
         first, longest = (round(start[0] / GRADUATION), round(start[1] / GRADUATION)), 1

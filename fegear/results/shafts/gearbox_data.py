@@ -63,7 +63,7 @@ class MeshAtGlance:
     peak : float
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
     lead : LevelLead or None
-        Helix slope against the tilt of the shafts, and what it is worth; None where it gains nothing.
+        Helix slope, with crowning where that helps, against the shafts, and what it is worth; None where nothing gains.
     remaining : float
         Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
     """
@@ -205,11 +205,14 @@ def _gain(one: MeshAtGlance) -> float:
 
 
 def _levelled(one: MeshAtGlance) -> str:
-    """The lead correction that takes the tilt of the shafts away, with K_Hbeta before and after it where it gains."""
+    """The lead correction against tilt and sag of the shafts, with K_Hbeta before and after it where it gains."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
-    slope, before, after = figures(one.lead.slope * 1e6), one.lead.before, one.lead.after
-    return f"lead correction (helix slope C_Hβ {slope} µm on the driver: K_Hβ {before:.2f} -> {after:.2f})"
+    amounts = [f"helix slope C_Hβ {figures(one.lead.slope * 1e6)} µm"] if one.lead.slope else []
+    if one.lead.crowning:
+        amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
+    gain = f"K_Hβ {one.lead.before:.2f} -> {one.lead.after:.2f}"
+    return f"lead correction ({' and '.join(amounts)} on the driver: {gain})"
 
 
 def _limit(one: MeshAtGlance, safety: Safety) -> tuple[str, str, float, float, float]:
@@ -247,10 +250,11 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {percent(one.margin, whole=True)} of the load"
     factor = safety.face_load_factor
     wider = f"{figures(1.0 / one.margin, 2)} times the face width at equal K factors, or a larger centre distance"
-    if factor > _WORTH and one.over_face:
-        better = value * (factor / _CORRECTED) ** power
+    level = max(_CORRECTED, one.lead.after) if one.lead is not None and _gain(one) > _GAIN else _CORRECTED
+    if factor > max(_WORTH, level) and one.over_face:
+        better = value * (factor / level) ** power
         rated = f"in place of {factor:.2f} of the rating"
-        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {_CORRECTED:g} {rated}"
+        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {figures(level)} {rated}"
     return Change(one.margin, f"pair {one.pair}", finding, wider)
 
 
