@@ -83,11 +83,8 @@ class AxialFactors:
             slope = math.tan(self.angle)
             return _ROLLERS, _ROLLERS / slope, 1.5 * slope
         pressure = axial / self.area * 1e-6
-        rows: list[tuple[float, ...]] = [
-            (x, float(np.interp(pressure, _ROWS, e)), float(np.interp(pressure, _ROWS, y)))
-            for x, e, y in _SMALL.values()
-        ]
-        rows += _LARGE.values()
+        rows: list[tuple[float, ...]] = list(_LARGE.values())
+        rows[:0] = ((x, *(float(np.interp(pressure, _ROWS, row)) for row in over)) for x, *over in _SMALL.values())
         angles = (*_SMALL, *_LARGE)
         x, e, y = (float(np.interp(math.degrees(self.angle), angles, row)) for row in zip(*rows, strict=True))
         return x, y, e
