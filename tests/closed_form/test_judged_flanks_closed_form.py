@@ -93,14 +93,17 @@ def test_what_is_stated_over_the_scatter_is_of_the_dense_places():
 def test_a_pair_is_judged_at_four_times_as_many_places_on_panels_of_a_fourth_and_on_softer_gears(monkeypatch):
     asked = []
 
-    def lines_of(pair, x, panel, weights):
-        asked.append((len(x), panel, weights))
+    def lines_of(pair, x, panel, weights, most_gap):
+        asked.append((len(x), panel, weights, most_gap))
         return f"lines {len(asked)}"
 
-    monkeypatch.setattr(
-        judge, "roll_points",
-        lambda pair, count: SimpleNamespace(x=np.arange(count), weights=np.full(count, 3.0), period=6.0 * count),
-    )  # fmt: skip
+    monkeypatch.setattr(judge, "edge_reach", lambda pair, most_gap: ("beyond", most_gap))
+
+    def points_of(pair, count, beyond):
+        assert beyond == ("beyond", 30e-6)
+        return SimpleNamespace(x=np.arange(count), weights=np.full(count, 3.0), period=6.0 * count)
+
+    monkeypatch.setattr(judge, "roll_points", points_of)
     monkeypatch.setattr(judge, "contact_lines", lines_of)
     monkeypatch.setattr(
         judge,
@@ -109,14 +112,15 @@ def test_a_pair_is_judged_at_four_times_as_many_places_on_panels_of_a_fourth_and
     )
     flanks = SimpleNamespace(
         pair=SimpleNamespace(driver=SimpleNamespace(module=2e-3)), panel=0.5, gears="gears", coupling=True, hertz="h",
-        cache="cache",
+        cache="cache", most_gap=30e-6,
     )  # fmt: skip
     apart = SimpleNamespace(at=lambda pair, lines: ("apart", lines))
     found = flank_judge(flanks, "coarse", apart, 1200.0, 3e-6)
-    assert [(count, panel) for count, panel, _ in asked] == [
+    assert [(count, panel) for count, panel, *_ in asked] == [
         (192, 1e-3), (48, 1e-3), (48, pytest.approx(0.25e-3)), (48, 1e-3),
     ]  # fmt: skip
-    for count, _, weights in asked:
+    assert {most_gap for *_, most_gap in asked} == {30e-6}
+    for count, _, weights, _ in asked:
         np.testing.assert_allclose(weights, np.full(count, 0.5 / count))
     four = found.dense, found.plain, found.thin, found.soft
     assert [one.known.gears for one in four] == ["gears", "gears", "gears", "coarse"]

@@ -134,6 +134,22 @@ def test_a_helix_that_goes_to_zero_is_a_spur_pair():
     np.testing.assert_allclose(found.contact.force, wanted.contact.force, rtol=1e-4)
 
 
+def test_forces_nearby_lead_to_the_same_in_fewer_steps(known):
+    """Whatever they are: of another gap, or all on one station."""
+    flanks, matrix = known
+    gap, load = MISALIGNED.at(flanks.pair, matrix.lines), np.array([LOAD, 0.3 * LOAD])
+    cold = solve_contact(matrix, gap, load)
+    other = solve_contact(matrix, 0.97 * gap, load)
+    warm = solve_contact(matrix, gap, load, near=other.force)
+    first = np.zeros_like(cold.force)
+    first[:, 0] = load
+    for found in (warm, solve_contact(matrix, gap, load, near=first)):
+        np.testing.assert_allclose(found.approach, cold.approach, rtol=1e-11)
+        np.testing.assert_allclose(found.force, cold.force, atol=1e-8 * LOAD)
+        assert found.residual.max() < 1e-9
+    assert warm.steps < cold.steps
+
+
 def test_mirrored_hands_mirror_the_load(solved, known):
     flanks, matrix = known
     mirrored = FlankGaps(face_position=MISALIGNED.face_position, line_gap=MISALIGNED.line_gap[::-1].copy())

@@ -77,8 +77,12 @@ def steps(monkeypatch):
         monkeypatch.setattr(flank_design, name, made)
 
     def lines(name, roll=(0.0,)):
-        return SimpleNamespace(name=name, roll=np.array(roll), x=np.array([1.0, 2.0]), z=np.array([0.1, 0.2]),
-                               present=np.array([True, False]))  # fmt: skip
+        weight = np.array([0.4, 0.3, 0.2, 0.1])
+        return SimpleNamespace(
+            name=name, roll=np.array(roll), x=np.array([1.0, 2.0]), z=np.array([0.1, 0.2]), edges=None,
+            present=np.array([True, False]), roll_angle=lambda pair, member: np.array([10.0, 20.0]),
+            mean=lambda values: np.tensordot(weight, values, axes=1),
+        )  # fmt: skip
 
     put("design_lines", lambda *given: calls.update(design=given) or lines("design", [START + 0.2 * PITCH]))
     put(
@@ -201,6 +205,11 @@ def test_states_are_judged_in_order_and_the_best_is_the_one_that_leaves_least(st
     assert state.mapped.of.loads.tolist() == [600.0, 1200.0]
     assert state.over_peak_to_peak.shape == state.over_first.shape == (2,)
     assert state.over_error.tolist() == [1e-3, 2e-3]
+    # Positions count as the part of a base pitch that they stand for: 0.3 of the second, a quarter of it on.
+    phase = np.exp(-2j * np.pi * (START / PITCH + np.arange(4) / 4.0))
+    left = np.array([0.0, 1.0, 0.0, 0.0]) - 0.3
+    first = 2.0 * abs(np.array([0.4, 0.3, 0.2, 0.1]) @ (phase * left))
+    np.testing.assert_allclose(state.over_first, first * state.over_peak_to_peak)
     assert steps.calls["under"] == ([900.0, 1200.0], steps.apart)
 
 

@@ -18,10 +18,14 @@ from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.over_pitch import over_pitch
 from fegear.contact.wide.rigid_flanks import touching_gaps
 from fegear.contact.wide.tip_edges import edge_reach, usual_gap
+from fegear.design.flanks import judge
+from fegear.design.flanks.flank_tolerance import end_reliefs
+from fegear.design.flanks.forms import GroundRelief
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.flank_modification import Bias
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
@@ -178,3 +182,56 @@ def test_zero_is_the_gap_of_flanks_on_the_path_alone(unit):
     past = pair.base_pitch * np.logspace(-9, -2, 200)
     gap = Meshing(pair, corner_contact=True).touching(np.concatenate([pair.x_end + past, pair.x_start - past])).gap
     assert np.all(gap > 0.0)
+
+
+@pytest.mark.parametrize("wider", ["driver", "driven"])
+def test_designed_reliefs_are_those_of_the_gears_along_tip_edges(wider):
+    """There a flank touches its mate's edge, not the place that its station has on the line of action.
+
+    The gear that has the twist of the flank is the one with the common face.
+    """
+    widths = (12e-3, 9e-3) if wider == "driver" else (9e-3, 12e-3)
+    pair = GearPair(gear(20.0, "right", 23, widths[0]), gear(20.0, "left", 57, widths[1]))
+    roll = pair.x_start + pair.base_pitch * (np.arange(8) + 0.5) / 8
+    lines = contact_lines(pair, roll, 0.25 * MODULE, (), 30e-6)
+    relief = GroundRelief(20e-6, 4e-3, 15e-6, 5e-3, bias=12e-6)
+    bearer = "driven" if wider == "driver" else "driver"
+    first, last = sorted(float(pair.roll_angle(x, bearer)) for x in (pair.x_start, pair.x_end))
+    twist = Bias(12e-6 if bearer == "driver" else -12e-6, first, last, pair.face_width)
+    tips = end_reliefs(relief.numbers, pair, 1.0)
+    gaps = FlankGaps(*tips, **{f"{bearer}_flank": (twist,)})
+    wanted = gaps.at(pair, lines) - lines.edges.gap + 0.25 * relief.bias
+    on_edge = lines.present & (lines.edges.gap > 0.0)
+    assert on_edge.any()
+    found = relief.removal_on(pair, lines)
+    np.testing.assert_allclose(found[lines.present], wanted[lines.present], atol=1e-12)
+    plain = relief.removal(pair, lines.x, lines.z)
+    assert np.abs(plain - wanted)[on_edge].max() > 1e-7
+    on_path = lines.present & ~on_edge
+    np.testing.assert_allclose(plain[on_path], wanted[on_path], atol=1e-12)
+
+
+@pytest.mark.dear
+def test_designs_are_judged_with_contact_along_tip_edges(monkeypatch):
+    """As the pair that has the relief is loaded; without tip edges no relief leaves more than there is."""
+    for name, count in (("SEARCHED", 9), ("JUDGED", 12)):
+        monkeypatch.setattr(judge, name, count)
+    gears = gear(15.0), gear(15.0, "left", 31)
+    pair = GearPair(*gears)
+    load = 250e3 * pair.face_width
+    solids = {member: solid(one) for member, one in zip(("driver", "driven"), gears, strict=True)}
+    flanks = FlankPair(pair, solids, positions=12, most_gap=usual_gap(pair, load))
+    relief = GroundRelief(10e-6, 4e-3, 12e-6, 5e-3)
+    judged = judge.flank_judge(flanks, solids, FlankGaps(), load, 0.0)
+    left = {}
+    for label, numbers, gaps in (
+        ("none", GroundRelief(), FlankGaps()), ("tips", relief, FlankGaps(*end_reliefs(relief.numbers, pair, 1.0))),
+    ):  # fmt: skip
+        te, _ = judged.left(lambda lines, own=numbers: own.removal_on(pair, lines))
+        loaded = flanks.solve([load], gaps)
+        np.testing.assert_allclose(judged.dense.known.lines.roll, loaded.lines.roll, rtol=1e-12)
+        np.testing.assert_allclose(te, loaded.transmission_error, rtol=1e-9)
+        left[label] = np.ptp(te)
+    bare = judge.flank_judge(FlankPair(pair, solids, positions=12), solids, FlankGaps(), load, 0.0)
+    without = np.ptp(bare.left(lambda lines: np.zeros(lines.x.shape))[0])
+    assert left["tips"] < 0.8 * left["none"] < 0.8 * 0.98 * without

@@ -366,10 +366,10 @@ def _state(
 
     def gap(lines: ContactLines) -> Array:
         if isinstance(relief, GroundRelief):
-            removed = relief.removal(here.pair, lines.x, lines.z)
+            removed = relief.removal_on(here.pair, lines)
         else:
             height = lines.z + here.pair.face_height("driver")
-            removed = relief.removal(here.pair.roll_angle(lines.x, "driver"), height)
+            removed = relief.removal(lines.roll_angle(here.pair, "driver"), height)
         return np.where(lines.present, removed, 0.0)
 
     count = len(task.map_over_face)
@@ -387,8 +387,9 @@ def _state(
         off = within_tolerances(over_loads.searched, here.pair, relief.numbers, task.tolerance)
         most = np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
         most = np.maximum(most, left)
-    phase = 2j * np.pi * over_loads.judge.dense.known.lines.roll / here.pair.base_pitch
-    first = 2.0 * np.abs(np.exp(-phase) @ (te - te.mean(axis=0))) / phase.size
+    lines = over_loads.judge.dense.known.lines
+    phase = 2j * np.pi * lines.roll / here.pair.base_pitch
+    first = 2.0 * np.abs(lines.mean(np.exp(-phase)[:, None] * (te - lines.mean(te))))
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
         judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most,

@@ -50,8 +50,16 @@ class GroundRelief:
 
     def removal(self, pair: GearPair, x: ArrayLike, z: ArrayLike) -> Array:
         """Removal at points of the plane of action, not negative on the flank [m]."""
-        base = 0.5 * abs(self.slope) + 0.25 * abs(self.bias)
-        return np.asarray(FormsAt.over(pair, x, z, self.tip_power).removed(self.numbers) + base)
+        return np.asarray(FormsAt.over(pair, x, z, self.tip_power).removed(self.numbers) + self._base)
+
+    def removal_on(self, pair: GearPair, lines: ContactLines) -> Array:
+        """The same at the stations of contact lines, those along tip edges included, shape (P, M) [m]."""
+        return np.asarray(FormsAt.on(pair, lines, self.tip_power).removed(self.numbers) + self._base)
+
+    @property
+    def _base(self) -> float:
+        """What keeps slope and bias from being negative [m]."""
+        return 0.5 * abs(self.slope) + 0.25 * abs(self.bias)
 
 
 def lead_bearer(pair: GearPair) -> Member:
@@ -97,10 +105,9 @@ class FormsAt(ReadOnlyArrays):
         """Places of a pair."""
         first, second = np.asarray(x, dtype=float), np.asarray(z, dtype=float)
         half = 0.5 * pair.face_width
-        middle = 0.5 * (pair.x_start + pair.x_end)
         return cls(
-            pair.x_end - first, first - pair.x_start, half - np.abs(second),
-            2.0 * (first - middle) / pair.path_length, second / half, tip_power,
+            pair.x_end - first, first - pair.x_start, half - np.abs(second), _across(pair, first), second / half,
+            tip_power,
         )  # fmt: skip
 
     @classmethod
@@ -113,7 +120,9 @@ class FormsAt(ReadOnlyArrays):
             np.asarray(pair.flank_curvature_radius(tip, member) - lines.roll_length(pair, member))
             for member, tip in zip(MEMBERS, (pair.x_end, pair.x_start), strict=True)
         )
-        return replace(found, driver_depth=driver, driven_depth=driven)
+        bearer = lead_bearer(pair)  # its flank touches a mate's edge not at the station, but where the edge is
+        across = _across(pair, pair.x_of_roll(lines.roll_angle(pair, bearer), bearer))
+        return replace(found, driver_depth=driver, driven_depth=driven, across=across)
 
     def removed(self, numbers: Array) -> Array:
         """Removal by nine numbers, without the constant that keeps it from being negative, shape of the places [m]."""
@@ -139,6 +148,11 @@ class FormsAt(ReadOnlyArrays):
                 found[i + 1] = np.where(share > 0.0, amount * of * share ** (of - 1.0) * depth / length**2, 0.0)
         found[4], found[7], found[8] = self.along**2, 0.5 * self.along, 0.25 * self.across * self.along
         return found
+
+
+def _across(pair: GearPair, x: Array) -> Array:
+    """Places on the line of action [m] as -1 at the start of the path to 1 at its end."""
+    return np.asarray(2.0 * (x - 0.5 * (pair.x_start + pair.x_end)) / pair.path_length)
 
 
 #: The nine numbers, and the amounts that go with a length.

@@ -22,6 +22,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines, contact_lines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.roll_points import roll_points
+from fegear.contact.wide.tip_edges import edge_reach
 from fegear.design.flanks.scatter import NOMINAL, Scatter
 from fegear.design.flanks.trials import FlankTrials, Tried
 from fegear.fem.solid.flank_body import FlankBody
@@ -191,7 +192,7 @@ def flank_judge(
     Parameters
     ----------
     flanks : FlankPair
-        As it is searched; no contact along tip edges.
+        As it is searched, along tip edges as far as its own lines go on.
     coarse : mapping of {"driver", "driven"} to FlankBody
     apart : FlankGaps
         What keeps the flanks apart besides the relief.
@@ -201,10 +202,11 @@ def flank_judge(
         Standard deviation of the misalignment over the face [m].
     """
     pair, panel = flanks.pair, flanks.panel * flanks.pair.driver.module
+    beyond = edge_reach(pair, flanks.most_gap)
 
     def trials(positions: int, panel: float, gears: Mapping[Member, FlankBody]) -> FlankTrials:
-        points = roll_points(pair, positions)
-        lines = contact_lines(pair, points.x, panel, points.weights / points.period)
+        points = roll_points(pair, positions, beyond)
+        lines = contact_lines(pair, points.x, panel, points.weights / points.period, flanks.most_gap)
         with one_thread():
             known = flank_compliance(pair, gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz,
                                      cache=flanks.cache)  # fmt: skip
