@@ -124,7 +124,7 @@ def unit_said(unit: str) -> str:
 
 
 def with_its_error(value: float, error: float) -> str:
-    """Value and error, both to the error's second significant digit: ``"7.6187 +- 0.0034"``.
+    """Value and error, both to the error's second significant digit: ``"7.6187 +- 0.0034"``, ``"12350 +- 230"``.
 
     Parameters
     ----------
@@ -139,11 +139,11 @@ def with_its_error(value: float, error: float) -> str:
         decimals = math.floor(math.log10(size)) - math.floor(math.log10(error)) + 1
         return f"{value:.{max(0, min(decimals, _MOST))}e} +- {error:.1e}"
     decimals = 1 - math.floor(math.log10(error))
+    if decimals < 0:
+        value, error = round(value, decimals), round(error, decimals)
     most = _MOST - math.floor(math.log10(size))
     shown = f"{value:.{max(0, min(decimals, most))}f}"
     if float(shown) == 0.0:
         shown = shown.replace("-", "")
-    small = f"{error:.{decimals}f}" if 0 <= decimals <= _DIGITS else f"{error:.2g}"
-    if decimals < 0:
-        small = f"{float(small):.0f}"
+    small = f"{error:.{max(0, decimals)}f}" if decimals <= _DIGITS else f"{error:.2g}"
     return f"{shown} +- {small}"

@@ -70,7 +70,7 @@ class Bar:
             with ui.element("details").classes("views"):
                 ui.html("View", tag="summary").classes("button")
                 with ui.element("div"):
-                    for name in ("to-large", "to-exercise"):
+                    for name in ("to-large", "to-digits", "to-exercise"):
                         ui.element("button").classes("button").props(f"type=button id={name}")
             ui.element("button").classes("button").props("type=button id=to-answers")
             ui.element("button").classes("button").props("type=button id=stop hidden")

@@ -64,13 +64,14 @@ const fegearGlance = (() => {
     document.body.classList.toggle("reporting", report);
     document.body.classList.toggle("folded", !!view.folded);
     document.documentElement.classList.toggle("large-type", !!view.large);
+    document.documentElement.classList.toggle("all-digits", !!view.digits);
     document.body.classList.toggle("exercise", !!view.exercise);
     document.body.classList.toggle("revealed", !!view.revealed);
     ask();
     const hidden = !view.revealed;
     for (const [id, on, words] of [
       ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
-      ["to-large", view.large, "Large type"], ["to-exercise", view.exercise, "Exercise: answers on request"],
+      ["to-large", view.large, "Large type"], ["to-digits", view.digits, "All digits and estimated errors"], ["to-exercise", view.exercise, "Exercise: answers on request"],
       ["to-answers", !hidden, hidden ? "Show the answers" : "Hide the answers"],
     ]) {
       const one = $(id);
@@ -86,6 +87,7 @@ const fegearGlance = (() => {
     if (id === "to-report") { keep({ report: !view.report }); apply(); if (view.report) fegear.showReport(); }
     if (id === "to-fold") { keep({ folded: !view.folded }); apply(); }
     if (id === "to-large") { keep({ large: !view.large }); apply(); }
+    if (id === "to-digits") { keep({ digits: !view.digits }); apply(); strip(); }
     if (id === "to-exercise") { keep({ exercise: !view.exercise, revealed: false }); apply(); }
     if (id === "to-answers") { keep({ revealed: !view.revealed }); apply(); }
     if (id === "to-large" || id === "to-exercise") target.closest("details.views")?.removeAttribute("open"); // it lies over the answers' button
@@ -231,10 +233,12 @@ const fegearGlance = (() => {
       }
     }
     for (const one of all) {
-      const [, value, error, from] = cells.get(one.name), before = pinned?.numbers.get(`${pair}.${one.name}`);
-      for (const [place, words] of [[value, `${one.text}${one.unit ? ` ${one.unit}` : ""}`], [error, one.error ? `± ${one.error}` : ""], [from, pinned ? difference(one, before) : ""]]) {
+      const [label, value, error, from] = cells.get(one.name), text = view.digits ? one.text : one.short ?? one.text, before = pinned?.numbers.get(`${pair}.${one.name}`);
+      for (const [place, words] of [[value, `${text}${one.unit ? ` ${one.unit}` : ""}`], [error, one.error ? `± ${one.error}` : ""], [from, pinned ? difference(one, before) : ""]]) {
         if (place.textContent !== words) place.textContent = words;
       }
+      label.parentElement.classList.toggle("rough", !!one.rough);
+      label.parentElement.title = one.error ? `${one.text} ± ${one.error} ${one.unit}: estimated numerical error (mesh, positions)` : "";
     }
   }
 

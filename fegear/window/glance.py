@@ -10,6 +10,7 @@ import json
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import FegearError, InputError
+from fegear.base.printed import rounded
 from fegear.case.json_file import read_json
 from fegear.case.text_file import write_file
 from fegear.engine.plan import make_plan
@@ -72,6 +73,8 @@ NUMBERS = {
     "driver.S_H": "S_H, driver",
     "driven.S_H": "S_H, driven",
 }
+#: Digits that a person reads, and the share of a value from which its error is shown without being asked for.
+_READ, _ROUGH = 4, 5e-3
 #: The stages that these come from beside the ones that are shown; a rating is asked for by the case.
 _ALWAYS = ("transmission-error", "load-sharing", "root-stress-history", "planet-load-sharing", "shaft-deflection")
 
@@ -142,7 +145,8 @@ def numbers_of(values: tuple[Value, ...]) -> dict[str, dict[str, Any]]:
     Returns
     -------
     dict
-        ``value``, ``text``, ``error`` (empty where it is not known), ``unit``, ``label`` and ``subject``.
+        ``value``, ``text`` and ``error`` with all digits (empty where it is not known), ``short`` as a person reads it,
+        ``rough`` where the error is worth a look, ``unit``, ``label`` and ``subject``.
     """
     found = {}
     for value in values:
@@ -153,10 +157,16 @@ def numbers_of(values: tuple[Value, ...]) -> dict[str, dict[str, Any]]:
         known = error not in ("exact", "not estimated")
         found[value.name] = {
             "value": value.value, "text": text if known else plain_number(value.value, 4),
-            "error": error if known else "", "unit": pretty_unit(value.unit), "label": NUMBERS[name],
+            "error": error if known else "", "short": _short(value),
+            "rough": known and (value.error or 0.0) > _ROUGH * abs(value.value),
+            "unit": pretty_unit(value.unit), "label": NUMBERS[name],
             "subject": subject, "name": name,
         }  # fmt: skip
     return found
+
+
+def _short(value: Value) -> str:
+    return plain_number(float(rounded(value.value, value.error, _READ).partition(" ")[0]), _READ)
 
 
 class View(NamedTuple):
@@ -178,6 +188,8 @@ class View(NamedTuple):
         Whether type is large, for a room.
     exercise : bool
         Whether answers are hidden until they are asked for, anew after each change.
+    digits : bool
+        Whether numbers have all digits and their errors.
     revealed : bool
         Whether they have been asked for since; not kept for the next time.
     """
@@ -189,6 +201,7 @@ class View(NamedTuple):
     middle: str = ""
     large: bool = False
     exercise: bool = False
+    digits: bool = False
     revealed: bool = False
 
     def changed(self, told: Mapping[str, Any]) -> View:

@@ -66,6 +66,7 @@ const fegearPlots = (() => {
   const plain = (text) => text.replace(/<[^>]*>/g, "");
 
   const letter = () => (document.documentElement.classList.contains("large-type") ? 7.5 : 5.4); // about its width [px]
+  const axis = () => (document.documentElement.classList.contains("large-type") ? 6.2 : 5.4); // of an axis' title
   function fitting(text, most) { // words from the end are left away, but for the unit
     const [, words, unit] = /^(.*?)\s*(\[[^\]]*\])?$/.exec(text), kept = words.split(" ");
     while (kept.length > 1 && kept.join(" ").length + (unit?.length ?? 0) > most) kept.pop();
@@ -171,7 +172,7 @@ const fegearPlots = (() => {
         const [at, digits] = ticks(kept.ranges[way], most);
         for (const one of at) {
           const text = Math.abs(one) >= 1e5 ? one.toExponential(0) : one.toFixed(digits).replace("-", "−"), px = kept[way](one);
-          if (way === "x") axes("text", { x: px, y: y0 + 12, "text-anchor": "middle" }, text);
+          if (way === "x") axes("text", { x: px, y: y0 + 4 + 1.5 * letter(), "text-anchor": "middle" }, text);
           else {
             axes("line", { x1: x0, x2: x1, y1: px, y2: px, class: one === 0 ? "zero" : "grid" });
             axes("text", { x: x0 - 4, y: px + 3.5, "text-anchor": "end" }, text);
@@ -179,7 +180,7 @@ const fegearPlots = (() => {
         }
       }
       const along = spec.layout[`xaxis${anchor(panel)}`]?.title?.text;
-      if (along) axes("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, fitting(plain(along), (x1 - x0 + 2 * ROOM.right) / letter()));
+      if (along) axes("text", { x: (x0 + x1) / 2, y: y0 + 14.7 + 1.9 * letter(), "text-anchor": "middle", class: "axis" }, fitting(plain(along), (x1 - x0 + 2 * ROOM.right) / axis()));
       let last = -Infinity;
       for (const shape of spec.layout.shapes ?? []) {
         if (shape.xref !== `x${anchor(panel)}` || shape.x0 !== shape.x1) continue;
@@ -187,9 +188,9 @@ const fegearPlots = (() => {
       }
       for (const note of [...spec.layout.annotations ?? []].sort((one, other) => one.x - other.x)) {
         if (note.xref !== `x${anchor(panel)}` || !note.text || note.text.length > 3) continue;
-        const px = Math.max(kept.x(note.x) + 3, last + 10); // letters of places next to each other stand side by side
+        const px = Math.max(kept.x(note.x) + 3, last + 4.6 + letter()); // letters of places next to each other stand side by side
         last = px;
-        inner("text", { x: px, y: y1 + 9, class: "letter" }, note.text);
+        inner("text", { x: px, y: y1 + 0.9 + 1.5 * letter(), class: "letter" }, note.text);
       }
       const traces = ofPanel(spec, panel);
       for (const trace of traces) if (trace.type === "heatmap") map(trace, inner);

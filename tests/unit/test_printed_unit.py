@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from fegear.base.printed import figures, with_rough_error
+from fegear.base.printed import figures, with_its_error, with_rough_error
 
 
 @pytest.mark.parametrize(
@@ -23,8 +23,21 @@ def test_a_number_of_a_sentence_is_rounded(value, digits, text):
 
 
 @pytest.mark.parametrize(
-    ("error", "text"), [(260.0, "731 +- 260"), (80.0, "731 +- 80"), (70.0, "730"), (3.0, "731"), (None, "731")]
+    ("error", "text"), [(260.0, "730 +- 260"), (80.0, "731 +- 80"), (70.0, "730"), (3.0, "731"), (None, "731")]
 )
 def test_a_rough_number_has_its_error_where_one_digit_would_stay(error, text):
     """A list had "731 +- 260 um/m" and the answer "700 um/m"."""
     assert with_rough_error(731.0, error) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (12_345.6, 234.0, "12350 +- 230"), (12_345.6, 2340.0, "12300 +- 2300"), (-1852.4, 317.2, "-1850 +- 320"),
+        (407.0, 740.0, "410 +- 740"), (40.0, 740.0, "40 +- 740"), (731.2, 99.4, "731 +- 99"),
+        (7.61867, 0.0034, "7.6187 +- 0.0034"),
+    ],
+)  # fmt: skip
+def test_a_value_and_its_error_end_at_the_same_digit(value, error, text):
+    """Above errors of 100 the value kept its units: "1852 +- 317 MPa"."""
+    assert with_its_error(value, error) == text

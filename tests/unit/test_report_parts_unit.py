@@ -87,7 +87,7 @@ def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
         Value("I.largest_line_load", 406.9e3, "N/mm", 740e3),
     ]
     assert inexact_values(values, 0.02) == (
-        "Estimated errors above the tolerance of 2 %: I.largest_line_load = 407 +- 740 N/mm (182 %); "
+        "Estimated errors above the tolerance of 2 %: I.largest_line_load = 410 +- 740 N/mm (182 %); "
         "I.te_peak_to_peak = 1.22 +- 0.26 um (21 %)."
     )
     several = inexact_values(values[:2] + values[:1] * 5, 0.001)
