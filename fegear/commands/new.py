@@ -55,6 +55,10 @@ def new(
         list[str] | None,
         typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four."),
     ] = None,
+    ratio: Annotated[
+        str | None,
+        typer.Option("--ratio", help="Total ratio in place of --teeth, e.g. 14; of a gearbox above 6 by two stages."),
+    ] = None,
     module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
     profile_shift: Annotated[
@@ -98,6 +102,7 @@ def new(
     For example: fegear new drive --teeth 21 53 --profile-shift 0.3 0.1 --module 3mm --torque "260 N m"
     """
     from fegear.case.drafts.answers import Answers, kind_of, with_torque_of_power
+    from fegear.case.drafts.first_size import with_teeth_of_ratio
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
 
@@ -105,6 +110,7 @@ def new(
     path = case_file(name, force=force)
     given = {
         "teeth": " ".join(teeth or ()),
+        "ratio": ratio,
         "module": module,
         "pressure_angle": pressure_angle,
         "profile_shift": " ".join(profile_shift or ()),
@@ -132,7 +138,9 @@ def new(
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
         answers = _asked()
     else:
-        told = with_torque_of_power(told)
+        kind, told, chosen = with_teeth_of_ratio(kind, with_torque_of_power(told))
+        if chosen:
+            voice.say(chosen)
         answers = Answers(kind_of(kind, told), told)
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import errno
 import io
+import math
 import os
 import re
 import sys
@@ -20,6 +21,7 @@ from fegear.case import examples
 from fegear.case.built.design_range import design_range
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.drafts.answers import HELICAL, Answers, kind_of, questions
+from fegear.case.drafts.first_size import with_teeth_of_ratio
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
@@ -104,6 +106,38 @@ def test_a_power_at_a_speed_is_a_torque(say, tmp_path):
     assert pair.torque * pair.speed == pytest.approx(5e3, rel=1e-5)
 
 
+@pytest.mark.parametrize(("ratio", "stages"), [("2.5", 1), ("6", 1), ("6.5", 2), ("14", 2), ("14:1", 2), ("36", 2)])
+def test_a_gearbox_for_a_ratio_has_hunting_teeth(say, tmp_path, ratio, stages):
+    code, out, _ = say("new", "x", "--kind", "gearbox", "--ratio", ratio, "--power", "2.9 kW", "--no-schema")
+    assert code == 0
+    gears = [part.teeth for part in read_scene(tmp_path / "x.toml").case.gear.values()]
+    assert len(gears) == 2 * stages
+    made = math.prod(gears[1::2]) / math.prod(gears[::2])
+    assert made == pytest.approx(float(ratio.removesuffix(":1")), rel=0.002 if stages == 2 else 0.02)
+    assert f"Teeth {'/'.join(map(str, gears))}: ratio {made:.5g}" in out
+    assert all(math.gcd(*gears[k : k + 2]) == 1 for k in range(0, len(gears), 2))
+
+
+def test_the_module_of_a_drafted_gearbox_follows_from_its_torque(say, tmp_path):
+    """Twice the module carries eight times the torque; other kinds, and a given module, stay."""
+    modules = {}
+    for torque in ("20 N m", "160 N m"):
+        assert say("new", "x", "--kind", "gearbox", "--torque", torque, "--no-schema", "--force", "-q")[0] == 0
+        modules[torque] = read_scene(tmp_path / "x.toml").case.gear["pinion"].normal_module
+    assert modules["160 N m"] == pytest.approx(2.0 * modules["20 N m"])
+    for more, module in ((("--kind", "pair"), 3e-3), (("--kind", "gearbox", "--module", "4 mm"), 4e-3)):
+        assert say("new", "x", "--torque", "20 N m", *more, "--no-schema", "--force", "-q")[0] == 0
+        part = read_scene(tmp_path / "x.toml").case.gear["pinion"]
+        assert (part.module or part.normal_module) == pytest.approx(module)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 3.0, 4.4])
+def test_a_ratio_that_hunting_teeth_miss_is_met_by_others(ratio):
+    _, found, _ = with_teeth_of_ratio("pair", {"ratio": f"{ratio}"})
+    pinion, wheel = map(int, found["teeth"].split())
+    assert wheel / pinion == pytest.approx(ratio, rel=0.02)
+
+
 def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
     """Teeth 21/53, module 3, x .3/-.1, tip relief 20 um over 4 mm, 260 N m, face 30 mm; then 15 degrees and 10 um."""
     drawn = ("--teeth", "21", "53", "--profile-shift", ".3", "-.1", "--module", "3mm", "--torque", "260 N m")
@@ -150,6 +184,11 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--torque", "5 N m", "--power", "5 kW"), "contradicts --torque"),
         (("x", "--power", "5 N m"), "is not a power"),
         (("x", "--power", "0 kW"), "must be positive"),
+        (("x", "--ratio", "50"), '--ratio = "50": is outside 3 to 36'),
+        (("x", "--ratio", "13", "--kind", "pair"), "is outside 1 to 12"),
+        (("x", "--ratio", "abc"), "must be a number"),
+        (("x", "--ratio", "3", "--kind", "planetary"), "is not used"),
+        (("x", "--ratio", "3", "--teeth", "20", "60"), "contradicts --teeth"),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "is in a folder that does not exist"),
         (("x", "--profile-shift", "5", "0"), "pinion"),
@@ -411,7 +450,7 @@ def test_helical_gears_have_relief_and_crowning_unless_the_drawing_has_others_or
     for kind in HELICAL:
         for given, tip, crowning in (
             ({}, "5 um", "1.5 um") if kind == TWO_STAGES else ({}, "10 um", "3 um"),
-            ({"torque": "95 N m"}, "5.1 um", "1.5 um"),
+            ({"torque": "95 N m", "module": "3 mm"}, "5.1 um", "1.5 um"),
             ({"tip_relief": "20 um", "relief_length": "4 mm"}, "20 um", None),
             ({"tip_relief": "none", "relief_length": "none"}, None, None),
         ):

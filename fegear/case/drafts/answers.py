@@ -11,6 +11,7 @@ from typing import NamedTuple
 from fegear.base.errors import InputError
 from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
+from fegear.case.drafts.first_size import module_for
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.nearest import nearest
 from fegear.geometry.rack import BasicRack
@@ -215,7 +216,12 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             ),
             "teeth",
         ),
-        Question("module", _MODULES.get(kind, "Normal module" if kind in HELICAL else "Module"), "3 mm", "length"),
+        Question(
+            "module",
+            _MODULES.get(kind, "Normal module" if kind in HELICAL else "Module"),
+            _module(kind, given),
+            "length",
+        ),
     ]
     module = _readable(given.get("module", found[1].default), "length")
     face = f"{_FACE * module * 1e3:.3g} mm"
@@ -225,8 +231,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
         elif name == "torque":
             width = _readable(given.get("face_width", face), "length")
             radius = 0.5 * module * (plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0)
-            share = _FIRST_STAGE if kind == TWO_STAGES else 1.0
-            default = f"{float(f'{share * _LINE_LOAD * width * radius:.2g}'):g} N*m"
+            default = f"{float(f'{_line_load(kind) * width * radius:.2g}'):g} N*m"
             ranges = kind == "relief"
             prompt = 'Torque on the pinion, or a range ("120 to 320 N m")' if ranges else "Torque on the pinion"
             found.append(Question(name, prompt, default, "torque", ranges))
@@ -237,6 +242,19 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             plural = "s of all four gears" if plural and kind == TWO_STAGES else plural
             found.append(Question(name, prompt + plural, default, dimension))
     return found
+
+
+def _line_load(kind: str) -> float:
+    return (_FIRST_STAGE if kind == TWO_STAGES else 1.0) * _LINE_LOAD
+
+
+def _module(kind: str, given: Mapping[str, str]) -> str:
+    """The module that is assumed: of a gearbox that for its torque, where there is one."""
+    torque = _readable(given.get("torque", ""), "torque")
+    if kind not in ("gearbox", TWO_STAGES) or not torque > 0.0:
+        return "3 mm"
+    teeth = plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0
+    return f"{module_for(torque, int(teeth), _FACE) * 1e3:.6g} mm"
 
 
 def ends(text: str) -> tuple[str, str] | None:

@@ -373,7 +373,8 @@ def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
     for stage, own in enumerate(found.stages):
         grown = {"module_note": "     # assumed: grows as the cube root of the torque",
                  "face_width_note": "     # assumed: as many modules as that of the first stage"}  # fmt: skip
-        grown = grown if stage else {"face_width_note": _note(answers, "face_width")}
+        if not stage:
+            grown = {f"{name}_note": _note(answers, name) for name in ("module", "face_width")}
         grown["profile_shift_note"] = _note(answers, "profile_shift")
         for member in range(2):
             at = 2 * stage + member

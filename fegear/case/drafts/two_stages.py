@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.first_size import MODULES
 from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
 from fegear.shafts.axial_factors import AxialFactors
@@ -21,8 +22,6 @@ from fegear.shafts.designations import KNOWN
 from fegear.shafts.life import LifeRating
 from fegear.shafts.load_ratings import dynamic_rating
 
-#: Preferred modules of ISO 54 [mm].
-_MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0)
 #: Gap between faces, and between a face and a bearing [modules of the second stage].
 _GAP, _CLEAR = 3.0, 2.0
 #: Shoulder of a shaft behind a bearing, in bores; hole of a gear at most, in root radii.
@@ -147,10 +146,10 @@ def _stages(answers: Answers) -> tuple[Answers, Answers]:
     """Answers of both stages: the second has the torque of the first wheel, and a module and face that suit it."""
     teeth, shifts = answers.numbers("teeth"), answers.numbers("profile_shift")
     kept = {key: text for key, text in answers.given.items() if key not in ("teeth", "profile_shift")}
-    known = {"torque": answers["torque"], "speed": answers["speed"], "face_width": answers["face_width"]}
+    known = {name: answers[name] for name in ("module", "torque", "speed", "face_width")}
     first = Answers("gearbox", {**kept, **known, "teeth": " ".join(teeth[:2]), "profile_shift": " ".join(shifts[:2])})
     ratio, module = _ratio(first), answers.si("module")
-    grown = min(_MODULES, key=lambda one: abs(math.log(one * 1e-3 / (module * ratio ** (1.0 / 3.0)))))
+    grown = min(MODULES, key=lambda one: abs(math.log(one * 1e-3 / (module * ratio ** (1.0 / 3.0)))))
     grown = max(grown, module * 1e3)
     face = answers.si("face_width") * grown * 1e-3 / module
     second = {

@@ -1,0 +1,125 @@
+"""A first size of a gearbox that nobody has drawn yet: teeth for a ratio, and a module for a torque.
+
+Teeth are hunting (no common divisor in a mesh), so that each tooth meets all of its mates, unless the ratio of a single
+stage would be off by more than 2 %. Of two stages the first one
+has the larger ratio, since its torque is the smaller; both pinions have about as many teeth.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+
+from fegear.base.errors import InputError
+from fegear.base.printed import figures, percent
+from fegear.case.drafts.kinds import KINDS, TWO_STAGES
+
+#: Preferred modules of ISO 54 [mm].
+MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0)
+#: Teeth of pinions that are tried.
+_PINIONS = range(17, 24)
+#: Largest ratio of a stage of a gearbox, and of a single pair.
+_STAGE, _PAIR = 6.0, 12.0
+#: How far the ratio of hunting teeth may be off.
+_HUNTING = 0.02
+#: What the first draft of case-hardened gears carries: line load over pinion diameter, and over module [Pa].
+_FLANK, _ROOT = 4e6, 70e6
+#: Ratio of the first of two stages over the two thirds' power of both, and how far it may be off.
+_SPLIT, _OFF = 0.8, 0.08
+
+
+def with_teeth_of_ratio(kind: str | None, given: Mapping[str, str]) -> tuple[str | None, dict[str, str], str]:
+    """Answers with the teeth of a ratio, where a ratio is given.
+
+    Parameters
+    ----------
+    kind : str or None
+    given : mapping of str to str
+        Answers by the name of their question, and ``ratio``.
+
+    Returns
+    -------
+    tuple
+        Kind (of two stages, where one does not suffice), answers, and what was chosen; empty without a ratio.
+
+    Raises
+    ------
+    InputError
+        If the ratio is no number, is beyond what stages of a gearbox have, or the teeth are given, too.
+    """
+    found = dict(given)
+    if (text := found.pop("ratio", None)) is None:
+        return kind, found, ""
+    told = f'"{text}"'
+    if "teeth" in found:
+        raise InputError("--ratio", told, "contradicts --teeth", "remove one of them")
+    if kind not in (None, TWO_STAGES) and (kind not in KINDS or len(KINDS[kind].gears) != 2 or kind == "planetary"):
+        raise InputError("--ratio", told, f'is not used for a case of kind "{kind}"', "remove it")
+    if not re.fullmatch(r"[0-9]+\.?[0-9]*(:1)?", text.strip()):
+        raise InputError("--ratio", told, "must be a number", "for example 14")
+    ratio = float(text.strip().removesuffix(":1"))
+    boxed = kind in (None, "gearbox", TWO_STAGES)
+    if kind == TWO_STAGES or (kind in (None, "gearbox") and ratio > _STAGE):
+        kind = TWO_STAGES
+    least, most = (3.0, _STAGE**2) if kind == TWO_STAGES else (1.0, _STAGE if boxed else _PAIR)
+    if not least <= ratio <= most:
+        reach = f"{figures(least)} to {figures(_STAGE**2 if boxed else most)}"
+        raise InputError("--ratio", told, f"is outside {reach}", "choose another ratio, or specify --teeth")
+    teeth = _two_stages(ratio) if kind == TWO_STAGES else _one_stage(ratio)
+    made = math.prod(teeth[1::2]) / math.prod(teeth[::2])
+    off = percent(made / ratio - 1.0, signed=True)
+    found["teeth"] = " ".join(map(str, teeth))
+    return kind, found, f"Teeth {'/'.join(map(str, teeth))}: ratio {made:.5g} ({off} of {figures(ratio, 5)})"
+
+
+def _stages(ratio: float) -> Iterator[tuple[int, int]]:
+    """Pinion and wheel of a stage with about this ratio."""
+    for pinion in _PINIONS:
+        nearest = round(pinion * ratio)
+        yield from ((pinion, wheel) for wheel in range(max(pinion, nearest - 1), nearest + 2))
+
+
+def _hunting(pinion: int, wheel: int) -> bool:
+    return math.gcd(pinion, wheel) == 1
+
+
+def _one_stage(ratio: float) -> tuple[int, ...]:
+    def judged(teeth: tuple[int, int]) -> tuple[bool, float, tuple[int, int]]:
+        off = abs(teeth[1] / teeth[0] / ratio - 1.0)
+        return not (_hunting(*teeth) and off <= _HUNTING), round(off, 3), teeth
+
+    return min(_stages(ratio), key=judged)
+
+
+def _two_stages(ratio: float) -> tuple[int, ...]:
+    split = min(max(_SPLIT * ratio ** (2.0 / 3.0), math.sqrt(ratio)), _STAGE)
+    found = []
+    for pinion in _PINIONS:
+        for wheel in range(math.ceil(pinion * split * (1.0 - _OFF)), math.floor(pinion * split * (1.0 + _OFF)) + 1):
+            if _hunting(pinion, wheel):
+                others = _stages(ratio * pinion / wheel)
+                found += [(pinion, wheel, *other) for other in others if _hunting(*other)]
+
+    def judged(teeth: tuple[int, ...]) -> tuple[float, float, tuple[int, ...]]:
+        first, second = teeth[1] / teeth[0], teeth[3] / teeth[2]
+        return round(abs(first * second / ratio - 1.0), 3), round(abs(first / split - 1.0), 2), teeth
+
+    return min(found, key=judged)
+
+
+def module_for(torque: float, teeth: int, face: float) -> float:
+    """The smallest preferred module with which case-hardened flanks and roots of a pinion last [m].
+
+    Parameters
+    ----------
+    torque : float
+        [N m].
+    teeth : int
+    face : float
+        Face width in modules.
+    """
+    flank = 2.0 * torque / (_FLANK * face * teeth**2)
+    root = 2.0 * torque / (_ROOT * face * teeth)
+    needed = 1e3 * max(flank, root) ** (1.0 / 3.0)
+    return next((one for one in MODULES if one >= 0.999 * needed), MODULES[-1]) * 1e-3
