@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
+from fegear.fem.plane.condensation import Condensed, Eliminated, numbered, symmetric
 from fegear.fem.solid.cuts import halves
+from fegear.fem.solid.fronts import Node, eliminated, joined
 from fegear.fem.solid.unknowns import Unknowns
 from fegear.fem.solid.whole_sector import condense_whole
 
@@ -58,7 +59,11 @@ def condense_solid(
         *(one.reshape(-1, 3).sum(axis=1).astype(float) for one in (counts - carried, carried)),
     )  # fmt: skip
     held = np.flatnonzero(counts == 0)
-    order, level_start, old = numbered(dofs, leaf, depth, section.size, np.setdiff1d(kept, held), held)
+    stays = kept[counts[kept] > 0]
+    order, level_start, old = numbered(dofs, leaf, depth, section.size, stays, held)
+    # What is kept stands in the order that is wanted: nothing needs sorting in the end.
+    old[level_start[depth + 1] : level_start[depth + 2]] = stays
+    order[stays] = level_start[depth + 1] + np.arange(stays.size)
     # Each unknown of the section brings its functions along the face to its place in the order of elimination.
     first = np.concatenate([[0], np.cumsum(counts[old])])
     rank = np.where(known.number >= 0, np.cumsum(known.number >= 0, axis=1) - 1, 0)
@@ -69,34 +74,37 @@ def condense_solid(
     steps: list[Eliminated] | None = [] if expandable else None
     elements = np.argsort(leaf, kind="stable")
     leaf = leaf[elements]
-    nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 0))
     products = section.products_along(face)
 
-    def part(level: int, i: int) -> tuple[Index, Array]:
+    def part(level: int, i: int) -> Node | None:
         first, middle, end = np.searchsorted(leaf, [i << level, (2 * i + 1) << level >> 1, (i + 1) << level]).tolist()
         if first == end:
-            return nothing
+            return None
+        goes = ends[level + 1]
         if level == 0:
-            ids, matrix = _smallest(section, products, number, elements[first:end])
-        else:
-            # The larger half first: what is made on its way is gone when the other's is.
-            larger = 2 * (middle - first) >= end - first
-            halves_of = {one: part(level - 1, one) for one in sorted((2 * i, 2 * i + 1), reverse=not larger)}
-            ids, matrix = joined(halves_of.pop(2 * i), halves_of.pop(2 * i + 1))
-        return reduced(ids, matrix, ends[level + 1], natural, steps)
+            own = elements[first:end]
+            ids = number[np.unique(dofs[own])]
+            ids = np.sort(ids[ids >= 0])
+            return Node(ids, int(np.searchsorted(ids, goes)), (), own) if ids.size else None
+        # The larger half first: what is made on its way is gone when the other's is.
+        larger = 2 * (middle - first) >= end - first
+        both = (part(level - 1, one) for one in sorted((2 * i, 2 * i + 1), reverse=not larger))
+        parts = tuple(half for half in both if half is not None)
+        if len(parts) == 1 and parts[0].left.size and parts[0].left[0] >= goes:
+            return parts[0]
+        return joined(parts, goes) if parts else None
 
-    left, stiffness = part(depth, 0)
-    wanted = known.of(kept)
-    place = np.empty(known.size, dtype=np.int64)
-    place[natural[left]] = np.arange(left.size)
-    at = place[wanted]
-    return Condensed(wanted, symmetric(stiffness)[np.ix_(at, at)], known.size, tuple(steps or ()))
+    root = part(depth, 0)
+    if root is None:
+        raise ValueError("the section has no unknowns")
+    stiffness = eliminated(root, lambda own: _smallest(section, products, number, own), natural, steps)
+    return Condensed(natural[root.left], symmetric(stiffness).T, known.size, tuple(steps or ()))
 
 
 def _smallest(
     section: Section, products: list[tuple[Array, Array, Array]], number: Index, elements: Index
 ) -> tuple[Index, Array]:
-    """Unknowns (ascending in the order of elimination) and stiffness of a few elements.
+    """Unknowns, in the order of elimination by their numbers, and stiffness of a few elements, in any order.
 
     `products` are the face functions' over the part of the face that each zone of the section fills.
     """
@@ -128,5 +136,4 @@ def _smallest(
             for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
                 if factor != 0.0:
                     block += factor * a[both]
-    sequence = np.argsort(ids)
-    return ids[sequence], matrix[np.ix_(sequence, sequence)]
+    return ids, matrix
