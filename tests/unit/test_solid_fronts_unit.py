@@ -6,6 +6,7 @@ import pytest
 from fegear.base.errors import FegearError
 from fegear.fem.plane.condensation import Condensed
 from fegear.fem.solid import fronts
+from fegear.fem.solid.dissection import _groups
 from fegear.fem.solid.fronts import Node, eliminated, joined
 
 #: Unknowns of five smallest parts; numbers below 12 go in them, below 20 where two join, below 26 where all do.
@@ -19,11 +20,11 @@ def stiffness(leaf):
     return square.T @ square + np.eye(len(LEAVES[leaf]))
 
 
-def smallest(elements):
-    """In another order than that of their numbers."""
+def smallest(elements, front):
     (leaf,) = elements
-    other = np.random.default_rng(7 + leaf).permutation(len(LEAVES[leaf]))
-    return np.array(LEAVES[leaf])[other], stiffness(leaf)[np.ix_(other, other)]
+    order, n = np.argsort(LEAVES[leaf]), front.inner.shape[0]
+    matrix = stiffness(leaf)[np.ix_(order, order)]
+    front.inner[...], front.border[...], front.rest[...] = matrix[:n, :n], matrix[n:, :n], matrix[n:, n:]
 
 
 def tree():
@@ -63,4 +64,29 @@ def test_what_is_left_is_the_schur_complement(monkeypatch, block, with_steps):
 def test_an_indefinite_part_is_refused():
     node = Node(np.array([0, 1]), 1, (), np.array([0]))
     with pytest.raises(FegearError, match="not positive definite"):
-        eliminated(node, lambda _: (np.array([0, 1]), -np.eye(2)), np.arange(2), None)
+        eliminated(node, lambda _, front: front.inner.fill(-1.0), np.arange(2), None)
+
+
+@pytest.mark.parametrize("first_left", [0, 2, 4, 11, 17])
+def test_groups_of_unknowns_repeat_their_functions(first_left):
+    """x and y with even functions, z with odd ones, a node with fewer, single components; split where some go."""
+    even, odd, few = [True, False, True, False], [False, True, False, True], [True, False, False, False]
+    has = np.array([even, even, odd] * 3 + [few, few, few] + [odd, odd, even, odd, even])
+    starts = np.concatenate([[0], np.cumsum(has.sum(axis=1))])
+    number, place, gone = [], 0, int(starts[first_left])
+    for group in _groups(has, gone):
+        assert group.places.start == place
+        place = group.places.stop
+        assert not group.places.start < gone < group.places.stop
+        size = (group.places.stop - group.places.start) // group.repeated
+        for unknown, at, functions in group.unknowns:
+            for i, u in enumerate(range(*unknown.indices(has.shape[0]))):
+                np.testing.assert_array_equal(np.flatnonzero(has[u]), functions)
+                assert group.places.start + i * size + at.start == starts[u]
+                assert at.stop - at.start == functions.size
+                number.append(u)
+            assert i + 1 == group.repeated
+    assert place == starts[-1]
+    assert sorted(number) == list(range(has.shape[0]))
+    if first_left == 0:  # nine of three nodes in one group, three equal ones in another
+        assert len(_groups(has, 0)) <= 5

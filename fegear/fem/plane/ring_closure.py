@@ -116,10 +116,11 @@ class Ring:
         if forces is not None:
             drive_a, drive_b, own = drive_a @ forces, drive_b @ forces, own @ forces
         both = np.hstack([self.follow_a[rows], self.follow_b[rows]])
-        answer = {}
-        for k in range(-self.reach, self.reach + 1) if sectors is None else sectors:
-            sides = [self.from_a[j] @ drive_a + self.from_b[j] @ drive_b for j in (k, k + 1)]
-            answer[k] = both @ np.vstack(sides)
+        answer, wanted = {}, list(range(-self.reach, self.reach + 1) if sectors is None else sectors)
+        # Side A of each sector, and of the next one, which is side B.
+        motion = {j: self.from_a[j] @ drive_a + self.from_b[j] @ drive_b for j in {*wanted, *(k + 1 for k in wanted)}}
+        for k in wanted:
+            answer[k] = both @ np.vstack([motion[k], motion[k + 1]])
             if k % self.teeth == 0:
                 answer[k] += own
         return answer

@@ -8,20 +8,24 @@ its elements, and the block between two functions along the face is a multiple o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import itertools
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fegear.fem.plane.condensation import Condensed, Eliminated, numbered, symmetric
 from fegear.fem.solid.cuts import halves
-from fegear.fem.solid.fronts import Node, eliminated, joined
+from fegear.fem.solid.fronts import Front, Node, eliminated, joined
 from fegear.fem.solid.unknowns import Unknowns
 from fegear.fem.solid.whole_sector import condense_whole
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array, Index
+    from fegear.base.arrays import Array, Index, Mask
     from fegear.fem.solid.face import FaceFunctions, JoinedFunctions
     from fegear.fem.solid.section import Section
+
+#: Entries that a smallest part is written in at once: of so few memory is at hand.
+_AT_ONCE = 200_000
 
 
 def condense_solid(
@@ -97,43 +101,126 @@ def condense_solid(
     root = part(depth, 0)
     if root is None:
         raise ValueError("the section has no unknowns")
-    stiffness = eliminated(root, lambda own: _smallest(section, products, number, own), natural, steps)
+    stiffness = eliminated(root, lambda own, front: _smallest(section, products, number, own, front), natural, steps)
     return Condensed(natural[root.left], symmetric(stiffness).T, known.size, tuple(steps or ()))
 
 
 def _smallest(
-    section: Section, products: list[tuple[Array, Array, Array]], number: Index, elements: Index
-) -> tuple[Index, Array]:
-    """Unknowns, in the order of elimination by their numbers, and stiffness of a few elements, in any order.
+    section: Section, products: list[tuple[Array, Array, Array]], number: Index, elements: Index, front: Front
+) -> None:
+    """Write the stiffness of a few elements into their front.
 
-    `products` are the face functions' over the part of the face that each zone of the section fills.
+    Every entry is a sum of a few products of an entry between unknowns of the section and one between functions along
+    the face, which all entries of a group have in common (`_groups`): the block between two groups is one product of
+    two matrices, whose rows and columns are then put in order. `products` are those of the functions over the part of
+    the face that each zone of the section fills.
     """
-    dofs = section.element_dofs[elements]
-    every, local = np.unique(dofs, return_inverse=True)
-    local = local.reshape(dofs.shape)
-    n = every.size
+    every, local = np.unique(section.element_dofs[elements], return_inverse=True)
+    lowest = np.where(number[every] >= 0, number[every], number.max() + 1).min(axis=1)
+    sequence = np.argsort(lowest, kind="stable")
+    has = number[every[sequence]] >= 0
+    has = has[has.any(axis=1)]
+    rank = np.empty_like(sequence)
+    rank[sequence] = np.arange(sequence.size)
+    in_section, along = _factors(section, products, elements, rank[local].reshape(elements.size, -1), has.shape[0])
+
+    groups = _groups(has, front.inner.shape[0])
+    for i, columns in enumerate(groups):
+        for rows in groups[i:]:
+            target = front.block(rows.places, columns.places).T
+            target = target.reshape(columns.repeated, -1, rows.repeated, target.shape[1] // rows.repeated)
+            for (column, at, functions), (row, own_at, own) in itertools.product(columns.unknowns, rows.unknowns):
+                pairs = along[:, functions[:, None], own].reshape(along.shape[0], -1)
+                sections = in_section[:, column, row]
+                step = max(1, _AT_ONCE // (pairs.shape[1] * rows.repeated))
+                for first in range(0, columns.repeated, step):
+                    some = sections[:, first : first + step]
+                    block = some.reshape(along.shape[0], -1).T @ pairs
+                    target[first : first + step, at, :, own_at] = block.reshape(
+                        some.shape[1], rows.repeated, functions.size, own.size
+                    ).transpose(0, 2, 1, 3)
+
+
+class _Group(NamedTuple):
+    """Unknowns of the section that follow each other, whose functions repeat after one, two or three.
+
+    Attributes
+    ----------
+    places : slice
+        Of all that they stand for.
+    repeated : int
+        How often.
+    unknowns : list of (slice, slice, ndarray of int)
+        Of each that is repeated, which of the section's, their places within what is repeated, and their functions.
+    """
+
+    places: slice
+    repeated: int
+    unknowns: list[tuple[slice, slice, Index]]
+
+
+def _groups(has: Mask, gone: int) -> list[_Group]:
+    """Groups of unknowns, which either all go or all stay.
+
+    Parameters
+    ----------
+    has : ndarray of bool, shape (n, functions)
+        Which functions each unknown of the section has, in the order of elimination.
+    gone : int
+        How many of what they stand for go.
+    """
+    counts = has.sum(axis=1)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    kind = np.unique(has, axis=0, return_inverse=True)[1].reshape(-1)
+    border = int(np.searchsorted(starts, gone))
+    # From each unknown on, how many have the functions of the one that is one, two or three behind them.
+    like = []
+    for period in (1, 2, 3):
+        same = np.zeros(kind.size, dtype=bool)
+        same[:-period] = kind[:-period] == kind[period:]
+        same[max(border - period, 0) : border] = False
+        where = np.append(np.flatnonzero(~same), kind.size)
+        like.append(where[np.searchsorted(where, np.arange(kind.size))] - np.arange(kind.size))
+    found, first = [], 0
+    while first < kind.size:
+        lengths = [(period * (int(like[period - 1][first]) // period + 1), -period) for period in (1, 2, 3)]
+        end = border if first < border else kind.size
+        length, period = max(one for one in lengths if first + one[0] <= end)
+        period = -period
+        within = starts[first : first + period + 1] - starts[first]
+        found.append(_Group(
+            slice(int(starts[first]), int(starts[first + length])), length // period,
+            [
+                (slice(first + i, first + length, period), slice(int(within[i]), int(within[i + 1])),
+                 np.flatnonzero(has[first + i]))
+                for i in range(period)
+            ],
+        ))  # fmt: skip
+        first += length
+    return found
+
+
+def _factors(
+    section: Section, products: list[tuple[Array, Array, Array]], elements: Index, local: Index, size: int
+) -> tuple[Array, Array]:
+    """What each zone's elements give between the section's first unknowns, and the functions' products with each.
+
+    Returns
+    -------
+    in_section : ndarray, shape (4 zones, size, size)
+    along : ndarray, shape (4 zones, functions, functions)
+    """
+    n = int(local.max()) + 1
     place = local[:, :, None] * n + local[:, None, :]
-    functions = np.flatnonzero((number[every] >= 0).any(axis=0))
-    own = number[every][:, functions].T
-    rows = [np.flatnonzero(one >= 0) for one in own]  # unknowns that have a function
-    start = np.concatenate([[0], np.cumsum([row.size for row in rows], dtype=np.int64)])
-    none = np.zeros(0, dtype=np.int64)
-    ids = np.concatenate([none, *(one[row] for one, row in zip(own, rows, strict=True))])
-    matrix = np.zeros((ids.size, ids.size))
-    for zone, product in enumerate(products):
+    in_section, along = [], []
+    for zone, (m0, m1, m2) in enumerate(products):
         mine = section.zone[elements] == zone
         if not mine.any():
             continue
         a00, a01, a11 = (
-            np.bincount(place[mine].ravel(), matrices[elements[mine]].ravel(), n * n).reshape(n, n)
+            np.bincount(place[mine].ravel(), matrices[elements[mine]].ravel(), n * n).reshape(n, n)[:size, :size]
             for matrices in section.stiffness
         )
-        a10 = np.ascontiguousarray(a01.T)
-        m0, m1, m2 = (part[np.ix_(functions, functions)] for part in product)
-        for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
-            both = np.ix_(rows[k], rows[m])
-            block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]
-            for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
-                if factor != 0.0:
-                    block += factor * a[both]
-    return ids, matrix
+        in_section += [a00, a01, a01.T, a11]
+        along += [m0, m1, m1.T, m2]
+    return np.stack(in_section), np.stack(along)

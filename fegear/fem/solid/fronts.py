@@ -115,7 +115,7 @@ def _needed(node: Node, depth: int, heights: tuple[int, int]) -> int:
 
 
 def eliminated(
-    root: Node, smallest: Callable[[Index], tuple[Index, Array]], old: Index, steps: list[Eliminated] | None
+    root: Node, smallest: Callable[[Index, Front], None], old: Index, steps: list[Eliminated] | None
 ) -> Array:
     """Eliminate what goes in all parts.
 
@@ -124,7 +124,7 @@ def eliminated(
     root : Node
         The whole.
     smallest : callable
-        Of elements to their unknowns, in the order of elimination by their numbers, and their stiffness, in any order.
+        Writes the stiffness of elements into their front, whose entries are whatever stood there.
     old : ndarray of int
         Of each unknown in the order of elimination the number that `steps` are to say.
     steps : list of Eliminated or None
@@ -146,7 +146,7 @@ def eliminated(
 
 
 def _left_of(
-    node: Node, depth: int, memory: _Memory, smallest: Callable[[Index], tuple[Index, Array]], old: Index,
+    node: Node, depth: int, memory: _Memory, smallest: Callable[[Index, Front], None], old: Index,
     steps: list[Eliminated] | None,
 ) -> Array:  # fmt: skip
     """Stiffness between what is left of a part, on top of its depth's pile; of the whole in memory of its own."""
@@ -163,22 +163,10 @@ def _left_of(
         for i, (half, stiffness) in enumerate(zip(node.halves, below, strict=True)):
             _add(front, stiffness, np.searchsorted(node.ids, half.left), first=i == 0)
     else:
-        _fill(front, *smallest(node.elements))
+        smallest(node.elements, front)
     left = _without(node, front, old, steps)
     memory.heights[pile], memory.heights[1 - pile] = height, other
     return left
-
-
-def _fill(front: Front, ids: Index, stiffness: Array) -> None:
-    """Copy a symmetric matrix whose unknowns stand in any order."""
-    n, sequence = front.inner.shape[0], np.argsort(ids)
-    gone, left = sequence[:n], sequence[n:]
-    # Of a symmetric matrix columns are rows, which are copied as they lie, few at a time: of those memory is at hand.
-    for target, rows, columns in ((front.inner, gone, gone), (front.border, left, gone), (front.rest, left, left)):
-        for first in range(0, columns.size, _BLOCK):
-            low = first if rows is columns else 0
-            some = columns[first : first + _BLOCK, None], rows[low:]
-            target.T[first : first + _BLOCK, low:] = stiffness[some]
 
 
 def _add(front: Front, stiffness: Array, at: Index, *, first: bool) -> None:
