@@ -101,7 +101,13 @@ def test_present_crowning_is_searched_over_and_the_minimum_is_that_of_all_of_the
     for one in found.data.found:
         assert one.kept[-1] > one.after[-1] + 0.1
     said = {one[:7]: one for one in found.answer.sentences}
-    assert said["Pair II"].endswith("with the present crowning of 6 µm.")
+    (ground,) = (one for one in found.tables if one.name == "lead_grinding_II")
+    rows = list(zip(ground["design"], ground["modification"], ground["amount"], strict=True))
+    assert rows[2:] == [
+        ("lead correction, present crowning", "helix slope", rows[0][2]),
+        ("lead correction, present crowning", "crowning", pytest.approx(6.0)),
+    ]
+    assert said["Pair II"].endswith("with the present crowning of 6 µm (for manufacturing deviations).")
     assert not any("present crowning" in one for one in corrected.answer.sentences)
     assert "present crowning is not kept" in " ".join(found.remarks)
 

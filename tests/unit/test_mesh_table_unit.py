@@ -50,6 +50,13 @@ def test_its_means_are_those_of_the_curves(results):
     assert te.mean() == pytest.approx(values["I.te_mean"], abs=np.ptp(te) / 500)
     assert slope.mean() == pytest.approx(values["I.local_stiffness_mean"], abs=2.0 * np.ptp(slope) / 500)
     assert np.ptp(te) == pytest.approx(values["I.te_peak_to_peak"], rel=5e-3)
+    # From the pitch point, as the curve: there the same transmission error stands beside the same angle.
+    angle = table.column("driver_angle_from_pitch_point").si
+    np.testing.assert_allclose(np.diff(angle), np.diff(table.column("driver_angle").si), rtol=1e-9)
+    curve = results.tables["transmission_error_I"]
+    assert angle[0] == pytest.approx(curve.column("driver_angle").si[0], rel=1e-12)
+    found = np.interp(angle, curve.column("driver_angle").si, np.asarray(curve.column("te").values, dtype=float))
+    np.testing.assert_allclose(te, found, atol=1e-6 * np.ptp(te))
     assert any("mesh_table_I has 500 equal steps" in remark for remark in results.remarks)
 
 

@@ -301,6 +301,11 @@ def test_a_head_has_the_symbols_of_the_trade(name, said, spelled):
     assert "".join(fragment([Paragraph(as_words(name))]).split("\n")) == f"<p>{spelled}</p>"
 
 
+def test_a_sentence_has_them_too():
+    text = "".join(fragment([Paragraph("helix slope C_Hβ and crowning C_β of gear a_1: S_H")]).split("\n"))
+    assert text == "<p>helix slope C<sub>Hβ</sub> and crowning C<sub>β</sub> of gear a_1: S<sub>H</sub></p>"
+
+
 def test_a_stress_intensity_has_the_root_of_a_metre():
     assert pretty_unit("MPa.m^(1/2)") == unit_said("MPa.m^(1/2)") == "MPa·√m"
     assert unit_said("N.m") == "N m"

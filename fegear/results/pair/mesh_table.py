@@ -36,6 +36,8 @@ class EvenMesh:
         How far means over the rows are from those of the curves, as shares of these.
     driver_angle : ndarray, shape (N,)
         [rad]; the row that would repeat the first is not among them.
+    from_pitch_point : ndarray, shape (N,)
+        The same, counted as in all other tables [rad].
     """
 
     te: Array
@@ -44,6 +46,9 @@ class EvenMesh:
     te_error: Array | None
     lost: dict[str, float]
     driver_angle: Array = shown("deg", "rotation of the driver, from the start of the curve over the base pitch")
+    from_pitch_point: Array = shown(
+        "deg", "rotation of the driver, zero with a tooth pair at the pitch point", name="driver_angle_from_pitch_point"
+    )
 
 
 def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
@@ -56,7 +61,8 @@ def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
         "tangent stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
     }
     error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
-    return EvenMesh(te, secant, local, error, lost, part * pitch / e.pair.driver.base_radius)
+    angle = part * pitch / e.pair.driver.base_radius
+    return EvenMesh(te, secant, local, error, lost, angle, angle + e.x[0] / e.pair.driver.base_radius)
 
 
 def _what_even_steps_lose(seen: Seen) -> str:
@@ -73,7 +79,11 @@ def _what_even_steps_lose(seen: Seen) -> str:
 MESH_TABLE = Rows(
     "mesh_table_{name}",
     "Mesh of {name} over one tooth of the driver, {load:said}",
-    ("driver_angle", *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error"))),
+    (
+        "driver_angle",
+        *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error")),
+        "from_pitch_point",
+    ),
     of="even",
     matlab=True,
 )

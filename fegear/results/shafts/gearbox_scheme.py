@@ -167,6 +167,9 @@ def _names(
     letter = _letter(*_turned(_extents(data, heights, start), upright=upright))
     line = _LINE * letter
     boxes = []
+    thick = {name: max(b.outer.max() for b in bodies if b.shaft == name and b.kind == "shaft") for name in heights}
+    if not upright:
+        boxes += [box for body in bodies if body.kind == "shaft" for box in _pieces(body, heights, start)]
     far = {name: max(b.z[-1] for b in bodies if b.shaft == name) for name in heights}
     for body in bodies:
         middle, height = start[body.shaft] + 0.5 * (body.z[0] + body.z[-1]), heights[body.shaft]
@@ -175,7 +178,8 @@ def _names(
             beyond = 0.6 * line if upright else letter * (0.5 * len(words) + 1.0)
             places.append((start[body.shaft] + far[body.shaft] + beyond, height, words))
         elif body.kind == "gear":
-            places.append((middle, height - 0.5 * (body.inner[0] + body.outer[0]), body.name))
+            along, across = _of_gear(body, thick[body.shaft], letter, upright=upright)
+            places.append((start[body.shaft] + along, height - across, body.name))
         else:
             beyond = letter * (0.5 * len(body.name) + 1.0) if upright else 0.6 * line
             places.append((middle, height - body.outer[0] - beyond, body.name))
@@ -187,6 +191,29 @@ def _names(
     x, y = _turned((np.array(z) * 1e3, np.array(y) * 1e3), upright=upright)
     moved = apart(x, y, labels, 1e3 * letter, 1e3 * np.array(boxes).reshape(-1, 4))
     return Points(x, moved, "", "ink", size=0.0, labels=labels)
+
+
+def _of_gear(body: DrawnBody, thick: float, letter: float, *, upright: bool) -> tuple[float, float]:
+    """Middle of a gear's name, along its shaft and away from its axis: on its body if there is room, else beside it."""
+    wide, line = letter * (len(body.name) + 1.0), _LINE * letter
+    inside, outside = max(thick, float(body.inner.min())), float(body.outer.max())
+    along = 0.5 * float(body.z[0] + body.z[-1])
+    room = wide if upright else line
+    if outside - inside >= room:
+        return along, 0.5 * (inside + outside)
+    if upright:  # past the end of its face, beside the shaft: its mate lies beside its body
+        return float(body.z[-1]) + 0.6 * line, inside + 0.5 * wide
+    return float(body.z[-1]) + 0.5 * wide, inside + 0.6 * line
+
+
+def _pieces(body: DrawnBody, heights: dict[str, float], start: dict[str, float]) -> list[list[float]]:
+    """Boxes of a shaft along the drawing: middle, length and thickness of each of its pieces [m]."""
+    height, z = heights[body.shaft], start[body.shaft] + body.z
+    return [
+        [0.5 * (a + b), height, b - a, 2.0 * max(r, s)]
+        for a, b, r, s in zip(z[:-1], z[1:], body.outer[:-1], body.outer[1:], strict=True)
+        if b > a
+    ]
 
 
 def _extents(data: GearboxData, heights: dict[str, float], start: dict[str, float]) -> tuple[float, float]:

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
 
+#: The design with the corrected slope and the present crowning, where the correction has less.
+_KEPT = "lead correction, present crowning"
 #: Seconds of one search on computed flanks under one load.
 _SEARCH = 5.0
 
@@ -80,9 +82,13 @@ class GroundLead:
     @property
     def grinding(self) -> tuple[Grinding, ...]:
         """The whole lead as rows of the grinding table; zero, too, where the present lead is to go."""
-        amounts = ((SLOPE, "linear", self.slope), (CROWNING, "parabolic", self.crowning))
+        crownings = {"lead correction": self.crowning}
+        if self.present > self.crowning:
+            crownings[_KEPT] = self.present
         return tuple(
-            Grinding(self.gear, "driver", "lead correction", kind, shape, amount) for kind, shape, amount in amounts
+            Grinding(self.gear, "driver", design, kind, shape, amount)
+            for design, crowning in crownings.items()
+            for kind, shape, amount in ((SLOPE, "linear", self.slope), (CROWNING, "parabolic", crowning))
         )
 
 
@@ -127,6 +133,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
         kept = ""
         if one.kept is not None and one.present != one.crowning:
             kept = f", {one.kept[-1]:.2f} with the present crowning of {figures(one.present * 1e6)} µm"
+            kept += " (for manufacturing deviations)" if one.present > one.crowning else ""
         yield (
             f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of {crowning} µm on gear "
             f"{one.gear}: K_Hβ {one.before[-1]:.2f} -> {one.after[-1]:.2f} at {figures(one.torque[-1])} N m{kept}."
@@ -136,7 +143,9 @@ def _sentences(seen: Seen) -> Iterator[str]:
 def _remarks(seen: Seen) -> Iterator[str]:
     yield (
         "Lead correction: for the deflections of shafts, bearings and housing only; the crowning is the total one, "
-        "present crowning is not kept: add the crowning that manufacturing deviations require."
+        "present crowning is not kept: add the crowning that manufacturing deviations require. S_H and S_F include "
+        "these deviations (f_ma, ISO 6336-1) and may fall with less crowning; "
+        f'fegear apply --relief "{_KEPT}" keeps the present one.'
     )
     yield (
         "Lead correction: K_Hbeta before and after is that of the loaded flanks at nominal load. Not that of S_H and "
