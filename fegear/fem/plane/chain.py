@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
+from fegear.fem.plane.condensation import symmetric
 
 
 def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, Array], dict[int, Array]]:
@@ -66,21 +67,21 @@ def chain_of(condensed: Array, count: int) -> Array | None:
             rest = power if rest is None else _joined(rest, power)
         left >>= 1
         power = _joined(power, power) if left else power
-    return rest
+    return rest if rest is None or rest is condensed else symmetric(rest).T
 
 
 def _joined(one: Array, other: Array) -> Array:
-    """Two chains with the side between them eliminated."""
-    from scipy.linalg import lapack
+    """Two chains with the side between them eliminated: reads and makes lower triangles, columns by columns."""
+    from scipy.linalg import blas
 
     m = one.shape[0] // 2
-    between = one[m:, m:] + other[:m, :m]
-    border = np.hstack([one[m:, :m], other[:m, m:]])
-    chain = np.zeros_like(one)
+    between = factored(one[m:, m:] + other[:m, :m])
+    border = np.empty((2 * m, m), order="F")
+    border[:m], border[m:] = one[m:, :m].T, other[m:, :m]
+    chain = np.zeros(one.shape, order="F")
     chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
-    half = lapack.dtrtrs(factored(between), border, lower=1)[0]
-    chain -= half.T @ half
-    return chain
+    half = blas.dtrsm(1.0, between, border, side=1, lower=1, trans_a=1, overwrite_b=1)
+    return np.asarray(blas.dsyrk(-1.0, half, beta=1.0, c=chain, lower=1, overwrite_c=1))
 
 
 def factored(stiffness: Array) -> Array:
