@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from rexs_cases import case, imported, same, text_of, there_and_back
 from rexs_models import part, two_stages
 
+import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.shafts import said_of_bearings
@@ -197,3 +198,33 @@ def test_an_exponent_follows_from_what_rolls_unless_given():
     assert BearingPart.model_validate({"designation": "NU206", "life": life}).rating.kind == "roller"
     assert BearingPart.model_validate({"designation": "NU206", "life": life | {"kind": "ball"}}).rating.kind == "ball"
     assert BearingPart.model_validate({"radial": "200 N/um", "life": life}).rating.kind == "ball"
+
+
+def shaft_on(*bearings: dict) -> dict:
+    """A helical pinion between two bearings of one kind, its wheel on rigid ones."""
+    gears = {
+        name: {"teeth": teeth, "normal_module": "3 mm", "helix_angle": "20 deg", "hand": hand, "face_width": "30 mm"}
+        for name, teeth, hand in (("p", 21, "left"), ("w", 53, "right"))
+    }
+    sections = [{"length": "120 mm", "outer": "30 mm"}]
+    on = [{"bearing": "A", "at": "20 mm"}, {"bearing": "B", "at": "100 mm"}]
+    shafts = {
+        "s": {"sections": sections, "gears": [{"gear": "p", "at": "60 mm"}], "bearings": on, "coupling": "0 mm"},
+        "t": {"axis": ["118.124 mm", "0 mm"], "sections": sections, "gears": [{"gear": "w", "at": "60 mm"}],
+              "bearings": [{"bearing": "C", "at": "20 mm"}, {"bearing": "D", "at": "100 mm"}], "coupling": "120 mm"},
+    }  # fmt: skip
+    rest = {"C": {"radial": "200 N/um", "fixed": True}, "D": {"radial": "200 N/um"}}
+    return {
+        "results": ["shaft-deflection"], "gear": gears, "shaft": shafts,
+        "pair": {"I": {"driver": "p", "driven": "w", "torque": "120 N*m"}},
+        "bearing": {**dict(zip("AB", bearings, strict=True)), **rest},
+    }  # fmt: skip
+
+
+def test_tapered_bearings_of_one_direction_do_not_hold_a_shaft():
+    """It was a tilt of 3.6 million degrees."""
+    document = shaft_on(*({"designation": "30206", "life": {}},) * 2)
+    with pytest.raises(InputError, match=r"in one direction only; set reversed = true for one of them"):
+        fegear.run(document, progress=False)
+    document["shaft"]["s"]["bearings"][1]["reversed"] = True
+    assert fegear.run(document, progress=False).tables["bearing_forces"].column("life").si[:2].min() > 1e9

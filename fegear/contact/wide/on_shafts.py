@@ -22,6 +22,7 @@ from fegear.base.keys import Key
 from fegear.contact.wide.load_sharing import growth_by_gaps, hat_averages
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.shaft_tilt import LARGEST_TILT
+from fegear.shafts.rolling_bearing import RollingBearing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair
     from fegear.shafts.gearbox import Gearbox
+    from fegear.shafts.held import Seat
     from fegear.shafts.solution import Deflection
 
 #: Change of gaps over their largest at which the solution is found, and steps after which it is given up.
@@ -167,6 +169,11 @@ def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
     for name, one, places in zip(gearbox.names, state.bent, gearbox.places, strict=True):
         moved = np.abs(one.at(places)).max(axis=0, initial=0.0)
         tilt, shift, length = float(moved[3:5].max()), float(moved[:3].max()), one.loaded.shaft.length
+        if max(tilt / LARGEST_TILT, shift / (_LARGEST_SHIFT * length)) > 1.0 and _one_way(one.loaded.seats):
+            raise InputError(
+                f"shaft.{name}.bearings", "(contact angles of one direction)",
+                "support the shaft axially in one direction only", "set reversed = true for one of them",
+            )  # fmt: skip
         if tilt > LARGEST_TILT:
             raise InputError(
                 f"shaft.{name}", f"tilt of {math.degrees(tilt):.4g} deg at its gears", "is not small",
@@ -179,6 +186,13 @@ def _refuse_askew(gearbox: Gearbox, state: GearboxState) -> None:
                 f"must stay within {100.0 * _LARGEST_SHIFT:g} % of the shaft length: reduce clearance, use stiffer "
                 "bearings",
             )  # fmt: skip
+
+
+def _one_way(seats: Sequence[Seat]) -> bool:
+    """Whether all bearings that carry axial forces do so in the same direction."""
+    along = [one.bearing for one in seats if one.bearing.rigid[2] or one.bearing.usual[2, 2] > 0.0]
+    angles = [one.contact_angle if isinstance(one, RollingBearing) else 0.0 for one in along]
+    return bool(angles) and (min(angles) > 0.0 or max(angles) < 0.0)
 
 
 def _state(gearbox: Gearbox, meshes: Sequence[MeshForces], scale: float, start: tuple[Array, ...]) -> GearboxState:
