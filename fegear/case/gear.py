@@ -43,16 +43,16 @@ class GearPart(GearKeys):
         """s_R [m]: as given, else what a given bore leaves below the root circle [m]; None of a solid gear."""
         if self.body is not None:
             return self.body.rim_thickness
-        if self.rim_thickness is not None or self.bore_radius is None:
+        if self.rim_thickness is not None or self.bore is None:
             return self.rim_thickness
-        return root_radius - self.bore_radius
+        return root_radius - self.bore
 
     @property
     def gives_rim(self) -> bool:
         """Whether the case says how thick the body under the teeth is, so that it is not fegear's assumption."""
         if self.internal:
             return self.outer_radius is not None or self.rim_thickness is not None
-        return self.bore_radius is not None
+        return self.bore is not None
 
     @property
     def web(self) -> float | None:
@@ -83,6 +83,8 @@ class GearPart(GearKeys):
                 "is required for the helix tolerances of tolerance_class", 'set face_width = "20 mm"',
                 key="face_width",
             )  # fmt: skip
+        if self.bore_radius is not None and self.bore_diameter is not None:
+            raise refuse("contradicts bore_radius", "specify one of them", key="bore_diameter")
         check_web(self)
         if not self.internal and self.rim_support is not None:
             self.rim_support.check_external(self)
@@ -197,7 +199,7 @@ class GearPart(GearKeys):
                 "rim_thickness", f"{self.rim_thickness * 1e3:.6g} mm",
                 f"must be between 0 and the root radius {root_radius * 1e3:.6g} mm", "remove it for a solid gear",
             )  # fmt: skip
-        return 0.5 * root_radius if self.bore_radius is None else self.bore_radius
+        return 0.5 * root_radius if self.bore is None else self.bore
 
     def _of_measure(self, error: InputError) -> InputError:
         """Report a profile shift under the dimension from which it was derived."""
@@ -216,6 +218,9 @@ class GearPart(GearKeys):
                 r"(\d[\d.e+-]*) modules", lambda found: f"{float(found[1]) * self.module_length * 1e3:.6g} mm", text
             )
 
+        if error.key == "bore_radius" and self.bore_diameter is not None:
+            given = f"{self.bore_diameter * 1e3:.6g} mm"
+            return InputError("bore_diameter", given, f"(radius {error.value}) {error.rule}", error.remedy)
         if error.key in ("tip_rounding", "tip_chamfer"):
             length = self.tip_radius_rounding if error.key == "tip_rounding" else self.tip_chamfer
             return InputError(error.key, f"{length * 1e3:.6g} mm", in_mm(error.rule), in_mm(error.remedy))

@@ -169,7 +169,7 @@ class RimSupportPart(Part):
         if gear.tooth_mesh is not None:
             raise refuse("requires the generated mesh", "remove tooth_mesh", key="rim_support")
         for key in ("bore_radius", "face_width") if self.kind == "web" else ("bore_radius",):
-            if getattr(gear, key) is None:
+            if (gear.bore if key == "bore_radius" else gear.face_width) is None:
                 raise refuse("is required for a gear with rim_support", f'set {key} = "20 mm"', key=key)
 
     def build(self, face_width: float) -> RimSupport | None:

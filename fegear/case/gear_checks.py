@@ -12,10 +12,12 @@ from fegear.case.part import refuse
 if TYPE_CHECKING:
     from fegear.case.gear_keys import GearKeys
 
+_AT_ITS_OUTSIDE = "set outer_radius or rim_thickness: the body of an internal gear is fixed at its outside"
 #: Keys of gears that an internal one has not, and what it has instead.
 _EXTERNAL_ONLY = {
     "rack": "specify its cutter",
-    "bore_radius": "set outer_radius or rim_thickness: the body of an internal gear is fixed at its outside",
+    "bore_radius": _AT_ITS_OUTSIDE,
+    "bore_diameter": _AT_ITS_OUTSIDE,
     "web_thickness": "remove it",
     "body": "write outer_radius or rim_thickness",
     "tooth_mesh": "remove it: its mesh is generated",
@@ -135,12 +137,12 @@ def check_web(part: GearKeys) -> None:
         for key in ("rim_thickness", "web_thickness"):
             if getattr(part, key) is not None:
                 raise refuse(f"contradicts body.{key}", f"specify {key} in body only", key=key)
-        for key in ("bore_radius", "face_width"):
-            if getattr(part, key) is None:
+        for key, given in (("bore_radius", part.bore), ("face_width", part.face_width)):
+            if given is None:
                 raise refuse("is required for a gear with a body", f'set {key} = "20 mm"', key=key)
     if part.web_thickness is None:
         return
-    if part.rim_thickness is None and part.bore_radius is None:
+    if part.rim_thickness is None and part.bore is None:
         raise refuse(
             "is required for C_R of a gear with web_thickness", 'set rim_thickness = "20 mm"',
             key="rim_thickness",

@@ -60,6 +60,9 @@ class GearKeys(TeethPart):
         default=None,
         description="Radius at which the gear body is fixed, inside the root circle. Default: half the root radius.",
     )
+    bore_diameter: PositiveLength | None = Field(
+        default=None, description="Diameter at which the gear body is fixed, in place of `bore_radius`."
+    )
     cutter: Table[CutterPart] | None = Field(
         default=None, description="Pinion-type cutter of an internal gear, instead of `rack`."
     )
@@ -168,6 +171,11 @@ class GearKeys(TeethPart):
         description="User-defined flank deviations, replacing those of `tolerance_class` in rating and `robustness`. "
         "Required outside the size range of ISO 1328-1.",
     )
+
+    @property
+    def bore(self) -> float | None:
+        """Radius at which the body is fixed, of whichever key gives it [m]; None without one."""
+        return self.bore_radius if self.bore_diameter is None else 0.5 * self.bore_diameter
 
     @property
     def asymmetric(self) -> bool:

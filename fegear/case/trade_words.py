@@ -122,7 +122,7 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("d_f df root_circle root_circle_diameter fusskreis fusskreisdurchmesser root_diameter",
      ("gear.NAME.cutter.root_diameter", "gear.NAME.rack.dedendum"), "d_f = m (z + 2 x - 2 h_fP*)"),
     (("bore bore_diameter bore_dia d_i di inner_diameter inside_diameter shaft_hole hole_diameter bohrung "
-     "bohrungsdurchmesser"), ("gear.NAME.bore_radius",), "half the diameter"),
+     "bohrungsdurchmesser"), ("gear.NAME.bore_diameter",), ""),
     ("hub_diameter nabendurchmesser", ("gear.NAME.body.hub_radius",), "half the diameter"),
     ("s_n sn s_t s thickness circular_tooth_thickness normal_tooth_thickness zahndicke",
      ("gear.NAME.tooth_thickness",), "normal to the teeth at the reference diameter"),

@@ -79,8 +79,13 @@ def _inert_cells(values: NDArray[np.generic]) -> list[str]:
 
 
 def sheet_lines(table: Table) -> list[str]:
-    """Lines for the terminal: a line for each quantity, a column for each row of the table."""
-    rows = [[column.head, *_written(column.values, "{:.7g}")] for column in table.columns]
+    """Lines for the terminal: a line for each quantity, a column for each row of the table.
+
+    Sizes of a drawing have seven digits, stresses and numbers without a unit five.
+    """
+    rows = [
+        [one.head, *_written(one.values, "{:.5g}" if one.unit in _FEW_DIGITS else "{:.7g}")] for one in table.columns
+    ]
     first, *widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
         f"{row[0]:<{first}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(row[1:], widths, strict=True))
@@ -116,6 +121,8 @@ def write_table(folder: Path, table: Table) -> Path:
     return path
 
 
+#: Units of what is computed rather than measured on a drawing.
+_FEW_DIGITS = ("", "MPa")
 #: What tables are written as.
 KINDS = ("csv", "mat")
 

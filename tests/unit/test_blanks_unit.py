@@ -32,6 +32,13 @@ def test_a_table_has_blanks_and_its_columns_say_why():
     assert [cells(np.array([one])) for one in odd] == [[""], [""], ["3"], ["a"]]
 
 
+def test_the_terminal_has_the_digits_that_a_person_reads():
+    """ "S_H_driver 2.168138": sizes of a drawing need seven digits, safety factors and stresses do not."""
+    columns = (("S_H", 2.1681384, ""), ("sigma_H", 605.402071, "MPa"), ("over_balls", 176.865912, "mm"))
+    table = Table("safety", tuple(Column(name, np.array([value]), unit) for name, value, unit in columns))
+    assert [line.split()[-1] for line in sheet_lines(table)] == ["2.1681", "605.4", "176.8659"]
+
+
 def test_equal_tables_of_several_pairs_have_their_titles_in_the_terminal():
     """Two blocks of safety factors followed each other without a word of whose they were."""
     one, two = (Table(f"lives_{name}", TABLE.columns, f"Lives of pair {name}") for name in ("I", "II"))

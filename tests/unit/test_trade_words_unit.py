@@ -41,7 +41,7 @@ def said(path, value="1"):
 #: What is typed, and the key that is named first or what is told.
 TYPED = {
     # strangers' words, which spelling led astray
-    "gear.a.bore_diameter": '"bore_radius" (half the diameter)',
+    "gear.a.bohrungsdurchmesser": '"bore_diameter"',
     "gear.a.backlash": "use pair.NAME.normal_backlash (made by thickness_allowance of the gears",
     "gear.a.circular_tooth_thickness": '"tooth_thickness"',
     "gear.a.span_measurement": '"span" (with span_teeth)',
@@ -106,7 +106,7 @@ TYPED = {
     "gear.a.Schrägungswinkel": '"helix_angle"',
     "gear.a.Zahnbreite": '"face_width"',
     "gear.a.Kopfkreis": '"tip_diameter"',
-    "gear.a.Bohrung": '"bore_radius" (half the diameter)',
+    "gear.a.Bohrung": '"bore_diameter"',
     "gear.a.Zahnweite": '"span" (with span_teeth)',
     "gear.a.Zahndickenabmaß": '"thickness_allowance"',
     "gear.a.MdK": '"over_balls"',
@@ -219,11 +219,11 @@ def test_what_is_not_possible_is_said_of_values_too(change, told, tmp_path):
 @pytest.mark.parametrize(
     ("typed", "remedy"),
     [
-        ("bore_diamter", 'did you mean "bore_radius"'),  # nearer to ball_diameter by its letters than to any key
+        ("bore_diamter", 'did you mean "bore_diameter"'),
         ("pitch_diamter", 'did you mean "module"'),
         ("tip_diamter", 'did you mean "tip_diameter"'),  # a misspelt key stays one
     ],
 )
 def test_a_misspelt_word_of_the_trade_is_one(typed, remedy):
-    known = ("ball_diameter", "bore_radius", "tip_diameter", "module", "teeth")
+    known = ("ball_diameter", "bore_radius", "bore_diameter", "tip_diameter", "module", "teeth")
     assert nearest(typed, known, words=meant).startswith(remedy)

@@ -23,7 +23,7 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
     part, made = scene.case.gear[gear], scene.gears[gear]
     if made.tooth.internal:
         return Body(made.bore_radius - made.root_radius, part.web_thickness, fixed=fixed)
-    rim, bored = part.rim(made.root_radius), part.bore_radius is not None
+    rim, bored = part.rim(made.root_radius), part.bore is not None
     body = Body(rim, part.web, bored and part.body is None, fixed)
     if rim is None or part.rim_thickness is not None or part.body is not None:
         return body

@@ -222,7 +222,7 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
             f"Gear {gear}: plane (2D) results use a solid disc; rim, web and hub are included in 3D results only."
         )
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
-    if part.bore_radius is not None:
+    if part.bore is not None:
         return () if scene.gears[gear].support is not None else thin_rim_remarks(gear, scene.gears[gear])
     held = f"fixed at half the root radius, {bore:.6g} mm"
     return (assuming(f"Gear {gear}: bore_radius not specified; gear body {held}."),)

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _GEAR = frozenset(
     {
         "teeth", "module", "diametral_pitch", "normal_module", "normal_diametral_pitch", "pressure_angle", "rack",
-        "profile_shift", "tip_diameter", "tip_chamfer", "bore_radius", "internal", "cutter", "face_width", "material",
+        "profile_shift", "tip_diameter", "tip_chamfer", "bore_radius", "bore_diameter", "internal", "cutter",
+        "face_width", "material",
         "ball_diameter", "plane", "strength", "tooth_mesh", "tooth_mesh_fillet", "relief", "lead", "roughness",
         "tolerance_class", "helix_angle", "hand", "circular_pitch", "normal_circular_pitch", "transverse_module",
         "transverse_pressure_angle", "profile_shift_sign", "tooth_thickness", "span", "span_teeth", "over_balls",
@@ -65,7 +66,7 @@ def write_gear(written: Written, scene: Scene, name: str) -> Part:
     made = written.part("ring_gear" if part.internal else "cylindrical_gear", name)
     sign = -1.0 if part.hand == "left" else 1.0
     made.say(
-        "length", normal_module=gear.module, face_width=gear.face_width, inner_diameter=_twice(part.bore_radius),
+        "length", normal_module=gear.module, face_width=gear.face_width, inner_diameter=_twice(part.bore),
         outer_diameter=_twice(outer),        tip_diameter=_tip(gear, part),
     )  # fmt: skip
     made.say("number", number_of_teeth=float(part.teeth))

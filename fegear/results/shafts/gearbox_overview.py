@@ -264,7 +264,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
     known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
     if math.isfinite(first.margin):
         known += [
-            f"{symbol} {value:.2f}" + (f" (minimum {figures(minimum)})" if value < minimum else "")
+            f"{symbol} {value:.2f} (minimum {figures(minimum)})"
             for symbol, value, minimum in (
                 ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
             )
