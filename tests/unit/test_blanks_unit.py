@@ -34,7 +34,7 @@ def test_a_table_has_blanks_and_its_columns_say_why():
 
 def test_the_terminal_has_the_digits_that_a_person_reads():
     """ "S_H_driver 2.168138": sizes of a drawing need seven digits, safety factors and stresses do not."""
-    columns = (("S_H", 2.1681384, ""), ("sigma_H", 605.402071, "MPa"), ("over_balls", 176.865912, "mm"))
+    columns = (("S_H", 2.1681384, ""), ("sigma_H", 605.402071e6, "MPa"), ("over_balls", 0.176865912, "mm"))
     table = Table("safety", tuple(Column(name, np.array([value]), unit) for name, value, unit in columns))
     assert [line.split()[-1] for line in sheet_lines(table)] == ["2.1681", "605.4", "176.8659"]
 
