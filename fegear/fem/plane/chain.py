@@ -6,6 +6,8 @@ loaded sector.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from fegear.base.arrays import Array
@@ -64,24 +66,49 @@ def chain_of(condensed: Array, count: int) -> Array | None:
     power, left = condensed, count
     while left:
         if left & 1:
-            rest = power if rest is None else _joined(rest, power)
+            rest = power if rest is None else joined(rest, power).chain
         left >>= 1
-        power = _joined(power, power) if left else power
+        power = joined(power, power).chain if left else power
     return rest if rest is None or rest is condensed else symmetric(rest).T
 
 
-def _joined(one: Array, other: Array) -> Array:
-    """Two chains with the side between them eliminated: reads and makes lower triangles, columns by columns."""
+class Join(NamedTuple):
+    """Two chains as one, and how the side between them, which is gone, follows its ends.
+
+    Attributes
+    ----------
+    chain : ndarray, shape (2 m, 2 m)
+        Stiffness between the ends, its lower triangle.
+    factor : ndarray, shape (m, m)
+        L, of the stiffness of the side between.
+    border : ndarray, shape (2 m, m)
+        B: the side moves by -L^-T B^T u, u the motion of both ends.
+    """
+
+    chain: Array
+    factor: Array
+    border: Array
+
+    def between(self, ends: Array) -> Array:
+        """Motion of the side between from that of both ends, shape (m, P) from (2 m, P)."""
+        from scipy.linalg import blas
+
+        inner = np.asfortranarray(self.border.T @ ends)
+        return np.asarray(blas.dtrsm(-1.0, self.factor, inner, lower=1, trans_a=1, overwrite_b=1))
+
+
+def joined(one: Array, other: Array) -> Join:
+    """Two chains with the side between them eliminated; of both only the lower triangle is read."""
     from scipy.linalg import blas
 
     m = one.shape[0] // 2
-    between = factored(one[m:, m:] + other[:m, :m])
+    factor = factored(one[m:, m:] + other[:m, :m])
     border = np.empty((2 * m, m), order="F")
     border[:m], border[m:] = one[m:, :m].T, other[m:, :m]
     chain = np.zeros(one.shape, order="F")
     chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
-    half = blas.dtrsm(1.0, between, border, side=1, lower=1, trans_a=1, overwrite_b=1)
-    return np.asarray(blas.dsyrk(-1.0, half, beta=1.0, c=chain, lower=1, overwrite_c=1))
+    border = blas.dtrsm(1.0, factor, border, side=1, lower=1, trans_a=1, overwrite_b=1)
+    return Join(np.asarray(blas.dsyrk(-1.0, border, beta=1.0, c=chain, lower=1, overwrite_c=1)), factor, border)
 
 
 def factored(stiffness: Array) -> Array:

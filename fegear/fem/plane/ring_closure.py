@@ -16,14 +16,15 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
-from fegear.fem.plane.chain import chain_coupling, chain_of, factored
-from fegear.fem.plane.condensation import Condensed
+from fegear.fem.plane.chain import chain_coupling, chain_of, factored, joined
+from fegear.fem.plane.condensation import Condensed, symmetric
 from fegear.fem.plane.elasticity import SectorElasticity
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.sector_sides import BetweenSides, between_sides, condensed_sector, ports_of
@@ -305,18 +306,20 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
     """Return the same for a few neighbours of a ring of many teeth, in some log2(z) real steps.
 
     Two chains of sectors joined, the side between them eliminated, are one longer chain; so all sectors but those
-    between sides 0 and reach become one, whose ends close the ring. What is to the other side follows by reciprocity.
+    between sides 0 and reach become one. They are joined to it one by one until it goes from side 0 to itself; then the
+    sides between follow from side 0, one after the other, and what is to the other side by reciprocity.
     """
     from scipy.linalg import lapack
 
     m = condensed.shape[0] // 2
-    rest = chain_of(condensed, z - reach)
-    sides = reach + 1
-    chains = [*((condensed, i, i + 1) for i in range(reach)), (rest, reach, 0)]
-    whole = closed_stiffness(chains, sides, m)
-    right = np.zeros((sides, m, m))
-    right[0] = np.eye(m)
-    found = lapack.dpotrs(factored(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
+    rest, joins = cast("Array", chain_of(condensed, z - reach)), []
+    for _ in range(reach):
+        joins.append(joined(condensed, rest))
+        rest = joins[-1].chain
+    whole = symmetric(rest[:m, :m] + rest[m:, m:]) + rest[m:, :m] + rest[m:, :m].T
+    found = [symmetric(np.asarray(lapack.dpotri(factored(whole), lower=1, overwrite_c=1)[0]))]
+    for join in reversed(joins):
+        found.append(join.between(np.vstack([found[-1], found[0]])))
     return {k: (found[k] if k >= 0 else found[-k].T) for k in range(-reach, reach + 1)}
 
 
