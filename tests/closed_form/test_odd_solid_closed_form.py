@@ -1,5 +1,6 @@
 """Solid gears with odd teeth: laws of their rings and contacts, and the limit of plane teeth."""
 
+import functools
 import math
 from itertools import product
 
@@ -192,6 +193,12 @@ def made(one, odd=None, **how):
     return solve_odd_solid(*parts, odd=odd, reach=3, **how) if odd else solve_solid(*parts, reach=3, **how)
 
 
+def together_at(*each):
+    """Transmission errors over the positions that several have in common."""
+    common = functools.reduce(np.intersect1d, [one.x for one in each])
+    return [one.transmission_error[:, np.isin(one.x, common)] for one in each]
+
+
 class Mesh:
     """Two gears, solved, and their cracked likes."""
 
@@ -207,12 +214,12 @@ class Mesh:
     def cracked(self, member, number):
         return {**self.plain, member: made(self.gears[member], {number: self.crack[member]})}
 
-    def revolving(self, gears=None, **how):
+    def revolving(self, gears=None, positions=12, **how):
         spec = PairSpec(self.pair, (LOAD,), width="solid", wide=WideSpec(panels=8), **how)
-        return revolving_flanks(spec, gears or self.plain, None, positions=12)
+        return revolving_flanks(spec, gears or self.plain, None, positions=positions)
 
-    def over(self, gears=None, **how):
-        return wide_over_revolution(self.revolving(gears, **how))
+    def over(self, gears=None, positions=12, **how):
+        return wide_over_revolution(self.revolving(gears, positions, **how))
 
     def roots(self, member, gears=None, side="tension"):
         return wide_stress_over_revolution(follow_flanks(self.revolving(gears)), member, side)
@@ -238,8 +245,9 @@ def test_a_crack_shows_in_the_base_pitches_in_which_it_is_loaded(mesh, member, r
     assert found.transmission_error.shape[0] == z
     assert found.solved <= 9
     assert found.loads.sum(axis=1) == pytest.approx(LOAD, rel=1e-9)
-    ordinary = np.median(found.transmission_error, axis=0)
-    assert ordinary == pytest.approx(mesh.over().transmission_error[0], rel=1e-6)
+    here, usually = together_at(found, mesh.over())
+    assert here.shape[1] >= 12
+    assert np.median(here, axis=0) == pytest.approx(usually[0], rel=1e-6)
     off = np.abs(found.residual).max(axis=1)
     # tooth n of either gear is on pair 0 in base pitch n, on the pairs beside it before and after
     assert off.argmax() in (order, order - 1, order + 1)
@@ -282,9 +290,11 @@ def test_flanks_of_single_teeth(spur):
     ground = spur.over(driver=FlankSpec(profiles=((3, one),)))
     every = spur.over(driver=FlankSpec(relief=relief))
     assert np.abs(ground.residual).max(axis=1).argmax() in (2, 3, 4)
-    assert np.array_equal(np.median(ground.transmission_error, axis=0), plain.transmission_error[0])
+    here, usually = together_at(ground, plain)
+    assert np.array_equal(np.median(here, axis=0), usually[0])
     all_teeth = spur.over(driver=FlankSpec(profiles=tuple((n, one) for n in range(20))))
-    assert all_teeth.transmission_error == pytest.approx(np.tile(every.transmission_error[0], (20, 1)), rel=1e-12)
+    here, usually = together_at(all_teeth, every)
+    assert here == pytest.approx(np.tile(usually[0], (20, 1)), rel=1e-12)
 
 
 @pytest.mark.dear
@@ -317,6 +327,24 @@ def test_beside_a_missing_tooth_tip_edges_carry(spur):
     assert found.loads.sum(axis=1) == pytest.approx(LOAD, rel=1e-9)
 
 
+@pytest.mark.dear
+def test_extreme_values_stand_where_more_positions_find_them(spur):
+    """With contact at tip edges, where the curves have kinks and jumps at places that only the loads know."""
+    gears = spur.cracked("driver", 6)
+    few, many = (spur.over(gears, positions, corner_contact=True) for positions in (24, 192))
+    for found, truth, left in (
+        (few.lowest_stiffness, many.lowest_stiffness, few.beyond.stiffness),
+        (few.ordinary_lowest_stiffness, many.ordinary_lowest_stiffness, few.beyond.ordinary_stiffness),
+        (few.largest_error, many.largest_error, few.beyond.transmission_error),
+        (few.largest_residual, many.largest_residual, few.beyond.residual),
+    ):
+        assert abs(found - truth) <= 1.5 * left + 5e-4 * truth
+        assert found == pytest.approx(truth, rel=4e-3)
+    bare = few.transmission_error[:, np.isin(few.x, spur.revolving(gears, 24, corner_contact=True).flanks.roll)]
+    assert bare.shape[1] < few.x.size  # without places that are added the largest is missed
+    assert few.largest_error > (1.0 + 1e-4) * bare.max()
+
+
 # ---- root stress of each tooth -------------------------------------------------------------------------------------
 @pytest.mark.dear
 @pytest.mark.parametrize(("mesh", "member"), [("spur", "driver"), ("helical", "driven")])
@@ -324,7 +352,7 @@ def test_root_stress_of_a_tooth_that_differs_in_nothing_is_that_of_all_others(me
     """And that of all others is the ordinary root stress over the face, the largest of a base pitch."""
     mesh = request.getfixturevalue(mesh)
     one, followed = mesh.gears[member], follow_flanks(mesh.revolving())
-    state = followed.flanks.solve([LOAD])
+    state = followed.flanks.solve([LOAD], known=followed.flanks.compliance(LOAD, followed.over.x))
     rooted = rooted_lines(mesh.pair, member, state.lines, mesh.plain[member], coupling=True)
     z = places_along(state.lines, MODULE)
     like = section_mesh(one.symmetric_tooth, one.bore_radius / MODULE, SETTINGS.section, None, frontal=True)
@@ -357,9 +385,9 @@ def test_root_stress_of_a_cracked_tooth_falls_and_its_number_is_the_right_one(me
 def test_root_stress_without_motion_along_the_axis_is_that_of_plane_teeth(spur):
     """What a crack changes of each tooth's largest stress, by the plane ring and its own contact."""
     number, driver = 6, spur.gears["driver"]
-    flat = {member: made(one, plane_strain=True) for member, one in spur.gears.items()}
-    odd = {**flat, "driver": made(driver, {number: spur.crack["driver"]}, plane_strain=True)}
-    found = spur.roots("driver", odd).largest / spur.roots("driver", flat).largest
+    odd = made(driver, {number: spur.crack["driver"]}, plane_strain=True)
+    found = spur.roots("driver", {"driver": odd, "driven": made(spur.gears["driven"], plane_strain=True)}).largest
+    found = found / np.median(found)
     plane = {m: solve_gear(one, settings_at(-3), reach=2, estimate_error=False) for m, one in spur.gears.items()}
     cracked = solve_cracked_gear(plane["driver"], {number: spur.crack["driver"]})
     driven = finite_element_compliance(plane["driven"])

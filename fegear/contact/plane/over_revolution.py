@@ -30,6 +30,24 @@ _OWN_PART = 0.2
 
 
 @dataclass(frozen=True)
+class Beyond:
+    """By how much extreme values may lie beyond those at the roll positions, between these.
+
+    Parameters
+    ----------
+    stiffness, ordinary_stiffness : float
+        Lowest, of all and of an ordinary base pitch [N/m].
+    transmission_error, residual : float
+        Largest [m].
+    """
+
+    stiffness: float = 0.0
+    ordinary_stiffness: float = 0.0
+    transmission_error: float = 0.0
+    residual: float = 0.0
+
+
+@dataclass(frozen=True)
 class OverRevolution:
     """A loaded pair over C base pitches, P roll positions in each, under one load.
 
@@ -57,6 +75,8 @@ class OverRevolution:
         Local mesh stiffness dF/dTE [N/m].
     others : tuple of OverRevolution
         The same with one compliance each off by its estimated error.
+    beyond : Beyond
+        What few roll positions leave open.
     """
 
     x: Array
@@ -70,6 +90,7 @@ class OverRevolution:
     solved: int
     tangent: Array
     others: tuple[OverRevolution, ...] = ()
+    beyond: Beyond = Beyond()
 
     def shift(self, answer: Callable[[OverRevolution], ArrayLike]) -> Array:
         """Estimated error of an answer: what the compliances' errors change of it; NaN where they state none."""
@@ -132,6 +153,27 @@ class OverRevolution:
         return float(self.stiffness.min())
 
     @property
+    def lowest_stiffness_error(self) -> float:
+        """Estimated [N/m]."""
+        return float(self.stiffness_error.flat[int(np.argmin(self.stiffness))]) + self.beyond.stiffness
+
+    @property
+    def ordinary_lowest_stiffness_error(self) -> float:
+        """Estimated [N/m]."""
+        return float(self.shift(lambda one: one.ordinary_lowest_stiffness)) + self.beyond.ordinary_stiffness
+
+    @property
+    def largest_error(self) -> float:
+        """Largest transmission error [m]."""
+        return float(self.transmission_error.max())
+
+    @property
+    def largest_error_error(self) -> float:
+        """Estimated [m]."""
+        at = int(np.argmax(self.transmission_error))
+        return float(self.transmission_error_error.flat[at]) + self.beyond.transmission_error
+
+    @property
     def ordinary_lowest_stiffness(self) -> float:
         """The lowest of an ordinary base pitch [N/m]."""
         return float(np.median(self.stiffness, axis=0).min())
@@ -145,7 +187,8 @@ class OverRevolution:
     def stiffness_loss_error(self) -> float:
         """Estimated, as a share of the ordinary lowest stiffness."""
         either = float(self.stiffness_error.flat[int(np.argmin(self.stiffness))]) / self.ordinary_lowest_stiffness
-        return self._of_difference(float(self.shift(lambda one: one.stiffness_loss)), either)
+        beyond = (self.beyond.stiffness + self.beyond.ordinary_stiffness) / self.ordinary_lowest_stiffness
+        return self._of_difference(float(self.shift(lambda one: one.stiffness_loss)), either) + beyond
 
     @property
     def largest_residual(self) -> float:
@@ -156,7 +199,7 @@ class OverRevolution:
     def largest_residual_error(self) -> float:
         """Estimated [m]."""
         either = float(self.transmission_error_error.flat[int(np.argmax(np.abs(self.residual)))])
-        return self._of_difference(float(self.shift(lambda one: one.largest_residual)), either)
+        return self._of_difference(float(self.shift(lambda one: one.largest_residual)), either) + self.beyond.residual
 
     def _of_difference(self, change: float, either: float) -> float:
         """Error of how odd and ordinary teeth differ: a part of the error of either is its own, not that of both."""

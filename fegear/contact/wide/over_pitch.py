@@ -119,7 +119,7 @@ def over_pitch(
     roll, te = points.x, found.transmission_error
     for turn in range(_ROUNDS + 1):
         likely = [likely_peaks(roll, sign * te, points.period) for sign in (-1.0, 1.0)]
-        new = _worth_a_look(roll, likely, points.period)
+        new = worth_a_look(roll, likely, points.period)
         if not peaks or turn == _ROUNDS or not new.size:
             break
         more = flanks.solve(found.load, gaps, flanks.compliance(about, new)).transmission_error
@@ -142,12 +142,23 @@ def _straight_mean(x: Array, values: Array, period: float) -> float:
     return float(step @ (values + np.roll(values, -1)) / (2.0 * period))
 
 
-def likely_peaks(x: Array, te: Array, period: float) -> tuple[Array, Array]:
+def likely_peaks(x: Array, te: Array, period: float, jump_below: float | None = None) -> tuple[Array, Array]:
     """Where largest values may stand between positions, and by how much above all that are known.
 
     From either side of an interval the curve is taken to go on as straight as it came there. Where both meet stands a
     kink of straight pieces; but where a tip edge comes into contact the curve is the steeper the nearer, and the kink
     stands farther on its way to that end. Half of the way from the flatter side counts as possible.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Ascending within a period [m].
+    te : ndarray, shape (P, L)
+        [m].
+    period : float
+        [m].
+    jump_below : float, optional
+        Positions nearer to each other stand on both sides of a jump [m]. Default: `JUMP` of the period.
 
     Returns
     -------
@@ -160,7 +171,7 @@ def likely_peaks(x: Array, te: Array, period: float) -> tuple[Array, Array]:
     rise = (np.roll(te, -1, axis=0) - te) / step
     ahead, behind = np.roll(rise, 1, axis=0), np.roll(rise, -1, axis=0)
     # Slopes across a jump tell nothing, and nothing stands within one.
-    jump = step < JUMP * period
+    jump = step < (JUMP * period if jump_below is None else jump_below)
     known = ~(jump | np.roll(jump, 1, axis=0) | np.roll(jump, -1, axis=0))
     peaked = known & (ahead > rise) & (behind < rise)
     way = np.where(peaked, (rise - behind) * step / np.where(peaked, ahead - behind, 1.0), 0.0)
@@ -170,7 +181,7 @@ def likely_peaks(x: Array, te: Array, period: float) -> tuple[Array, Array]:
     return x[:, None, None] + np.stack([way, farther], axis=2), height
 
 
-def _worth_a_look(x: Array, peaks: list[tuple[Array, Array]], period: float) -> Array:
+def worth_a_look(x: Array, peaks: list[tuple[Array, Array]], period: float) -> Array:
     """Roll positions at which the likeliest peaks are looked for, ascending [m]."""
     wanted: list[float] = []
     for places, height in peaks:

@@ -15,11 +15,13 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
-from fegear.contact.plane.over_revolution import MOST_PITCHES, OverRevolution
+from fegear.contact.plane.over_revolution import MOST_PITCHES, Beyond, OverRevolution
 from fegear.contact.wide.compliance import like_cycle
+from fegear.contact.wide.extremes import between_positions, folded
 from fegear.contact.wide.flanks import as_specified, open_gaps
 from fegear.contact.wide.lines import contact_lines
-from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import worth_a_look
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.contact.wide.transmission_error import secant_stiffness
 from fegear.fem.teeth import together
@@ -37,6 +39,12 @@ if TYPE_CHECKING:
 POSITIONS = 32
 #: How often contact lines may be continued farther along tip edges that turn out to be loaded.
 _LONGER_EDGES = 4
+#: Rounds of looking for extreme values between positions.
+_ROUNDS = 3
+#: New positions are whole multiples of this share of a base pitch, so that no last digit changes them.
+_SNAP = 1e-6
+#: A residual below this share of the largest transmission error is round-off.
+_ROUND_OFF = 1e-9
 #: Panels are so many times longer than over one base pitch, unless their number is given: what they leave open of loads
 #: of whole teeth is stated with them.
 _OVER_ALL = 2.0
@@ -114,23 +122,21 @@ class FollowedFlanks:
     over : OverRevolution
     flanks : FlankPair
         As they were loaded.
-    lines : ContactLines
     cycles : int
         Base pitches until the same teeth meet again; 1 where all teeth are alike.
     pitches : tuple of ndarray of int
         Numbers of the base pitches in which the same teeth meet.
-    forces : tuple of ndarray, shape (P, M)
-        On the stations in these [N].
+    parts : tuple of (ContactLines, tuple of ndarray, shape (P, M))
+        Lines of some of the roll positions, and forces on their stations in these base pitches [N].
     reaches_the_last_edges : bool
         Whether tip edges are loaded that are as far off as any.
     """
 
     over: OverRevolution
     flanks: FlankPair
-    lines: ContactLines
     cycles: int
     pitches: tuple[Index, ...]
-    forces: tuple[Array, ...]
+    parts: tuple[tuple[ContactLines, tuple[Array, ...]], ...]
     reaches_the_last_edges: bool = False
 
 
@@ -166,15 +172,50 @@ def follow_flanks(
             f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
         )  # fmt: skip
     count, report = cycles if cycles > 1 else base_pitches, progress or (lambda _fraction: None)
-    found = _far_enough(revolving, count)
-    report(0.4)
+    found = _with_peaks(revolving, _far_enough(revolving, count))
+    report(0.5)
     if revolving.coarse is None:
         return found
-    flanks = found.flanks
-    longer = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count)
-    report(0.7)
-    coarser = _followed(revolving, replace(flanks, gears=revolving.coarse), count)
+    flanks, roll = found.flanks, found.over.x
+    longer = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count, roll)
+    report(0.75)
+    coarser = _followed(revolving, replace(flanks, gears=revolving.coarse), count, roll)
     return replace(found, over=replace(found.over, others=(longer.over, coarser.over)))
+
+
+def _with_peaks(revolving: RevolvingFlanks, found: FollowedFlanks) -> FollowedFlanks:
+    """The same with the roll positions between them at which extreme values are likely, and what is left of these."""
+    count, pitch = found.over.transmission_error.shape[0], found.over.pitch
+    for turn in range(_ROUNDS + 1):
+        over = found.over
+        along, period = over.along.ravel(), count * pitch
+        every = (-over.stiffness, over.transmission_error, np.abs(over.residual))
+        likely = [between_positions(along, curve.ravel(), period, pitch) for curve in every]
+        likely = [folded(*one, float(over.x[0]), pitch) for one in likely]
+        likely.append(between_positions(over.x, -np.median(over.stiffness, axis=0), pitch, pitch))
+        if over.largest_residual < _ROUND_OFF * over.largest_error:
+            likely[2] = likely[2][0], np.zeros_like(likely[2][1])
+        new = np.unique(np.round(worth_a_look(over.x, likely, pitch) / (_SNAP * pitch))) * _SNAP * pitch
+        if turn == _ROUNDS or not new.size:
+            break
+        found = _joined(found, _followed(revolving, found.flanks, count, new, found))
+    stiffness, error, residual, ordinary = (max(float(height.max()), 0.0) for _, height in likely)
+    return replace(found, over=replace(found.over, beyond=Beyond(stiffness, ordinary, error, residual)))
+
+
+def _joined(one: FollowedFlanks, other: FollowedFlanks) -> FollowedFlanks:
+    """What was found at some roll positions and at others, together."""
+    x = np.concatenate([one.over.x, other.over.x])
+    order = np.argsort(x, kind="stable")
+    error, stiffness, loads, tangent = (
+        np.concatenate([getattr(part.over, name) for part in (one, other)], axis=-1)[..., order]
+        for name in ("transmission_error", "stiffness", "loads", "tangent")
+    )
+    over = replace(
+        one.over, x=x[order], transmission_error=error, stiffness=stiffness, loads=loads, tangent=tangent
+    )  # fmt: skip
+    reached = one.reaches_the_last_edges or other.reaches_the_last_edges
+    return replace(one, over=over, parts=(*one.parts, *other.parts), reaches_the_last_edges=reached)
 
 
 def _far_enough(revolving: RevolvingFlanks, count: int) -> FollowedFlanks:
@@ -182,7 +223,7 @@ def _far_enough(revolving: RevolvingFlanks, count: int) -> FollowedFlanks:
     flanks = revolving.flanks
     for left in range(_LONGER_EDGES, -1, -1):
         try:
-            found = _followed(revolving, flanks, count)
+            found = _followed(revolving, flanks, count, flanks.roll)
         except InputError as error:  # beside a missing tooth the edges of the next ones carry all of the load
             if error.key != "odd_tooth" or not flanks.most_gap or not left:
                 raise
@@ -193,31 +234,34 @@ def _far_enough(revolving: RevolvingFlanks, count: int) -> FollowedFlanks:
     return found
 
 
-def _followed(revolving: RevolvingFlanks, flanks: FlankPair, count: int) -> FollowedFlanks:
-    """The pair over all base pitches."""
+def _followed(
+    revolving: RevolvingFlanks, flanks: FlankPair, count: int, roll: Array, like: FollowedFlanks | None = None
+) -> FollowedFlanks:
+    """The pair over all base pitches at some roll positions; those `like` others are for the pairs of these."""
     pair, gaps, load = revolving.pair, revolving.gaps, revolving.load
-    lines = contact_lines(pair, flanks.roll, flanks.panel * pair.driver.module, most_gap=flanks.most_gap)
-    number = np.unique(lines.pair[lines.present])
-    alike = together(_teeth_in(flanks, gaps, lines, number, cycle) for cycle in range(count))
-    shape = count, flanks.roll.size
+    lines = contact_lines(pair, roll, flanks.panel * pair.driver.module, most_gap=flanks.most_gap)
+    if like is None:
+        number = np.unique(lines.pair[lines.present])
+        pitches = tuple(together(_teeth_in(flanks, gaps, lines, number, cycle) for cycle in range(count)))
+    else:
+        number, pitches = like.over.number, like.pitches
+    shape = count, roll.size
     error, stiffness, tangent = (np.empty(shape) for _ in range(3))
-    loads, forces, reached = np.empty((count, number.size, flanks.roll.size)), [], False
-    for pitches in alike:
-        state = _loaded(flanks, replace(gaps, base_pitch=int(pitches[0])), load)
-        error[pitches], tangent[pitches] = state.transmission_error[:, 0], state.contact.stiffness[:, 0]
-        stiffness[pitches] = secant_stiffness(state.known, state.contact.force)[:, 0]
-        loads[pitches] = state.pair_load[:, :, 0]
+    loads, forces, reached = np.zeros((count, number.size, roll.size)), [], False
+    for alike in pitches:
+        first = int(alike[0])
+        known = flanks.compliance(load, roll, first)
+        state = flanks.solve([load], replace(gaps, base_pitch=first), known)
+        error[alike], tangent[alike] = state.transmission_error[:, 0], state.contact.stiffness[:, 0]
+        stiffness[alike] = secant_stiffness(state.known, state.contact.force)[:, 0]
+        rows = np.searchsorted(number, state.pair_numbers)
+        loads[alike[:, None], rows] = state.pair_load[:, :, 0]
         forces.append(state.contact.force[:, :, 0])
         reached |= state.reaches_the_last_edges
     found = OverRevolution(
-        flanks.roll, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, len(alike),
-        tangent,
-    )  # fmt: skip
-    return FollowedFlanks(found, flanks, lines, revolving.cycles, tuple(alike), tuple(forces), reached)
-
-
-def _loaded(flanks: FlankPair, gaps: FlankGaps, load: float) -> LoadedFlanks:
-    return flanks.solve([load], gaps, flanks.compliance(load, cycle=gaps.base_pitch))
+        roll, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, len(pitches), tangent
+    )
+    return FollowedFlanks(found, flanks, revolving.cycles, pitches, ((lines, tuple(forces)),), reached)
 
 
 def _of_teeth(gaps: FlankGaps) -> tuple[tuple[Array, Array], tuple[tuple[tuple[int, OddFlank], ...], ...]]:

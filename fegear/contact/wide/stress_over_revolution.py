@@ -41,19 +41,25 @@ def wide_stress_over_revolution(followed: FollowedFlanks, member: Member, side: 
     StressOfTeeth
         Of teeth that are on a contact line; zero elsewhere.
     """
-    flanks, lines, number = followed.flanks, followed.lines, followed.over.number
-    pair, z, count = flanks.pair, places_along(lines, flanks.pair.driver.module), followed.cycles
+    flanks, number, count = followed.flanks, followed.over.number, followed.cycles
+    pair, found = flanks.pair, []
+    for lines, forces in followed.parts:
+        z = places_along(lines, pair.driver.module)
+        stress = np.zeros((count, number.size, lines.roll.size))
+        for pitches, force in zip(followed.pitches, forces, strict=True):
+            here = pitches[pitches < count]
+            for one in _rooted(flanks, member, lines, int(pitches[0])):
+                largest = one.stress(side, force, z).largest(SIGN[side])[0]
+                position, j = one.teeth.T
+                on = np.isin(j, number)
+                stress[here[:, None], np.searchsorted(number, j[on]), position[on]] = largest[on]
+        found.append(stress)
     numbered = min(pair.gear(member).teeth, count)
-    stress = np.zeros((count, number.size, lines.roll.size))
-    for pitches, force in zip(followed.pitches, followed.forces, strict=True):
-        for one in _rooted(flanks, member, lines, int(pitches[0])):
-            largest = one.stress(side, force, z).largest(SIGN[side])[0]
-            position, j = one.teeth.T
-            on, here = np.isin(j, number), pitches[pitches < count]
-            stress[here[:, None], np.searchsorted(number, j[on]), position[on]] = largest[on]
+    order = np.argsort(np.concatenate([lines.roll for lines, _ in followed.parts]), kind="stable")
     cycle = np.arange(count)[:, None]
     tooth = number - cycle if member == "driver" else cycle - number
-    return StressOfTeeth(member, side, lines.roll, tooth % numbered, stress, numbered)
+    every = np.concatenate(found, axis=2)[:, :, order]
+    return StressOfTeeth(member, side, followed.over.x, tooth % numbered, every, numbered)
 
 
 def _rooted(flanks: FlankPair, member: Member, lines: ContactLines, cycle: int) -> Iterable[RootedLines]:

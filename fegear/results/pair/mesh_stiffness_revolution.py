@@ -148,7 +148,7 @@ class RevolutionData:
     @property
     def mesh_stiffness_min_error(self) -> float:
         """[N/m]."""
-        return float(self.found.stiffness_error.flat[int(np.argmin(self.found.stiffness))])
+        return self.found.lowest_stiffness_error
 
     @property
     @shows("N/um", "minimum mesh stiffness of an ordinary base pitch")
@@ -159,7 +159,7 @@ class RevolutionData:
     @property
     def mesh_stiffness_min_ordinary_error(self) -> float:
         """[N/m]."""
-        return float(self.found.shift(lambda one: one.ordinary_lowest_stiffness))
+        return self.found.ordinary_lowest_stiffness_error
 
     @property
     @shows("%", "reduction of the minimum mesh stiffness compared with an ordinary base pitch")
@@ -176,12 +176,12 @@ class RevolutionData:
     @shows("um", "maximum transmission error")
     def te_max(self) -> float:
         """[m]."""
-        return float(self.found.transmission_error.max())
+        return self.found.largest_error
 
     @property
     def te_max_error(self) -> float:
         """[m]."""
-        return float(self.found.transmission_error_error.flat[int(np.argmax(self.found.transmission_error))])
+        return self.found.largest_error_error
 
     @property
     @shows("um", "maximum residual: transmission error minus that of an ordinary base pitch")
@@ -230,7 +230,7 @@ def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) ->
         _by_tooth(wide_stress_over_revolution(followed, member), gear)
         for member, gear in zip(MEMBERS, asked.gears, strict=True)
     )
-    return replace(_data(asked, revolving.pair, followed.over, stress), positions=revolving.flanks.positions)
+    return replace(_data(asked, revolving.pair, followed.over, stress), positions=followed.over.x.size)
 
 
 def _data(
