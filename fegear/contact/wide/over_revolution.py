@@ -16,8 +16,8 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.plane.over_revolution import MOST_PITCHES, Beyond, OverRevolution
+from fegear.contact.wide.between_positions import between_positions, folded
 from fegear.contact.wide.compliance import like_cycle
-from fegear.contact.wide.extremes import between_positions, folded
 from fegear.contact.wide.flanks import as_specified, open_gaps
 from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair
