@@ -121,7 +121,7 @@ class ReliefDesign:
     ground : mapping of shape to TipReliefPair
         What a shop can grind: for the range of the task, or for the design load.
     for_one_load : mapping of shape to TipReliefPair
-        The same for the design load only; empty without a range.
+        The same for the design load only, without the band of equally good ones; empty without a range.
     te : mapping of str to TransmissionError
         At the design load: "no relief", "designed", "diagonal only", each shape ground, and "present relief" where the
         pair has one; with a range also each shape for the design load only ("linear tip relief for one load").
@@ -200,7 +200,7 @@ def design_relief(
         ground[shape] = task.grind_on(designed, shape, cache)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         if task.over is not None:
-            for_one_load[shape] = grindable(designed, load, shape, task.metric, cache=cache)
+            for_one_load[shape] = grindable(designed, load, shape, task.metric, banded=False, cache=cache)
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
     if (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):

@@ -88,15 +88,16 @@ def test_what_is_left_is_told(outcome):
 def test_its_answer_says_what_to_grind_what_theory_leaves_and_what_the_robust_one_is_chosen_by(outcome):
     grind, within, *fewer, exact, robust = outcome.answer.sentences
     assert grind.startswith("Pair I: grind ")
-    assert grind.endswith("µm at 52.16 N m, peak to peak.")
+    torque = f"{1800.0 * 29.06345e-3:.2f} N m"  # base radius: 0.5 x 20 x 3 mm / cos 15° x cos(atan(tan 20° / cos 15°))
+    assert grind.endswith(f"µm at {torque}, peak to peak.")
     assert within.startswith("Pair I: within ± ")
     assert all("modifications) is only" in said for said in fewer)
     assert exact.startswith("Pair I: the exact topography reduces the transmission error from ")
-    assert exact.endswith("µm at 52.16 N m.")
+    assert exact.endswith(f"µm at {torque}.")
     best = outcome.data.design.best
     left = best.judged.mean_over_scatter.value * 1e6
     assert robust.startswith(f"Pair I: {best.label} is chosen by the mean over the scatter of misalignment: ")
-    assert f" -> {left:.2g} µm at 52.16 N m" in robust
+    assert f" -> {left:.2g} µm at {torque}" in robust
     assert not any("keys of the gears" in said for said in outcome.answer.sentences)
 
 

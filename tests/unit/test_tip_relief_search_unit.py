@@ -13,6 +13,7 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.charts import bench
+from fegear.design.tip_relief import clouds
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.grindable import optimise_tip_relief
 from fegear.design.tip_relief.ground import refine
@@ -37,6 +38,8 @@ from fegear.geometry.rack import BasicRack
 
 LOAD = 9000.0
 UNIT = np.array([20e-6, 1.0, 20e-6, 1.0])
+#: A relief that is nothing special.
+PLACE = np.array([31e-6, 0.43, 27e-6, 0.37])
 
 
 def engaged(z1, z2, shift=0.0, module=3e-3, method="cornell"):
@@ -390,11 +393,11 @@ def test_metrics_of_harmonics_and_extremes():
 #: and where those of equally good reliefs begin and end, amounts in um and lengths over the path.
 SEARCHES = [
     (
-        (24, 36), 1.0, "peak_to_peak", 50625, 905, 0.8388938182, (30.1577233, 0.307038304, 31.7317272, 0.322937665),
+        (24, 36), 1.0, "peak_to_peak", 50625, 645, 0.8388938182, (30.1577233, 0.307038304, 31.7317272, 0.322937665),
         (30.1395929, 0.303787912, 31.6793196, 0.319573570), (68.6233830, 0.680790636, 70.2395126, 0.697011570),
     ),
     (
-        (24, 24), 1.0, "peak_to_peak", 50625, 920, 0.8974684147, (30.3076751, 0.309080921, 30.3076746, 0.309080915),
+        (24, 24), 1.0, "peak_to_peak", 50625, 490, 0.8974684147, (30.3076751, 0.309080921, 30.3076746, 0.309080915),
         (30.2753391, 0.305625667, 30.2753391, 0.305625667), (69.9461434, 0.694931606, 69.9461434, 0.694931606),
     ),
     (
@@ -486,3 +489,57 @@ def test_even_positions_stand_on_both_sides_of_every_change_and_weigh_a_pitch(pa
 
 def test_a_whole_path_more_of_relief_is_worth_a_hundredth_of_the_mean_error():
     assert _RULE.tolist() == [1.0, -0.01, 1.0, -0.01]
+
+
+@pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
+def test_differences_of_one_side_lead_where_those_of_both_do(pair, monkeypatch, loads):
+    """On half of the way, about."""
+    trials = Trials(_even(pair, 24), np.array(loads), 1.0, "peak_to_peak")
+    p = np.random.default_rng(3).uniform([20e-6, 0.2, 20e-6, 0.2], [40e-6, 0.6, 40e-6, 0.6], (6, 4))
+    limits = limits_of([200e-6, 200e-6])
+    ground, left, ended, one_sided = refine(trials, p, limits)
+    monkeypatch.setattr(clouds, "_past_a_kink", lambda *_: True)
+    on_both, its_left, its_ended, both = refine(trials, p, limits)
+    np.testing.assert_allclose(left, its_left, rtol=1e-4)
+    there = ended & its_ended
+    assert there.sum() >= 4
+    np.testing.assert_allclose(left[there], its_left[there], rtol=1e-9)
+    np.testing.assert_allclose((ground / UNIT)[there], (on_both / UNIT)[there], atol=1e-5)
+    assert one_sided < 0.8 * both
+
+
+def test_a_step_past_a_kink_is_tried_downward_too(pair):
+    """A slope that jumps within the step: the relief starts where a roll position is."""
+
+    class Kinked(Trials):
+        def exact(self, p):
+            found = super().exact(p)
+            slope = found.slope.copy()
+            slope[p[:, 0] > PLACE[0] + 1e-12, 0] += 0.1
+            return Tried(found.seen, slope, found.low, found.low_slope)
+
+    loads = np.array([LOAD])
+    smooth, kinked = (of(_even(pair, 24), loads, 1.0, "peak_to_peak") for of in (Trials, Kinked))
+    both = {}
+    for label, trials in (("smooth", smooth), ("kinked", kinked)):
+        (one,), count = clouds.tried_clouds(trials, PLACE[None], UNIT, np.zeros(1, dtype=bool))
+        assert (one.kinked, len(one.tried.seen), count) == ((True, 9, 9) if label == "kinked" else (False, 5, 5))
+        both[label] = one
+    known, count = clouds.tried_clouds(kinked, PLACE[None], UNIT, np.ones(1, dtype=bool))
+    np.testing.assert_array_equal(known[0].tried.slope, both["kinked"].tried.slope)
+    assert count == 9
+    assert both["smooth"].left == both["kinked"].left
+
+
+@pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
+def test_without_the_band_of_equals_the_same_reliefs_are_found(loads):
+    e = engaged(24, 36)
+    banded, alone = (optimise_tip_relief(e, loads, "parabolic", "peak_to_peak", banded=one) for one in (True, False))
+    for one, other in ((banded.driver, alone.driver), (banded.driven, alone.driven)):
+        assert one.amount == pytest.approx(other.amount, rel=1e-5)
+        assert one.start == pytest.approx(other.start, rel=1e-5)
+    assert alone.objective == pytest.approx(banded.objective, rel=1e-6)
+    assert alone.driver_band == (alone.driver, alone.driver)
+    assert np.isnan(alone.error).all()
+    assert np.isnan(alone.band_error).all()
+    assert alone.evaluations < 0.8 * banded.evaluations

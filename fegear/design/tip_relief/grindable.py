@@ -104,6 +104,7 @@ def optimise_tip_relief(
     metric: Metric = "effective_error",
     weights: ArrayLike | None = None,
     *,
+    banded: bool = True,
     cache: SolutionCache | None = None,
 ) -> TipReliefPair:
     """Find amount and length of tip relief on both gears for the least excitation over a range of loads.
@@ -121,6 +122,8 @@ def optimise_tip_relief(
     metric : {"effective_error", "peak_to_peak"}
     weights : array_like, shape (L,), optional
         What each load counts, over the largest of them; one of weight zero does not count. All the same by default.
+    banded : bool
+        Whether to look for the band of equally good reliefs; without it bands are the reliefs, errors nan.
     cache : SolutionCache, optional
         Where searches are recalled from and kept.
 
@@ -140,13 +143,13 @@ def optimise_tip_relief(
         engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED,
         driver_spacing=np.empty(0), driven_spacing=np.empty(0),
     )  # fmt: skip
-    asked = plain, w[counts], power, metric, weight
+    asked = plain, w[counts], power, metric, weight, *(() if banded else (False,))
     found = (cache or SolutionCache()).call_kept_if_known(FOUND, search, *asked)  # compliances may be functions
     pair = engagement.pair
     gears = pair.driver, pair.driven
     tips, *ends = (
         [relief_over_path(gear, pair.path_length, p[2 * i], p[2 * i + 1], power) for i, gear in enumerate(gears)]
-        for p in (found.best, *found.band)
+        for p in (found.best, *np.where(np.isnan(found.band), found.best, found.band))
     )
     driver_band, driven_band = ((ends[0][i], ends[1][i]) for i in (0, 1))
     before = _left(plain, w)
@@ -195,7 +198,7 @@ def _left(engagement: Engagement, loads: Array) -> dict[str, Array]:
 
 def grindable(
     engagement: Engagement, load: float | LoadRange, shape: Shape = "linear", metric: Metric = "peak_to_peak", *,
-    cache: SolutionCache | None = None,
+    banded: bool = True, cache: SolutionCache | None = None,
 ) -> TipReliefPair:  # fmt: skip
     """Find the straight or parabolic tip reliefs that leave the least error at the design load, or over a range.
 
@@ -207,8 +210,10 @@ def grindable(
         Design load [N], or the loads of a range.
     shape : {"linear", "parabolic"}
     metric : {"peak_to_peak", "effective_error"}
+    banded : bool
+        Whether to look for the band of equally good reliefs.
     cache : SolutionCache, optional
         Where searches are recalled from and kept.
     """
     over = load if isinstance(load, LoadRange) else LoadRange((load,))
-    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights, cache=cache)
+    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights, banded=banded, cache=cache)

@@ -14,13 +14,10 @@ from typing import Any
 import numpy as np
 
 from fegear.base.arrays import Array, Floats, Mask
+from fegear.design.tip_relief.clouds import NEAR, STEP, tried_clouds
 from fegear.design.tip_relief.descent import Aim, Limits
 from fegear.design.tip_relief.trials import Trials, Tried
 
-#: Step of the differences, in the units of the numbers.
-_STEP = 3e-6
-#: What is seen this close to the extremes takes part, over what is left.
-_NEAR = 0.12
 #: Rounds at most, the step over the relief that ends them, for the next would be of its square, the region of trust
 #: that does, steps of each, and reliefs nearer than this, in their units, that have met.
 _ROUNDS, _END, _END_OF_TRUST, _STEPS, _MET = 12, 3e-9, 1e-9, 60, 1e-4
@@ -60,13 +57,12 @@ class _Curved:
 
 
 def _curved(values: Floats, slopes: Floats, unit: Floats) -> _Curved:
-    """Of a relief and four on both sides of it: values, shape (9, K), and slopes, (9, 4, K)."""
+    """Of a relief and four on one side of it, or on both: values, shape (5 or 9, K), and slopes, (5 or 9, 4, K)."""
     by_unit = slopes * unit[:, None]
-    # A kink that a difference takes past a position is found at the next one: the other difference counts.
-    sides = (by_unit[1:] - by_unit[0]) / _STEP
-    sides = np.where(np.isfinite(values[1:])[:, None], sides, 0.0)
+    sides = np.where(np.isfinite(values[1:])[:, None], (by_unit[1:] - by_unit[0]) / STEP, 0.0)
     up, down = sides[:4], -sides[4:]
-    curve = np.where(((up**2).sum(axis=1) <= (down**2).sum(axis=1))[:, None], up, down)
+    # A kink that a difference takes past a position is found at the next one: the other difference counts.
+    curve = np.where(((up**2).sum(axis=1) <= (down**2).sum(axis=1))[:, None], up, down) if down.size else up
     curve = np.moveaxis(0.5 * (curve + np.swapaxes(curve, 0, 1)), -1, 0)
     return _Curved(values[0], by_unit[0].T, curve)
 
@@ -159,18 +155,18 @@ def _effective(parts: Array, harmonics: int) -> tuple[float, Array]:
 
 
 def _problem(trials: Trials, tried: Tried, left: float, unit: Floats) -> _Problem:
-    """About the first of nine candidates, in multiples of what it leaves."""
+    """About the first of five candidates, or nine, in multiples of what it leaves."""
     high, low = [], []
     for load in range(trials.loads.size):
         one = _curved(tried.seen[:, load] / left, tried.slope[:, :, load] / left, unit)
         if trials.metric != "peak_to_peak":
             # Those of the values themselves: what quadrature across kinks is off to next order belongs to these.
             parts = tried.seen[:, load] / left
-            high.append(replace(one, slope=0.5 * (parts[1:5] - parts[5:]).T / _STEP))
+            high.append(replace(one, slope=0.5 * (parts[1:5] - parts[5:]).T / STEP))
             continue
         other = _curved(tried.low[:, load] / left, tried.low_slope[:, :, load] / left, unit)
-        high.append(one.of(one.value > one.value.max() - _NEAR))
-        low.append(other.of(other.value < other.value.min() + _NEAR))
+        high.append(one.of(one.value > one.value.max() - NEAR))
+        low.append(other.of(other.value < other.value.min() + NEAR))
     return _Problem(tuple(high), tuple(low), 0 if trials.metric == "peak_to_peak" else trials.harmonics)
 
 
@@ -232,6 +228,7 @@ class _Led:
     left: float
     value: float
     aim: Aim
+    kinked: bool
     step: float = _TRUST
     close: float = _ON_THE_WAY
     trust: float = _TRUST
@@ -272,24 +269,25 @@ def refine(
     evaluations : int
     """
     aim, unit, evaluations = aim or Aim(), limits.unit, 0
-    cloud = np.concatenate([np.zeros((1, 4)), _STEP * np.diag(unit), -_STEP * np.diag(unit)])
 
-    def tried_at(some: list[tuple[Floats, Aim]]) -> list[_Led]:
-        tried = trials.exact((np.array([p for p, _ in some])[:, None] + cloud).reshape(-1, 4))
-        left = trials.left(tried.seen[::9], tried.low[::9])
-        parts = (tried.of(slice(9 * i, 9 * i + 9)) for i in range(len(some)))
+    def tried_at(some: list[tuple[Floats, Aim, bool]]) -> list[_Led]:
+        nonlocal evaluations
+        places, kinked = (np.array([one[k] for one in some]) for k in (0, 2))
+        clouds, count = tried_clouds(trials, places, unit, kinked)
+        evaluations += count
         return [
-            _Led(p, part, float(at), float(own.value((p / unit)[None], np.array([at]))[0]), own)
-            for (p, own), part, at in zip(some, parts, left, strict=True)
-        ]
+            _Led(
+                p, one.tried, one.left, float(own.value((p / unit)[None], np.array([one.left]))[0]), own, one.kinked
+            )
+            for (p, own, _), one in zip(some, clouds, strict=True)
+        ]  # fmt: skip
 
     starts = np.clip(starts, limits.low, limits.high)
-    every = tried_at([(p, aim.of(np.array([i]))) for i, p in enumerate(starts)])
+    every = tried_at([(p, aim.of(np.array([i])), False) for i, p in enumerate(starts)])
     active = [one for one in every if one.left > 0.0]
     for _ in range(rounds):
-        evaluations += 9 * len(active)
         new = [_next(trials, one, limits) for one in active]
-        to = [(p, one.aim) for one, p in zip(active, new, strict=True) if p is not None]
+        to = [(p, one.aim, one.kinked) for one, p in zip(active, new, strict=True) if p is not None]
         reached = iter(tried_at(to) if to else [])
         active = [
             one for one, p in zip(active, new, strict=True)
@@ -307,7 +305,7 @@ def refine(
     found = [one.end for one in every]
     ended = np.array([all(one is not other for other in active) for one in found])
     left = np.array([one.left for one in found])
-    return np.array([one.p for one in found]), left, ended, evaluations + 9 * len(every)
+    return np.array([one.p for one in found]), left, ended, evaluations
 
 
 def _next(trials: Trials, one: _Led, limits: Limits) -> Floats | None:
@@ -328,7 +326,7 @@ def _goes_on(one: _Led, new: _Led, unit: Floats) -> bool:
     if new.value > one.value + 1e-12 * max(abs(one.value), one.left):
         one.trust = 0.25 * min(one.trust, step)
         return one.trust >= _END_OF_TRUST
-    one.p, one.tried, one.left, one.value = new.p, new.tried, new.left, new.value
+    one.p, one.tried, one.left, one.value, one.kinked = new.p, new.tried, new.left, new.value, new.kinked
     one.trust = min(2.0 * one.trust, 0.3) if step > 0.5 * one.trust else one.trust
     if step < _END and one.close == _AT_THE_END:
         # On an edge: once more with leave to come off it.

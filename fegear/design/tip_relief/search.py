@@ -156,7 +156,8 @@ class Found:
         How far the least of two independent searches are apart [m]: one from every other place of the scan, one from
         those between.
     band, band_error : ndarray, shape (2, 4)
-        From where to where the numbers of equally good reliefs go, and how much farther that may be.
+        From where to where the numbers of equally good reliefs go, and how much farther that may be; nan where it was
+        not looked for.
     candidates : int
         Combinations scanned.
     evaluations : int
@@ -191,7 +192,8 @@ FOUND: Codec[Found] = Codec(lambda found: pack(asdict(found)), _read)
 
 
 def search(
-    engagement: Engagement, loads: Floats, power: float, metric: str, weights: Floats | None = None
+    engagement: Engagement, loads: Floats, power: float, metric: str, weights: Floats | None = None,
+    banded: bool = True,
 ) -> Found:  # fmt: skip
     """Find the tip reliefs of both gears that leave the least over all amounts and lengths.
 
@@ -207,6 +209,8 @@ def search(
         `effective_error` or `peak_to_peak`.
     weights : ndarray, shape (L,), optional
         What each load counts, positive; all the same by default.
+    banded : bool
+        Whether to look for the ends of the band of equally good reliefs, a third of the time.
     """
     begun, pair = time.process_time(), engagement.pair
     coarse = Trials(bench(engagement, 5, 6), loads, power, metric, weights)
@@ -242,7 +246,7 @@ def search(
     spread = float(np.ptp([lefts[one].min() for one in of[deep].T]))
     allowed = (1.0 + SHARE) * least
     p, values = np.concatenate([grounds, p]), np.append(lefts, values)
-    best, count = _among_equals(trials, p[values <= allowed], valleys, allowed, limits, like)
+    best, count = _among_equals(trials, p[values <= allowed], valleys, allowed, limits, like, banded)
     return Found(
         best.chosen, best.left, least, spread, best.band, best.band_error, candidates, solved + count, starts,
         time.process_time() - begun,
@@ -305,7 +309,7 @@ class _Choice:
 
 
 def _among_equals(
-    trials: Trials, equals: Floats, valleys: Floats, allowed: float, limits: Limits, like: bool
+    trials: Trials, equals: Floats, valleys: Floats, allowed: float, limits: Limits, like: bool, banded: bool
 ) -> tuple[_Choice, int]:
     """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
 
@@ -326,6 +330,8 @@ def _among_equals(
     limits : Limits
     like : bool
         Whether driver and driven gear may change places.
+    banded : bool
+        Whether the ends are looked for.
 
     Returns
     -------
@@ -345,6 +351,11 @@ def _among_equals(
     each = [_driver_deeper(some) if like else some for some in each]
     known = np.concatenate(each)
     fewest = known[_apart(known, known / unit @ _RULE, limits, _CHOSEN)]
+    if not banded:
+        p, left, _, count = refine(trials, fewest, limits, Aim(np.tile(_RULE, (fewest.shape[0], 1)), allowed))
+        p, left, best, more = _fewest(trials, p, left, allowed, limits, like)
+        nothing = np.full((2, 4), np.nan)
+        return _Choice(p[best], float(left[best]), nothing, nothing), solved + count + more
     # The band is looked for from what lies farthest out already.
     outward = np.concatenate([-np.eye(4), np.eye(4)])
     begun = []
@@ -358,20 +369,28 @@ def _among_equals(
     own = np.arange(8), np.tile(np.arange(4), 2)
     moved = np.array([2.0 * np.abs(one - first)[own] for one, first in zip(ends, begun, strict=True)])
     doubt = np.maximum(np.where(ended, 0.0, moved).max(axis=0).reshape(2, 4), _WITHIN * unit)
-    removal = p / unit @ _RULE
-    if (removal < removal.min() + _EQUAL).sum() == 1:
-        # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
-        more, its_left, _, count = refine(trials, p[[removal.argmin()]], limits, Aim(_RULE[None], allowed))
-        p, left, solved = np.concatenate([p, more]), np.append(left, its_left), solved + count
-        removal = p / unit @ _RULE
-    p = _driver_deeper(p) if like else p
-    best = int(np.where(removal < removal.min() + _EQUAL, p[:, 0], -np.inf).argmax())
+    p, left, best, count = _fewest(trials, p, left, allowed, limits, like)
+    solved += count
     each = [np.concatenate([one, p[[best]]]) for one in ends]
     each = [np.concatenate([some, _mirrored(some)]) if like else some for some in each]
     low, high = (np.array([of(some, axis=0) for some in each]) for of in (np.min, np.max))
     apart = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
     error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, apart)
     return _Choice(p[best], float(left[best]), np.array([low.min(axis=0), high.max(axis=0)]), error), solved
+
+
+def _fewest(
+    trials: Trials, p: Floats, left: Floats, allowed: float, limits: Limits, like: bool
+) -> tuple[Floats, Floats, int, int]:  # fmt: skip
+    """Of reliefs led to the least removal, and what they leave, that with the least: its number; and evaluations."""
+    count, removal = 0, p / limits.unit @ _RULE
+    if (removal < removal.min() + _EQUAL).sum() == 1:
+        # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
+        more, its_left, _, count = refine(trials, p[[removal.argmin()]], limits, Aim(_RULE[None], allowed))
+        p, left = np.concatenate([p, more]), np.append(left, its_left)
+        removal = p / limits.unit @ _RULE
+    p = _driver_deeper(p) if like else p
+    return p, left, int(np.where(removal < removal.min() + _EQUAL, p[:, 0], -np.inf).argmax()), count
 
 
 def _of_every_region(begun: list[Floats], known: Floats, outward: Floats, unit: Floats) -> list[Floats]:
