@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
+
 from fegear.base.errors import InputError, shown
 from fegear.case.nearest import nearest
+from fegear.workbench.given import taken
+from fegear.workbench.quantities import in_si
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -76,3 +80,33 @@ def curve_of(results: Results, pair: str) -> MeshCurve:
     if name not in known:
         raise InputError("pair", shown(name), "has no mesh stiffness in these results", nearest(name, known))
     return known[name]
+
+
+def angles_of(value: object) -> Array:
+    """Rotations [rad] that somebody gave: numbers in rad, texts and quantities with a unit, or arrays of these.
+
+    Raises
+    ------
+    InputError
+        If they are none.
+    """
+    if isinstance(value, (int, float, np.ndarray)) and (plain := np.asarray(value)).dtype.kind in "iuf":
+        return plain.astype(float)  # at once: integrators ask some thousand times
+    try:
+        return np.array(_in_radians(taken(value, "driver_angle")), dtype=float)
+    except ValueError:  # rows of several lengths
+        raise _refused(value) from None
+
+
+def _in_radians(given: Any) -> Any:
+    if isinstance(given, list):
+        return [_in_radians(one) for one in given]
+    if isinstance(given, (int, float)) and not isinstance(given, bool):
+        return given
+    if isinstance(given, str) or hasattr(given, "magnitude"):
+        return in_si(given, "angle", "driver_angle")
+    raise _refused(given)
+
+
+def _refused(value: object) -> InputError:
+    return InputError("driver_angle", shown(value), "must be angles", 'for example 0.1 (in rad) or "5 deg"')

@@ -22,7 +22,7 @@ from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
 from fegear.workbench.given import folder_of, texts
-from fegear.workbench.mesh_curve import curve_of
+from fegear.workbench.mesh_curve import angles_of, curve_of
 from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
@@ -199,8 +199,9 @@ class Results(Found):
         Parameters
         ----------
         driver_angle : array_like
-            [rad], any number of turns: zero where a tooth pair is at the pitch point, as `driver_angle` of the table
-            ``transmission_error_<pair>``; of a revolution with odd teeth where the first teeth are.
+            [rad], or with a unit (``"5 deg"``, quantities of pint); any number of turns: zero where a tooth pair is at
+            the pitch point, as `driver_angle` of the table ``transmission_error_<pair>``; of a revolution with odd
+            teeth where the first teeth are.
         pair : str
             By default the only pair with a curve.
         secant : bool
@@ -214,13 +215,14 @@ class Results(Found):
         Raises
         ------
         InputError
-            If the results have neither "transmission-error" nor "mesh-stiffness-revolution" of that pair.
+            If an angle cannot be read, or the results have neither "transmission-error" nor
+            "mesh-stiffness-revolution" of that pair.
         """
-        return curve_of(self, pair).stiffness(driver_angle, secant=secant)
+        return curve_of(self, pair).stiffness(angles_of(driver_angle), secant=secant)
 
     def transmission_error(self, driver_angle: ArrayLike, pair: str = "") -> Array:
         """Transmission error at rotations of the driver under the nominal load [m], as `mesh_stiffness`."""
-        return curve_of(self, pair).error(driver_angle)
+        return curve_of(self, pair).error(angles_of(driver_angle))
 
     def save(self, folder: str | os.PathLike[str], *, plots: bool = True) -> Path:
         """Write everything into a folder, as ``fegear run`` does: tables, dataset, pictures, report, summary.

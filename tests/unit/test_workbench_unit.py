@@ -19,7 +19,7 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError, MissingLibraryError
-from fegear.base.units import from_si
+from fegear.base.units import from_si, registry
 from fegear.engine.stage import Task
 from fegear.workbench.mesh_curve import curve_of
 
@@ -361,6 +361,19 @@ def test_mesh_stiffness_and_transmission_error_are_functions_of_the_rotation(fou
     np.testing.assert_allclose(found.transmission_error(angle), te[middle], rtol=1e-6)
     with pytest.raises(InputError, match='pair = "II": has no mesh stiffness in these results; known here: I'):
         found.mesh_stiffness(0.0, "II")
+
+
+def test_rotations_have_units(found):
+    """Degrees of pint were taken for radians, None for an angle of its own."""
+    wanted = found.mesh_stiffness(np.radians([[3.0, 5.0]]))
+    degrees = registry().Quantity(np.array([[3.0, 5.0]]), "deg")
+    for given in (degrees, [["3 deg", degrees[0, 1]]], np.radians([[3.0, 5.0]]).tolist()):
+        np.testing.assert_allclose(found.mesh_stiffness(given), wanted, rtol=1e-12)
+    assert found.transmission_error("5 deg") == pytest.approx(found.transmission_error(math.radians(5.0)), rel=1e-12)
+    assert found.transmission_error(np.float32(0.0)) == found.transmission_error(0) == found.transmission_error(0.0)
+    for wrong in (None, [0.1, None], True, [[0.1], [0.1, 0.2]], "5", "5 mm", registry().Quantity(5.0, "mm"), 1j):
+        with pytest.raises(InputError, match="driver_angle"):
+            found.mesh_stiffness(wrong)
 
 
 def test_over_a_revolution_the_curve_with_the_odd_teeth_is_taken(found):
