@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ from fegear.case.part import LARGEST
 
 #: Units of heads as they are written elsewhere.
 _ELSEWHERE = {"Grad": "deg", "Umdr.": "rev", "µE": "ustrain", "uE": "ustrain"}
+#: What stands for a value that was not measured.
+_MISSING = {"", "nan", "#n/a", "n/a", "na", "null", "none", "-", "--", "---"}
 #: Heads that a message names.
 _NAMED = 8
 
@@ -65,7 +68,7 @@ class Columns(dict[str, NDArray[np.float64]]):
 
 
 def read_columns(
-    path: Path, key: str, dimensions: Mapping[str, str], units: Mapping[str, str] | None = None
+    path: Path, key: str, dimensions: Mapping[str, str], units: Mapping[str, str] | None = None, *, gaps: bool = False
 ) -> Columns:
     """Read the columns that are known by name into SI; others are passed over.
 
@@ -81,6 +84,8 @@ def read_columns(
         Dimension of each column that may be there; empty for plain numbers.
     units : mapping, optional
         Units of columns whose heads have none.
+    gaps : bool
+        Whether lines without a value (nothing, or what programs write for it) in one of the columns are left out.
 
     Raises
     ------
@@ -101,12 +106,20 @@ def read_columns(
                 "remove it",
             )  # fmt: skip
         at[head.name] = i
+    rows = [
+        (number, row) for number, row in lines.rows
+        if not gaps or not any(row[i].strip().casefold() in _MISSING for i in at.values())
+    ]  # fmt: skip
+    if not rows:
+        raise InputError(key, f'"{path.name}"', "has no line with all values", "check the columns")
+    missing = len(lines.rows) - len(rows)
+    lines = replace(lines, rows=rows)
     commas = decimal_commas([(number, row[i]) for number, row in lines.rows for i in at.values()], path, key)
     columns = {
         name: _column(lines, i, path, key, dimensions[name], (units or {}).get(name, ""), commas=commas)
         for name, i in at.items()
     }
-    return Columns(columns, tuple(head.text for head in lines.heads), _reading(lines, commas=commas))
+    return Columns(columns, tuple(head.text for head in lines.heads), _reading(lines, missing, commas=commas))
 
 
 def _column(
@@ -132,11 +145,12 @@ def _column(
     return scale * entries
 
 
-def _reading(lines: CsvLines, *, commas: bool) -> str:
+def _reading(lines: CsvLines, missing: int, *, commas: bool) -> str:
     parts = (
         "decimal commas" if commas else "",
         "units from the line below the heads" if lines.units_below else "",
         f"{lines.above} line{'s' if lines.above > 1 else ''} above the heads left out" if lines.above else "",
+        f"{missing} sample{'s' if missing > 1 else ''} without a value left out" if missing else "",
     )
     return ", ".join(part for part in parts if part)
 

@@ -1,9 +1,10 @@
 """A measured transmission error: order spectrum of its trace, the curve over one tooth pitch, and both beside computed.
 
 A trace of two encoders has everything that turns with the shafts: eccentricity, pitch deviations, couplings. Over whole
-turns its harmonics stand at whole orders of the shaft; those of the mesh are the multiples of the number of teeth. What
-stands beside a computed transmission error is the curve of the mesh: the trace less its mean over a tooth pitch to
-either side of each sample, which takes slow parts away and nothing of the mesh, averaged over all teeth.
+turns its harmonics stand at whole orders of the shaft; those of the mesh are the multiples of the number of teeth, and
+the first ones of the mating gear, which stand between, are fitted. What stands beside a computed transmission error is
+the curve of the mesh: the trace less its mean over a tooth pitch to either side of each sample, which takes slow parts
+away and nothing of the mesh, averaged over all teeth.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve, fit_curve
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,6 +37,8 @@ _GOES_ON = 1.1
 _SLACK = 1e-3
 #: Harmonics of the mesh that are compared at most.
 _HARMONICS = 12
+#: Orders of each gear that are fitted together, and periods over the trace that tell two of them apart.
+_LINES, _APART = 3, 0.35
 _TURN = 2.0 * math.pi
 
 
@@ -49,6 +52,19 @@ class ShortTraceError(ValueError):
 
 class UnevenTraceError(ValueError):
     """A trace runs back, or has a stretch without samples; the text is a rule on the trace."""
+
+
+@dataclass(frozen=True)
+class OrderLine:
+    """One order of a trace: amplitude cos(order angle - phase) [m], [rad]."""
+
+    order: float
+    amplitude: float
+    phase: float
+
+    def at(self, angle: Array) -> Array:
+        """[m]."""
+        return np.asarray(self.amplitude * np.cos(self.order * angle - self.phase))
 
 
 @dataclass(frozen=True)
@@ -70,6 +86,22 @@ class OrderSpectrum(ReadOnlyArrays):
     order: Array = shown("", "order per revolution of the shaft of the angle", label="order")
     amplitude: Array = shown("um", "amplitude of the measured transmission error", label="amplitude")
 
+    def beside(self, lines: Sequence[OrderLine]) -> OrderSpectrum:
+        """With further lines, in the place of any of the same order."""
+        if not lines:
+            return self
+        added = np.array([one.order for one in lines])
+        kept = np.abs(self.order[:, None] - added).min(axis=1) > 1e-9
+        orders = np.concatenate([self.order[kept], added])
+        ascending = np.argsort(orders, kind="stable")
+        phase, amplitude = (
+            np.concatenate([known[kept], more])[ascending]
+            for known, more in (
+                (self.phase, [one.phase for one in lines]), (self.amplitude, [one.amplitude for one in lines])
+            )
+        )  # fmt: skip
+        return OrderSpectrum(self.turns, phase, orders[ascending], amplitude)
+
 
 @dataclass(frozen=True)
 class MeasuredError(ReadOnlyArrays):
@@ -90,6 +122,9 @@ class MeasuredError(ReadOnlyArrays):
         Harmonics of the mesh.
     amplitude, phase : ndarray, shape (H,)
         Of these [m], [rad].
+    mate_order : float
+        Order of one revolution of the mating gear, with its multiples a part of the spectrum; 0 where the trace is too
+        short to tell it from those of the shaft.
     """
 
     teeth: int
@@ -101,6 +136,7 @@ class MeasuredError(ReadOnlyArrays):
     n: NDArray[np.int64]
     amplitude: Array
     phase: Array
+    mate_order: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -147,7 +183,7 @@ class FittedError(FittedCurve):
         return super().correlation
 
 
-def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
+def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> MeasuredError:
     """Orders of a trace and its curve over one tooth pitch.
 
     Parameters
@@ -156,6 +192,8 @@ def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
         Rotation of a shaft, counted on or from zero in each turn [rad], and transmission error [m].
     teeth : int
         Of the gear on this shaft.
+    mate_teeth : int
+        Of the other one, whose eccentricity stands between whole orders of the shaft; 0 to look for none.
 
     Raises
     ------
@@ -187,14 +225,15 @@ def measured_error(angle: Array, te: Array, teeth: int) -> MeasuredError:
     start = turned[0] if first is None else first * pitch
     even = start + pitch / places * np.arange(cycles * places)
     values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
-    spectrum = _spectrum(values, cycles / teeth, start)
+    mate = _of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
+    spectrum = _spectrum(values - sum((one.at(even) for one in mate), np.zeros(even.size)), cycles / teeth, start)
     curve, spread, averaged = _over_pitch(values, places)
     n = 1 + np.arange(min(_HARMONICS, places // 2 - 1))
     at = n * cycles - 1  # the record has `cycles` tooth pitches: harmonic n of the mesh is its n-th multiple
     at = at[at < spectrum.order.size]
     return MeasuredError(
-        teeth, spectrum, np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size], spectrum.amplitude[at],
-        spectrum.phase[at],
+        teeth, spectrum.beside(mate), np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size],
+        spectrum.amplitude[at], spectrum.phase[at], mate[0].order if mate else 0.0,
     )  # fmt: skip
 
 
@@ -231,6 +270,35 @@ def _spectrum(values: Array, turns: float, start: float) -> OrderSpectrum:
         found[-1] *= 0.5
     order = np.arange(1, found.size) / turns
     return OrderSpectrum(turns, np.mod(order * start - np.angle(found[1:]), _TURN), order, np.abs(found[1:]))
+
+
+def _of_mate(values: Array, angle: Array, turns: float, ratio: float) -> tuple[OrderLine, ...]:
+    """Lines of the mating gear, which a spectrum over whole turns of the shaft would spread over its neighbours.
+
+    By least squares together with the first orders of the shaft. Lines that stand too near to whole orders are left to
+    those.
+
+    Parameters
+    ----------
+    values, angle : ndarray, shape (N,)
+    turns : float
+        That these are over.
+    ratio : float
+        Order of one revolution of the mating gear; 0 for none.
+    """
+    if turns < 1.0 or ratio * turns < 1.0:
+        return ()
+    own, orders = np.arange(1.0, _LINES + 1.0), ratio * np.arange(1, _LINES + 1)
+    orders = orders[np.abs(orders - np.round(orders)) * turns >= _APART]
+    if not orders.size or orders[0] != ratio:
+        return ()
+    both = np.multiply.outer(angle, np.concatenate([own, orders]))
+    found = np.linalg.lstsq(np.hstack([np.cos(both), np.sin(both), np.ones((angle.size, 1))]), values, rcond=None)[0]
+    cosine, sine = found[: both.shape[1]][own.size :], found[both.shape[1] : -1][own.size :]
+    return tuple(
+        OrderLine(float(order), math.hypot(c, s), math.atan2(s, c) % _TURN)
+        for order, c, s in zip(orders, cosine.tolist(), sine.tolist(), strict=True)
+    )
 
 
 def _over_pitch(values: Array, places: int) -> tuple[Array, float, int]:

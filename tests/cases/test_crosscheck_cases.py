@@ -139,6 +139,20 @@ def test_parts_add_up_and_the_pair_is_symmetric(cornell_case):
     assert values["I.single_stiffness_fe"] == pytest.approx(1.0 / pair["compliance_fe"].min(), rel=1e-12)
 
 
+def test_mean_mesh_stiffness_is_beside_that_of_iso_where_it_is_computed():
+    few = 'stiffness={gear="test", load="254.33 N/mm", positions=6}'
+    asked = ('results=["crosscheck", "transmission-error"]', 'pair.I.load="1615 N"', few)
+    tables, values, results = run("cornell_test_gear", *asked)
+    mean, iso = values["I.mesh_stiffness_fe"], values["I.mesh_stiffness_iso"]
+    assert mean * 6.35 == pytest.approx(values["I.mesh_stiffness_mean"], rel=1e-12)
+    ratio = results.outcomes[Task("transmission-error", "I")].data.found.pair.contact_ratio
+    assert iso == pytest.approx(values["I.single_stiffness_iso"] * (0.75 * ratio + 0.25), rel=1e-9)
+    assert values["I.mesh_stiffness_iso.ratio_to_fe"] == pytest.approx(iso / mean, rel=1e-12)
+    # contacts that reach past a tip are none: towards both ends the compliance grows, and does not stop
+    fe = rows_of(tables["crosscheck_compliance_I"], "cornell")["compliance_fe"]
+    assert (np.diff(fe, 2) > 0.0).all()
+
+
 def test_a_gear_without_pair_and_one_out_of_range():
     # Ten teeth: Sainsot's fit does not reach so far; the row says so and the others go on.
     tables, values, results = run("cornell_test_gear", "pair={}", "stiffness={positions=4}", "gear.test.teeth=10")

@@ -332,3 +332,12 @@ def test_a_fillet_that_a_load_compresses_has_the_error_of_its_stress():
     assert (known.between_error(1, -1, radii, radii) >= ordinary("driver").neighbour_error(2, radii, radii)).all()
     value, error = known.stress_intensity(0, 1, radii)
     assert error.min() > 1e-4 * np.hypot(*value).max()
+
+
+def test_extremes_over_a_revolution_are_those_where_contact_changes():
+    """Tip edges bear beyond the path: between even positions the lowest stiffness would be missed."""
+    of, load = engagement(cracked("driver", 0.4)), LOAD
+    coarse, fine = (over_revolution(of, load, count) for count in (25, 400))
+    assert coarse.lowest_stiffness == pytest.approx(fine.lowest_stiffness, rel=1e-4)
+    assert coarse.ordinary_lowest_stiffness == pytest.approx(fine.ordinary_lowest_stiffness, rel=1e-4)
+    assert coarse.transmission_error.max() == pytest.approx(fine.transmission_error.max(), rel=1e-4)

@@ -103,7 +103,7 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({}, TRACE.replace("um/m", "MPa"), "is not a strain"), ({}, TRACE.replace("deg", "mm"), "is not an angle"),
         ({}, TRACE.replace(" [deg]", ""), "has no unit"), ({}, TRACE.replace(" [um/m]", ""), "has no unit"),
         ({}, TRACE.replace("um/m", "um/x"), "unknown unit"), ({}, TRACE.replace("500", "x"), "not a number"),
-        ({}, TRACE.replace("-3,491", "nan,491"), "not finite"), ({}, TRACE.replace("-3,491", "-3"), "entries in line"),
+        ({}, TRACE.replace("-3,491", "1e999,4"), "not finite"), ({}, TRACE.replace("-3,491", "-3"), "entries in line"),
         ({}, TRACE.replace("491", "4,91"), "entries in line"),
         ({}, "".join(TRACE.splitlines(True)[:7]), "fewer than 8"),
         ({"fit": ["offset", "scale", "shift"]}, "".join(TRACE.splitlines(True)[:11]), "fewer than 11"),

@@ -53,6 +53,30 @@ def test_orders_of_a_trace_are_those_that_it_was_made_of(wrapped):
     assert 0.5 * (spectrum.amplitude**2).sum() == pytest.approx(0.5 * (64 + 4 + 1 + 0.25 + 0.04) * 1e-12, rel=1e-3)
 
 
+def test_eccentricity_of_the_mating_gear_is_no_part_of_the_orders_of_the_shaft():
+    angle, te = trace(3.4)
+    ratio = TEETH / 61
+    eccentric = te + 5e-6 * np.cos(ratio * angle - 1.1) + 1e-6 * np.cos(2.0 * ratio * angle + 0.4)
+    plain, found = measured_error(angle, eccentric, TEETH), measured_error(angle, eccentric, TEETH, 61)
+
+    def line(of, order):
+        at = int(np.argmin(np.abs(of.spectrum.order - order)))
+        assert of.spectrum.order[at] == pytest.approx(order, rel=1e-12)
+        return of.spectrum.amplitude[at], of.spectrum.phase[at]
+
+    assert line(found, 1.0) == pytest.approx((8e-6, 0.7), rel=1e-3)
+    assert abs(line(plain, 1.0)[0] - 8e-6) > 0.02e-6
+    assert found.mate_order == ratio
+    assert line(found, ratio) == pytest.approx((5e-6, 1.1), rel=2e-3)
+    assert line(found, 2.0 * ratio) == pytest.approx((1e-6, TURN - 0.4), rel=2e-3)
+    between = np.abs(found.spectrum.order[:, None] - [1, 2, ratio, 2 * ratio, 23, 46, 69]).min(axis=1) > 1e-6
+    assert found.spectrum.amplitude[between].max() < 0.02e-6
+    # too short for a revolution of the mating gear, or one whose order the shaft has itself: nothing is fitted
+    assert measured_error(*trace(1.2), TEETH, 61).mate_order == 0.0
+    assert measured_error(angle, te, TEETH, TEETH).mate_order == 0.0
+    np.testing.assert_array_equal(measured_error(angle, te, TEETH, TEETH).spectrum.order, plain.spectrum.order)
+
+
 def test_the_curve_of_the_mesh_has_nothing_of_slow_parts():
     found = measured_error(*trace(2.0, a_tooth=40.0, start=0.0), TEETH)
     expected = curve(found.angle * TEETH * PITCH / TURN)

@@ -208,7 +208,8 @@ def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str
         part.angle_column: "angle", part.te_column: "length" if along else "angle", part.torque_column: "torque",
     }  # fmt: skip
     given = {part.angle_column: part.angle, part.te_column: part.te, part.torque_column: part.torque}
-    found = read_columns(scene.file(file, key), key, columns, {name: unit for name, unit in given.items() if unit})
+    units = {name: unit for name, unit in given.items() if unit}
+    found = read_columns(scene.file(file, key), key, columns, units, gaps=True)
     for column, word in ((part.angle_column, "angle_column"), (part.te_column, "te_column")):
         found.require(column, key, file, word)
     angle, te = found[part.angle_column], found[part.te_column]

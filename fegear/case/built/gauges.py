@@ -208,7 +208,7 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
     columns = {part.angle_column: "angle", part.strain_column: "strain"}
     given = {part.angle_column: part.angle, part.strain_column: part.strain}
     found = read_columns(
-        scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}
+        scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}, gaps=True
     )
     for column, word in ((part.angle_column, "angle_column"), (part.strain_column, "strain_column")):
         found.require(column, key, part.file, word)

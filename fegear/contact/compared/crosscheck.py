@@ -153,16 +153,21 @@ def contact_half_width(pair: GearPair, x: Array, line_load: float) -> Array:
     return np.asarray(hertz.line_contact(line_load, curvature, modulus).half_width)
 
 
+def contact_room(pair: GearPair, x: Array, member: Member) -> Array:
+    """Length of a gear's flank from contacts at positions x [m] to the nearer end of its involute [m]."""
+    gear, r = pair.gear(member), pair.radius(x, member)
+    low, high = gear.involute_radii
+    return np.asarray(np.minimum(r**2 - low**2, high**2 - r**2) / (2.0 * gear.base_radius))
+
+
 def contact_fits(pair: GearPair, x: Array, half_width: Array) -> NDArray[np.bool_]:
     """Whether the flanks of both gears hold contacts of these half-widths [m] at positions x [m]."""
     from fegear.fem.plane.contact_width import flank_holds
 
     fits = np.ones(x.shape, dtype=bool)
     for member in MEMBERS:
-        gear, r = pair.gear(member), pair.radius(x, member)
-        low, high = gear.involute_radii
-        room = np.minimum(r**2 - low**2, high**2 - r**2) / (2.0 * gear.base_radius)
-        fits &= flank_holds(half_width / gear.module, room / gear.module)
+        module = pair.gear(member).module
+        fits &= flank_holds(half_width / module, contact_room(pair, x, member) / module)
     return fits
 
 
@@ -194,7 +199,8 @@ def pair_reference(
 ) -> PairReference:
     """Finite elements of one tooth pair under a Hertzian contact.
 
-    Positions off a meshed flank are skipped, and those near its ends where the contact is wider than the flank.
+    Positions off a meshed flank are skipped, and those near its ends where the contact reaches past a tip or form
+    circle: its deflection there is that of the last contact that the flank holds, not of the position.
 
     Parameters
     ----------
@@ -214,6 +220,8 @@ def pair_reference(
     at = at[on]
     width = contact_half_width(pair, at, line_load)
     fits = contact_fits(pair, at, width)
+    whole = np.all([contact_room(pair, at, member) >= width for member in MEMBERS], axis=0)
+    fits = whole if whole.any() else fits  # under loads so heavy that no contact has room, what flanks hold
     at, width = at[fits], width[fits]
     c = [
         known.self_compliance(np.clip(pair.radius(at, member), known.lowest_radius, known.highest_radius), width)

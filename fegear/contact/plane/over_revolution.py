@@ -19,6 +19,7 @@ from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
 from fegear.contact.plane.compliance import RootStressInfluence, Side
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.transmission_error import contact_changes
 from fegear.fem.teeth import together
 from fegear.geometry.pair import Member
 
@@ -27,6 +28,9 @@ MOST_PITCHES = 20_000
 #: Part of an odd tooth's estimated error that ordinary teeth do not share: a shallow crack's loss of stiffness was off
 #: by 0.19 of the error of the stiffness (random cracks).
 _OWN_PART = 0.2
+#: How far beside a change of contact curves are looked at, farther than errors of compliances move it, and how near to
+#: each other changes are the same one [base pitches].
+_BESIDE_CHANGE, _SAME = 2e-4, 5e-5
 
 
 @dataclass(frozen=True)
@@ -154,8 +158,8 @@ class OverRevolution:
 
     @property
     def lowest_stiffness_error(self) -> float:
-        """Estimated [N/m]."""
-        return float(self.stiffness_error.flat[int(np.argmin(self.stiffness))]) + self.beyond.stiffness
+        """Estimated [N/m]; at a jump of the stiffness that of the place beside it says nothing."""
+        return float(self.shift(lambda one: one.lowest_stiffness)) + self.beyond.stiffness
 
     @property
     def ordinary_lowest_stiffness_error(self) -> float:
@@ -186,7 +190,7 @@ class OverRevolution:
     @property
     def stiffness_loss_error(self) -> float:
         """Estimated, as a share of the ordinary lowest stiffness."""
-        either = float(self.stiffness_error.flat[int(np.argmin(self.stiffness))]) / self.ordinary_lowest_stiffness
+        either = float(self.shift(lambda one: one.lowest_stiffness)) / self.ordinary_lowest_stiffness
         beyond = (self.beyond.stiffness + self.beyond.ordinary_stiffness) / self.ordinary_lowest_stiffness
         return self._of_difference(float(self.shift(lambda one: one.stiffness_loss)), either) + beyond
 
@@ -233,11 +237,27 @@ def over_revolution(
         If the same teeth meet again after more than `MOST_PITCHES` base pitches only.
     """
     _refuse_too_many(engagement)
-    x = roll_positions(engagement, positions)
-    number = engagement.grid(x).contacts.number
     count = engagement.cycles if engagement.cycles > 1 else base_pitches
+    x = _with_changes(engagement, load, roll_positions(engagement, positions), count)
+    number = engagement.grid(x).contacts.number
     found, *others = (_followed(one, x, number, load, count) for one in (engagement, *shifted))
     return replace(found, others=tuple(others))
+
+
+def _with_changes(engagement: Engagement, load: float, x: Array, count: int) -> Array:
+    """Roll positions [m] and, in addition, both sides of those at which a pair comes to bear or lets go.
+
+    Extremes of the curves are there: between even steps the lowest stiffness of a revolution would be missed. Those of
+    every base pitch that differs from the others count.
+    """
+    pitch = engagement.pair.base_pitch
+    alike = together(engagement.teeth_in(engagement.grid(x).contacts.number, cycle) for cycle in range(count))
+    changes = [contact_changes(engagement, load, int(pitches[0])) for pitches in alike]
+    beside = np.concatenate([one + side * _BESIDE_CHANGE * pitch for one in changes for side in (-1.0, 1.0)])
+    found = np.unique(np.concatenate([x, beside[(beside > x[0]) & (beside < x[-1])]]))
+    # base pitches without an odd tooth at a change have the same one; sides of jumps are nearer than any of these
+    near = np.isin(found, x) | np.append(True, np.diff(found) > _SAME * pitch)
+    return found[near]
 
 
 def _followed(engagement: Engagement, x: Array, number: Index, load: float, count: int) -> OverRevolution:

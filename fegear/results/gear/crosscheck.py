@@ -20,6 +20,14 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
+from fegear.results.gear.crosscheck_answer import (
+    IN_MESH,
+    MeanStiffness,
+    mean_stiffness,
+    said_of_compliance,
+    said_of_root_stress,
+    said_of_stiffness,
+)
 from fegear.results.gear.crosscheck_iso import (
     ISO_TABLE,
     ISO_VALUES,
@@ -45,6 +53,7 @@ from fegear.results.gear.crosscheck_rows import (
 )
 from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
+from fegear.results.pair.loaded_teeth import loaded_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -109,6 +118,14 @@ def _helical(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in scene.pairs if name not in scene.spur_pairs)
 
 
+def _in_mesh(scene: Scene) -> tuple[str, ...]:
+    """The pairs whose mean mesh stiffness is computed anyway, for that of ISO 6336-1 to stand beside."""
+    if IN_MESH not in scene.case.results:
+        return ()
+    known = loaded_pairs(scene)
+    return tuple(name for name in (*_pairs(scene), *_helical(scene)) if name in known)
+
+
 def _pair_check(scene: Scene, name: str) -> PairCheck:
     pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
     load = part.normal_load(pair)
@@ -130,12 +147,13 @@ def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
     gears = {name: scene.gears[name] for name in chosen_gears(scene)}
     pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
     iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *_helical(scene))}
-    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso, _in_mesh(scene))
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     mates = [gear for name in _pairs(scene) for gear in (scene.case.pair[name].driver, scene.case.pair[name].driven)]
-    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates))
+    in_mesh = (Task(IN_MESH, name) for name in _in_mesh(scene))
+    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates), *in_mesh)
 
 
 def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
@@ -175,7 +193,8 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
     for name, wanted in asked.iso.items():
         if wanted.helical is not None and wanted.settings is not None:
             rated[name] = rated_helical_pair(wanted.helical, wanted.choice, wanted.rims, wanted.settings, work.cache)
-    return CrosscheckData(gears, pairs, rated)
+    meshes = {name: mean_stiffness(upstream[Task(IN_MESH, name)].found) for name in asked.in_mesh}
+    return CrosscheckData(gears, pairs, rated, meshes)
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
@@ -218,11 +237,15 @@ class PairCheck:
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckInputs:
-    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
+    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name.
+
+    `in_mesh`: pairs whose mean mesh stiffness is known by finite elements.
+    """
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, PairCheck]
     iso: Mapping[str, IsoInputs]
+    in_mesh: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,11 +270,15 @@ class PairAnswers:
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckData:
-    """Everything that is compared, by the names of gears and pairs."""
+    """Everything that is compared, by the names of gears and pairs.
+
+    `mean_stiffness`: of pairs in mesh by finite elements, and its estimated error [Pa].
+    """
 
     gears: Mapping[str, GearAnswers]
     pairs: Mapping[str, PairAnswers]
     iso: Mapping[str, RatedPair]
+    mean_stiffness: Mapping[str, tuple[float, float | None]]
 
 
 @dataclass(frozen=True)
@@ -338,15 +365,20 @@ class Everything:
     gears: dict[str, GearCompared]
     pairs: dict[str, PairCompared]
     iso: dict[str, IsoPair]
+    mean_stiffness: dict[str, MeanStiffness]
 
     @classmethod
     def of(cls, data: CrosscheckData, asked: CrosscheckInputs) -> Everything:
         """What was found beside what was asked."""
-        return cls(
-            {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()},
-            {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()},
-            {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()},
-        )
+        pairs = {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()}
+        iso = {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()}
+        by_iso = {name: pairs[name].answers.iso.value if name in pairs else one.stiffness for name, one in iso.items()}
+        mean_stiffness = {
+            name: MeanStiffness(None if one is None else one.mesh_alpha, *data.mean_stiffness.get(name, (None, None)))
+            for name, one in by_iso.items()
+        }
+        gears = {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()}
+        return cls(gears, pairs, iso, mean_stiffness)
 
     @property
     def sources(self) -> tuple[FormulaSource, ...]:
@@ -409,24 +441,6 @@ def _on_load(seen: Seen) -> str:
     return assuming(f"Pair {seen.key}: no load was given; its contact is that of {load}.")
 
 
-#: Formulas of root stress as people name them, in the order in which an answer has them.
-_ROOT_FORMULAS = {
-    "iso-6336-3": "ISO 6336-3", "agma-908": "AGMA 908", "cornell": "Cornell", "cornell-trochoid": "Cornell (trochoid)",
-    "heywood": "Heywood", "dolan-broghamer": "Dolan and Broghamer",
-}  # fmt: skip
-
-
-def _root_stress(seen: Seen) -> list[str]:
-    """One gear: the range of each formula over finite elements, that of the standard first."""
-    extremes = seen.one.root_stress.extremes
-    ranges = [
-        f"{label} {extremes[name].lowest_ratio:.2f} to {extremes[name].highest_ratio:.2f}"
-        for name, label in _ROOT_FORMULAS.items()
-        if name in extremes
-    ]
-    return [f"Gear {seen.key}: root stress by formula over finite elements: {', '.join(ranges)}."] if ranges else []
-
-
 def _first_figure(seen: Seen) -> str:
     """Of the first gear; of helical pairs alone there is none."""
     return next((f"crosscheck_root_stress_{name}" for name in seen.asked.gears), "")
@@ -435,7 +449,10 @@ def _first_figure(seen: Seen) -> str:
 _SHEET = Sheet(
     name=lambda _asked: _WHOLE,
     of=Everything.of,
-    answer=Answer(Each("gears", _root_stress), figure=_first_figure),
+    answer=Answer(
+        Each("pairs", said_of_compliance), Each("mean_stiffness", said_of_stiffness),
+        Each("gears", said_of_root_stress), figure=_first_figure,
+    ),
     tables=(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
@@ -456,6 +473,10 @@ _SHEET = Sheet(
             Number("ratio_to_fe", owner="{key}", name="single_stiffness_iso.ratio_to_fe"),
         ),
         Each("iso", *ISO_VALUES),
+        Each(
+            "mean_stiffness", Number("iso", owner="{key}"), Number("fe", "fe_error", owner="{key}"),
+            Number("ratio_to_fe", owner="{key}"),
+        ),
         Each("gears", *SECTION_VALUES, when="cornell"),
     ),
     figures=(

@@ -214,12 +214,6 @@ class IsoPair:
         return None if self.stiffness is None else self.stiffness.single
 
     @property
-    @shows("N/(mm.um)", "ISO 6336-1 c_gamma_alpha")
-    def mesh_alpha(self) -> float | None:
-        """[Pa]."""
-        return None if self.stiffness is None else self.stiffness.mesh_alpha
-
-    @property
     def under(self) -> str:
         """The load that c' is for, in words."""
         check = self.asked.helical
@@ -269,7 +263,6 @@ def _rated(seen: Seen) -> Iterator[Value]:
 ISO_VALUES = (
     _rated,
     Number("single", owner="{key}", name="single_stiffness_iso", meaning="ISO 6336-1 c', solid blank, {one.under}"),
-    Number("mesh_alpha", owner="{key}", name="mesh_stiffness_iso"),
 )
 
 

@@ -265,12 +265,14 @@ def verdict(
             f"cannot be judged: the computed strain is known to ±{percent(limits.model)} only"
             + (f"; {sharper}" if sharper else "")
         )
-    judged = (
-        f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one, "
-        f"{'within' if within else 'beyond'} ±{percent(limits.together)}{'' if brief else f' ({parts})'}"
-    )
-    if found.correlation < _ALIKE:
-        judged += f"; the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g})"
-    elif not within:
-        judged += "; check load, gauge factor and position of the grid"
+    judged = f"measured strain is {percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed one"
+    limit = "" if brief else f" ({parts})"
+    if found.correlation < _ALIKE:  # scatter holds the difference of shape: being within it proves nothing
+        judged = (
+            f"the curves differ in shape (correlation {found.correlation:.3f}, limit {_ALIKE:g}): check fillet, tooth "
+            f"and position of the grid{'' if 'shift' in found.fit else ', or fit shift'}; {judged}{limit}"
+        )
+    else:
+        judged += f", {'within' if within else 'beyond'} ±{percent(limits.together)}{limit}"
+        judged += "" if within else "; check load, gauge factor and position of the grid"
     return judged if brief else f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"

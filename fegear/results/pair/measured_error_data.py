@@ -134,8 +134,11 @@ class TraceBeside:
 
     @property
     def largest_cause(self) -> str:
-        """What the largest order usually comes from, in brackets, where it is once per revolution."""
-        return " (eccentricity)" if (largest := self.largest_order) and abs(largest - 1.0) < 1e-6 else ""
+        """What the largest order usually comes from, in brackets, where it is once per revolution of either gear."""
+        largest = self.largest_order or 0.0
+        if abs(largest - 1.0) < 1e-6:
+            return " (eccentricity)"
+        return " (eccentricity of the mating gear)" if largest and largest == self.found.mate_order else ""
 
     @property
     def verdict(self) -> str:
@@ -161,14 +164,16 @@ class TraceBeside:
                 f"{said}; this cannot be judged: the computed one is known to ±{percent(parts['computation'])} only; "
                 'set width = "solid" or reduce accuracy.tolerance'
             )
-        said += (
-            f", {'within' if within else 'beyond'} ±{percent(together)} ("
-            + ", ".join(f"{name} {percent(part)}" for name, part in parts.items()) + ")"
-        )  # fmt: skip
-        if fitted.correlation < _ALIKE:
-            said += f"; the curves differ in shape (correlation {fitted.correlation:.3f}, limit {_ALIKE:g}): check "
-            said += "relief, profile deviations and misalignment" + ("" if "shift" in fitted.fit else ", or fit shift")
-        elif not within:
+        limit = ", ".join(f"{name} {percent(part)}" for name, part in parts.items())
+        if fitted.correlation < _ALIKE:  # scatter holds the difference of shape: being within it proves nothing
+            said = (
+                f"the curves differ in shape (correlation {fitted.correlation:.3f}, limit {_ALIKE:g}): check relief, "
+                f"profile deviations and misalignment{'' if 'shift' in fitted.fit else ', or fit shift'}; {said} "
+                f"({limit})"
+            )
+        else:
+            said += f", {'within' if within else 'beyond'} ±{percent(together)} ({limit})"
+        if fitted.correlation >= _ALIKE and not within:
             said += "; check torque, relief and the unit of the trace"
         return f"{said}; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
 

@@ -34,7 +34,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return (Task("transmission-error", pair_of_encoders(scene, name)),)
 
 
-def _measured(trace: ErrorTrace, teeth: int) -> MeasuredError:
+def _measured(trace: ErrorTrace, teeth: int, mate_teeth: int) -> MeasuredError:
     from fegear.contact.measured_error import (
         FEWEST_A_TOOTH,
         FEWEST_PITCHES,
@@ -44,7 +44,7 @@ def _measured(trace: ErrorTrace, teeth: int) -> MeasuredError:
     )
 
     try:
-        return measured_error(trace.angle, trace.te, teeth)
+        return measured_error(trace.angle, trace.te, teeth, mate_teeth)
     except UnevenTraceError as uneven:
         raise InputError(
             f"{trace.key}.file", f'"{trace.file}"', str(uneven), "specify a trace in one direction without gaps"
@@ -70,10 +70,12 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
     found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
     pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
     relative = None if found.shift is None or not nominal else found.shift.peak_to_peak / nominal
+    both = [abs(gear.teeth) for gear in (pair.driver, pair.driven)]
+    teeth = both if asked.member == "driver" else both[::-1]
     traces = []
     for trace in asked.traces:
         at = min(range(len(found.loads)), key=lambda i: abs(found.loads[i] - trace.load))
-        measured = _measured(trace, abs(pair.gear(asked.member).teeth))
+        measured = _measured(trace, *teeth)
         fitted = beside_computed(measured, found.x, found.te[:, at], pair.base_pitch, asked.fit)
         amplitude: Array = found.series[at].amplitude[: measured.n.size]
         size = float(found.te_peak_to_peak[at])
