@@ -102,8 +102,8 @@ def test_off_all_teeth_are_alike():
     assert np.ptp(te, axis=0).max() == 0.0
     assert number(found, "I.mesh_stiffness_loss") == 0.0
     assert any("odd_tooth ignored because effects.odd_teeth is off" in said for said in found.remarks)
-    on = run()
-    assert number(on, "I.mesh_stiffness_min_ordinary") == pytest.approx(number(found, "I.mesh_stiffness_min"), rel=1e-9)
+    on = run()  # with positions beside the changes of contact of odd teeth besides
+    assert number(on, "I.mesh_stiffness_min_ordinary") == pytest.approx(number(found, "I.mesh_stiffness_min"), rel=1e-5)
 
 
 @pytest.mark.dear

@@ -228,3 +228,31 @@ def pair_reference(
         for member, known in members
     ]
     return PairReference(at, c[0], c[1], np.array(width))
+
+
+def mean_mesh_stiffness(pair: GearPair, driver: GearInfluence, driven: GearInfluence, line_load: float) -> float:
+    """Mean of the secant mesh stiffness over a base pitch, per face width [Pa]: what c_gamma_alpha stands for.
+
+    Perfect involutes that touch on the path of contact only, teeth coupled through their gears.
+
+    Parameters
+    ----------
+    pair : GearPair
+    driver, driven : GearInfluence
+    line_load : float
+        Of all tooth pairs together, along the line of action [N/m].
+
+    Raises
+    ------
+    InputError
+        If no tooth pair is on the path at some roll positions.
+    """
+    from fegear.contact.plane.base_pitch import mean_secant_stiffness
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.fe_compliance import finite_element_compliance
+    from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.contact.plane.transmission_error import transmission_error
+
+    teeth = PairCompliance(pair, *(finite_element_compliance(one) for one in (driver, driven)))
+    found = transmission_error(Engagement(teeth), line_load * pair.face_width)
+    return mean_secant_stiffness(found) / pair.face_width

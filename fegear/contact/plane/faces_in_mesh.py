@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 
 
+#: Share of the load below which a tooth carries next to nothing: there its neighbours' loads alone move the faces.
+_CARRIES = 0.01
+
+
 @dataclass(frozen=True)
 class FacesInMesh:
     """Faces of one crack while its tooth carries load, shape (P,).
@@ -64,7 +68,7 @@ def faces_in_mesh(
     closed, off = [np.zeros(0)], [np.zeros(0)]
     for row_of_tooth, number in enumerate(found.number):  # base pitches in which its tooth is on this pair
         loads, teeth = way.in_pitch(int(number))
-        at = np.flatnonzero(loads[row_of_tooth] > 0.0)
+        at = np.flatnonzero(loads[row_of_tooth] > _CARRIES * found.load)
         if not at.size:
             continue
         here = {

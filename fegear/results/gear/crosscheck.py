@@ -21,9 +21,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_answer import (
-    IN_MESH,
     MeanStiffness,
-    mean_stiffness,
     said_of_compliance,
     said_of_root_stress,
     said_of_stiffness,
@@ -53,7 +51,6 @@ from fegear.results.gear.crosscheck_rows import (
 )
 from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
-from fegear.results.pair.loaded_teeth import loaded_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -118,14 +115,6 @@ def _helical(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in scene.pairs if name not in scene.spur_pairs)
 
 
-def _in_mesh(scene: Scene) -> tuple[str, ...]:
-    """The pairs whose mean mesh stiffness is computed anyway, for that of ISO 6336-1 to stand beside."""
-    if IN_MESH not in scene.case.results:
-        return ()
-    known = loaded_pairs(scene)
-    return tuple(name for name in (*_pairs(scene), *_helical(scene)) if name in known)
-
-
 def _pair_check(scene: Scene, name: str) -> PairCheck:
     pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
     load = part.normal_load(pair)
@@ -147,18 +136,18 @@ def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
     gears = {name: scene.gears[name] for name in chosen_gears(scene)}
     pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
     iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *_helical(scene))}
-    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso, _in_mesh(scene))
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     mates = [gear for name in _pairs(scene) for gear in (scene.case.pair[name].driver, scene.case.pair[name].driven)]
-    in_mesh = (Task(IN_MESH, name) for name in _in_mesh(scene))
-    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates), *in_mesh)
+    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates))
 
 
 def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
     from fegear.contact.compared.crosscheck import (
         contact_zone,
+        mean_mesh_stiffness,
         pair_compliance_answers,
         pair_reference,
         root_stress_answers,
@@ -186,15 +175,15 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         driver, driven = (solution_of(upstream, gear) for gear in check.gears)
         fe_pair = pair_reference(pair, driver, driven, x, w)
         iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
-        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso)
+        in_mesh = attempt(partial(mean_mesh_stiffness, pair, driver, driven, w))
+        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value)
         iso_asked = asked.iso[name]
         rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
         work.progress((len(gears) + len(pairs)) / count)
     for name, wanted in asked.iso.items():
         if wanted.helical is not None and wanted.settings is not None:
             rated[name] = rated_helical_pair(wanted.helical, wanted.choice, wanted.rims, wanted.settings, work.cache)
-    meshes = {name: mean_stiffness(upstream[Task(IN_MESH, name)].found) for name in asked.in_mesh}
-    return CrosscheckData(gears, pairs, rated, meshes)
+    return CrosscheckData(gears, pairs, rated)
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
@@ -237,15 +226,11 @@ class PairCheck:
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckInputs:
-    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name.
-
-    `in_mesh`: pairs whose mean mesh stiffness is known by finite elements.
-    """
+    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, PairCheck]
     iso: Mapping[str, IsoInputs]
-    in_mesh: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,24 +246,24 @@ class GearAnswers:
 
 @dataclass(frozen=True, slots=True)
 class PairAnswers:
-    """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none."""
+    """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none.
+
+    `mean_stiffness`: of the mesh by finite elements per face width [Pa]; None where no pair is on the path somewhere.
+    """
 
     reference: PairReference
     compliance: Mapping[str, ComplianceAnswers]
     iso: Outcome[Stiffness]
+    mean_stiffness: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckData:
-    """Everything that is compared, by the names of gears and pairs.
-
-    `mean_stiffness`: of pairs in mesh by finite elements, and its estimated error [Pa].
-    """
+    """Everything that is compared, by the names of gears and pairs."""
 
     gears: Mapping[str, GearAnswers]
     pairs: Mapping[str, PairAnswers]
     iso: Mapping[str, RatedPair]
-    mean_stiffness: Mapping[str, tuple[float, float | None]]
 
 
 @dataclass(frozen=True)
@@ -372,13 +357,13 @@ class Everything:
         """What was found beside what was asked."""
         pairs = {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()}
         iso = {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()}
-        by_iso = {name: pairs[name].answers.iso.value if name in pairs else one.stiffness for name, one in iso.items()}
-        mean_stiffness = {
-            name: MeanStiffness(None if one is None else one.mesh_alpha, *data.mean_stiffness.get(name, (None, None)))
-            for name, one in by_iso.items()
-        }
+        mean = {
+            name: MeanStiffness.of(pairs[name].answers.iso.value, pairs[name].answers.mean_stiffness)
+            if name in pairs else MeanStiffness.of(one.stiffness, None, one.face_width)
+            for name, one in iso.items()
+        }  # fmt: skip
         gears = {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()}
-        return cls(gears, pairs, iso, mean_stiffness)
+        return cls(gears, pairs, iso, mean)
 
     @property
     def sources(self) -> tuple[FormulaSource, ...]:
@@ -474,7 +459,7 @@ _SHEET = Sheet(
         ),
         Each("iso", *ISO_VALUES),
         Each(
-            "mean_stiffness", Number("iso", owner="{key}"), Number("fe", "fe_error", owner="{key}"),
+            "mean_stiffness", Number("iso", owner="{key}"), Number("fe", owner="{key}"),
             Number("ratio_to_fe", owner="{key}"),
         ),
         Each("gears", *SECTION_VALUES, when="cornell"),

@@ -10,12 +10,10 @@ from fegear.base.shown import shown, shows
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.contact.error_over_pitch import ErrorOverPitch
     from fegear.engine.sheet.seen import Seen
+    from fegear.formulas.iso6336.part1_stiffness import Stiffness
     from fegear.results.gear.crosscheck_rows import Extremes
 
-#: Result that knows the mean mesh stiffness.
-IN_MESH = "transmission-error"
 #: Formulas of root stress as people name them, in the order in which an answer has them.
 _ROOT_FORMULAS = {
     "iso-6336-3": "ISO 6336-3", "agma-908": "AGMA 908", "cornell": "Cornell", "cornell-trochoid": "Cornell (trochoid)",
@@ -35,22 +33,21 @@ class MeanStiffness:
 
     iso: float | None = shown("N/(mm.um)", "ISO 6336-1 c_gamma_alpha", name="mesh_stiffness_iso")
     fe: float | None = shown(
-        "N/(mm.um)", "mean mesh stiffness per face width (secant), FE with the effects of the case",
-        name="mesh_stiffness_fe",
+        "N/(mm.um)", "mean mesh stiffness per face width, FE (secant, perfect flanks)", name="mesh_stiffness_fe",
     )  # fmt: skip
-    fe_error: float | None = None
+    #: Of helical pairs [m].
+    face_width: float | None = None
+
+    @classmethod
+    def of(cls, iso: Stiffness | None, fe: float | None, face_width: float | None = None) -> MeanStiffness:
+        """Of what the standard gives, if anything."""
+        return cls(None if iso is None else iso.mesh_alpha, fe, face_width)
 
     @property
     @shows("", "c_gamma_alpha / FE", name="mesh_stiffness_iso.ratio_to_fe")
     def ratio_to_fe(self) -> float | None:
         """Of both."""
         return None if self.iso is None or self.fe is None else self.iso / self.fe
-
-
-def mean_stiffness(over: ErrorOverPitch) -> tuple[float, float | None]:
-    """Of a loaded pair per face width, secant, and its estimated error [Pa]."""
-    width, error = over.pair.face_width, None if over.shift is None else over.shift.stiffness
-    return over.mesh_stiffness_mean / width, None if error is None else error / width
 
 
 def _ranges(extremes: Mapping[str, Extremes], labels: Mapping[str, str]) -> str:
@@ -83,8 +80,13 @@ def said_of_stiffness(seen: Seen) -> list[str]:
             f"mean mesh stiffness c_gamma_alpha {mean.iso * 1e-9:.3g} / {mean.fe * 1e-9:.3g} N/(mm µm) (secant) = "
             f"{mean.ratio_to_fe:.2f}"
         )
-    elif mean.iso is not None:
-        parts.append(f"c_gamma_alpha {mean.iso * 1e-9:.3g} N/(mm µm) (for FE request {IN_MESH}, too)")
+    elif mean.iso is not None and mean.face_width is not None:
+        over_face = mean.iso * mean.face_width * 1e-6
+        said = (
+            f"Pair {seen.key}: mean mesh stiffness c_gamma_alpha of ISO 6336-1 {mean.iso * 1e-9:.3g} N/(mm µm), over the "
+            f"face width {over_face:.3g} N/µm (compare mesh_stiffness_mean of transmission-error)."
+        )
+        return [said]
     return [f"Pair {seen.key}: ISO 6336-1 over finite elements: {', '.join(parts)}."] if parts else []
 
 

@@ -214,6 +214,11 @@ class IsoPair:
         return None if self.stiffness is None else self.stiffness.single
 
     @property
+    def face_width(self) -> float | None:
+        """Of helical pairs, the common one [m]."""
+        return None if self.asked.helical is None else self.asked.helical.pair.face_width
+
+    @property
     def under(self) -> str:
         """The load that c' is for, in words."""
         check = self.asked.helical
