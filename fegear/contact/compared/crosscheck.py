@@ -253,6 +253,6 @@ def mean_mesh_stiffness(pair: GearPair, driver: GearInfluence, driven: GearInflu
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.contact.plane.transmission_error import transmission_error
 
-    teeth = PairCompliance(pair, *(finite_element_compliance(one) for one in (driver, driven)))
+    teeth = PairCompliance(pair, finite_element_compliance(driver), finite_element_compliance(driven))
     found = transmission_error(Engagement(teeth), line_load * pair.face_width)
     return mean_secant_stiffness(found) / pair.face_width

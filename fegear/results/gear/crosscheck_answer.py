@@ -83,8 +83,8 @@ def said_of_stiffness(seen: Seen) -> list[str]:
     elif mean.iso is not None and mean.face_width is not None:
         over_face = mean.iso * mean.face_width * 1e-6
         said = (
-            f"Pair {seen.key}: mean mesh stiffness c_gamma_alpha of ISO 6336-1 {mean.iso * 1e-9:.3g} N/(mm µm), over the "
-            f"face width {over_face:.3g} N/µm (compare mesh_stiffness_mean of transmission-error)."
+            f"Pair {seen.key}: mean mesh stiffness c_gamma_alpha of ISO 6336-1 {mean.iso * 1e-9:.3g} N/(mm µm), over "
+            f"the face width {over_face:.3g} N/µm (compare mesh_stiffness_mean of transmission-error)."
         )
         return [said]
     return [f"Pair {seen.key}: ISO 6336-1 over finite elements: {', '.join(parts)}."] if parts else []
