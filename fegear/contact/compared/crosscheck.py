@@ -171,8 +171,21 @@ def contact_fits(pair: GearPair, x: Array, half_width: Array) -> NDArray[np.bool
     return fits
 
 
-#: Positions over the path at which contacts are tried.
-_TRIED = 101
+def positions_on_flanks(pair: GearPair, line_load: float, count: int) -> Array:
+    """Contact positions, even over the path as far as contacts do not reach past a tip or form circle, (count,) [m].
+
+    Nearer to the ends the deflection is that of the last contact that the flank holds, not of the position. Under loads
+    so heavy that no contact has room it is the whole path.
+    """
+    x = np.linspace(pair.x_start, pair.x_end, _LOOKED_AT)
+    width = contact_half_width(pair, x, line_load)
+    whole = np.flatnonzero(np.all([contact_room(pair, x, member) >= width for member in MEMBERS], axis=0))
+    first, last = (0, -1) if not whole.size else (whole[0], whole[-1])
+    return np.linspace(x[first], x[last], count)
+
+
+#: Positions over the path at which contacts are tried, and at which it is looked where they have room.
+_TRIED, _LOOKED_AT = 101, 2001
 
 
 def refuse_wide_contacts(pair: GearPair, line_load: float, key: str) -> None:
@@ -199,8 +212,7 @@ def pair_reference(
 ) -> PairReference:
     """Finite elements of one tooth pair under a Hertzian contact.
 
-    Positions off a meshed flank are skipped, and those near its ends where the contact reaches past a tip or form
-    circle: its deflection there is that of the last contact that the flank holds, not of the position.
+    Positions off a meshed flank are skipped, and those near its ends where the contact is wider than the flank.
 
     Parameters
     ----------
@@ -220,8 +232,6 @@ def pair_reference(
     at = at[on]
     width = contact_half_width(pair, at, line_load)
     fits = contact_fits(pair, at, width)
-    whole = np.all([contact_room(pair, at, member) >= width for member in MEMBERS], axis=0)
-    fits = whole if whole.any() else fits  # under loads so heavy that no contact has room, what flanks hold
     at, width = at[fits], width[fits]
     c = [
         known.self_compliance(np.clip(pair.radius(at, member), known.lowest_radius, known.highest_radius), width)

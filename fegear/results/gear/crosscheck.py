@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.base.notes import assuming
-from fegear.base.shown import shown, shows
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
@@ -21,21 +17,24 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_answer import (
-    MeanStiffness,
     said_of_compliance,
     said_of_root_stress,
     said_of_stiffness,
+)
+from fegear.results.gear.crosscheck_compared import (
+    CrosscheckData,
+    CrosscheckInputs,
+    Everything,
+    GearAnswers,
+    PairAnswers,
+    PairCheck,
 )
 from fegear.results.gear.crosscheck_iso import (
     ISO_TABLE,
     ISO_VALUES,
     SECTION_TABLE,
     SECTION_VALUES,
-    CornellSection,
-    IsoInputs,
-    IsoPair,
     iso_inputs,
-    load_of_stiffness,
     on_iso,
     section_figure,
 )
@@ -43,9 +42,6 @@ from fegear.results.gear.crosscheck_rows import (
     GEAR_COMPLIANCE_COLUMNS,
     PAIR_COMPLIANCE_COLUMNS,
     ROOT_STRESS_COLUMNS,
-    GearComplianceRows,
-    PairComplianceRows,
-    RootStressRows,
     comparison,
     extremes,
 )
@@ -53,19 +49,12 @@ from fegear.results.gear.load_positions import chosen_gears
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.compared.rated_gears import RatedPair
     from fegear.engine.sheet.seen import Seen, Text
     from fegear.fem.plane.table import StiffnessTable
-    from fegear.formulas.cornell import SectionLengths
-    from fegear.formulas.iso6336.part1_stiffness import Stiffness
-    from fegear.formulas.outcome import Outcome
-    from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair
 
 
 #: Line load of the pairs when the case names none [N/m].
@@ -120,8 +109,9 @@ def _pair_check(scene: Scene, name: str) -> PairCheck:
     load = part.normal_load(pair)
     gears, line_load, count = (part.driver, part.driven), stiffness.load, stiffness.load_positions
     if line_load is None and load is not None:
-        return PairCheck(pair, gears, count, load / pair.face_width, False, part.operation.applied_factor)
-    return PairCheck(pair, gears, count, line_load or USUAL_LINE_LOAD, line_load is None)
+        factor = part.operation.applied_factor
+        return PairCheck(pair, gears, count, load / pair.face_width, False, factor, loaded=True)
+    return PairCheck(pair, gears, count, line_load or USUAL_LINE_LOAD, line_load is None, loaded=load is not None)
 
 
 def _check(scene: Scene, _subject: str) -> None:
@@ -150,6 +140,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         mean_mesh_stiffness,
         pair_compliance_answers,
         pair_reference,
+        positions_on_flanks,
         root_stress_answers,
         tooth_compliance_answers,
     )
@@ -171,7 +162,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         work.progress(len(gears) / count)
     for name, check in asked.pairs.items():
         pair, w = check.pair, check.line_load
-        x = np.linspace(pair.x_start, pair.x_end, check.positions)
+        x = positions_on_flanks(pair, w, check.positions)
         driver, driven = (solution_of(upstream, gear) for gear in check.gears)
         fe_pair = pair_reference(pair, driver, driven, x, w)
         iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
@@ -190,199 +181,6 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     """Every closed form for every gear and pair; helical pairs solve two virtual spur gears for each of theirs."""
     virtual = 4 * len(_helical(scene)) * seconds_of_gear(mesh_settings(scene.case.accuracy))
     return forecasts.constant(0.05 + 0.08 * (len(scene.spur_gears) + len(scene.spur_pairs)) + virtual)
-
-
-@dataclass(frozen=True, slots=True)
-class PairCheck:
-    """One pair whose compliance is compared.
-
-    Parameters
-    ----------
-    pair : GearPair
-    gears : tuple of str
-        Names of driver and driven.
-    positions : int
-        Over the path of contact.
-    line_load : float
-        w = F_bt / b, along the line of action [N/m].
-    chosen : bool
-        Whether the line load had to be chosen.
-    load_factor : float
-        K_A K_gamma of the case's own load, which c' of ISO 6336-1 takes.
-    """
-
-    pair: GearPair
-    gears: tuple[str, str]
-    positions: int
-    line_load: float
-    chosen: bool
-    load_factor: float = 1.0
-
-    @property
-    def applied_load(self) -> float:
-        """F_t K_A K_gamma / b of ISO 6336-1 [N/m]."""
-        return self.load_factor * self.pair.tangential_load(self.line_load)
-
-
-@dataclass(frozen=True, slots=True)
-class CrosscheckInputs:
-    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
-
-    gears: Mapping[str, Gear]
-    pairs: Mapping[str, PairCheck]
-    iso: Mapping[str, IsoInputs]
-
-
-@dataclass(frozen=True, slots=True)
-class GearAnswers:
-    """Closed forms of a gear compared with its finite elements, and Cornell's root section or why it has none."""
-
-    table: StiffnessTable
-    root_stress: Mapping[str, RootStressAnswers]
-    compliance: Mapping[str, ComplianceAnswers]
-    contact_zone: Array
-    cornell: Outcome[SectionLengths]
-
-
-@dataclass(frozen=True, slots=True)
-class PairAnswers:
-    """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none.
-
-    `mean_stiffness`: of the mesh by finite elements per face width [Pa]; None where no pair is on the path somewhere.
-    """
-
-    reference: PairReference
-    compliance: Mapping[str, ComplianceAnswers]
-    iso: Outcome[Stiffness]
-    mean_stiffness: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class CrosscheckData:
-    """Everything that is compared, by the names of gears and pairs."""
-
-    gears: Mapping[str, GearAnswers]
-    pairs: Mapping[str, PairAnswers]
-    iso: Mapping[str, RatedPair]
-
-
-@dataclass(frozen=True)
-class GearCompared:
-    """One gear: its formulas over finite elements, and Cornell's section of it."""
-
-    gear: Gear
-    answers: GearAnswers
-
-    @cached_property
-    def root_stress(self) -> RootStressRows:
-        """Formula by formula."""
-        return RootStressRows.of(self.answers.root_stress, self.answers.table, self.gear.module)
-
-    @cached_property
-    def compliance(self) -> GearComplianceRows:
-        """Formula by formula."""
-        return GearComplianceRows.of(self.answers.compliance, self.answers.table, self.answers.contact_zone)
-
-    @property
-    def cornell(self) -> CornellSection | None:
-        """None where there is none."""
-        found = self.answers.cornell.value
-        return None if found is None else CornellSection(found, self.gear, self.answers.table)
-
-
-@dataclass(frozen=True)
-class PairCompared:
-    """One pair: its formulas over finite elements, and c' of ISO 6336-1."""
-
-    check: PairCheck
-    answers: PairAnswers
-
-    @cached_property
-    def compliance(self) -> PairComplianceRows:
-        """Formula by formula."""
-        return PairComplianceRows.of(self.answers.compliance, self.answers.reference)
-
-    @property
-    @shows("N/(mm.um)", "maximum stiffness of one tooth pair, FE")
-    def single_stiffness_fe(self) -> float:
-        """[Pa]."""
-        return float(1.0 / self.answers.reference.total.min())
-
-    @property
-    @shows("N/(mm.um)")
-    def single_stiffness_iso(self) -> float | None:
-        """c' [Pa]."""
-        iso = self.answers.iso.value
-        return None if iso is None else iso.single
-
-    @property
-    @shows("N/(mm.um)", "ISO 6336-1 c'_th")
-    def theoretical_stiffness_iso(self) -> float | None:
-        """c'_th [Pa]."""
-        iso = self.answers.iso.value
-        return None if iso is None else iso.theoretical
-
-    @property
-    @shows("", "c' / FE")
-    def ratio_to_fe(self) -> float | None:
-        """Of both."""
-        c = self.single_stiffness_iso
-        return None if c is None else c / self.single_stiffness_fe
-
-    @property
-    def under(self) -> str:
-        """The load that c' is for, in words."""
-        return load_of_stiffness(self.check.applied_load, self.check.load_factor)
-
-    @property
-    def remark(self) -> str:
-        """What is to be said of c'; empty if nothing."""
-        iso = self.answers.iso
-        if iso.value is None:
-            return f"ISO 6336-1 gives no c': {iso.reason}"
-        return f"{iso.value.remark}." if iso.value.remark else ""
-
-
-@dataclass(frozen=True)
-class Everything:
-    """All that is compared, by the names of gears and pairs."""
-
-    gears: dict[str, GearCompared]
-    pairs: dict[str, PairCompared]
-    iso: dict[str, IsoPair]
-    mean_stiffness: dict[str, MeanStiffness]
-
-    @classmethod
-    def of(cls, data: CrosscheckData, asked: CrosscheckInputs) -> Everything:
-        """What was found beside what was asked."""
-        pairs = {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()}
-        iso = {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()}
-        mean = {
-            name: MeanStiffness.of(pairs[name].answers.iso.value, pairs[name].answers.mean_stiffness)
-            if name in pairs else MeanStiffness.of(one.stiffness, None, one.face_width)
-            for name, one in iso.items()
-        }  # fmt: skip
-        gears = {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()}
-        return cls(gears, pairs, iso, mean)
-
-    @property
-    def sources(self) -> tuple[FormulaSource, ...]:
-        """Where each closed form comes from."""
-        from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
-        from fegear.formulas.sources import SOURCES
-
-        stress = (FormulaSource(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values())
-        return (*stress, *(FormulaSource(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()))
-
-
-@dataclass(frozen=True)
-class FormulaSource:
-    """Where one closed form comes from and what it compares."""
-
-    formula: str = shown("", table="sources")
-    gives: str = shown("", table="sources")
-    source: str = shown("", table="sources")
-    what_is_compared: str = shown("", table="sources")
 
 
 def _of_pair(seen: Seen) -> str:
@@ -426,6 +224,18 @@ def _on_load(seen: Seen) -> str:
     return assuming(f"Pair {seen.key}: no load was given; its contact is that of {load}.")
 
 
+def _said(seen: Seen) -> list[str]:
+    """Stiffness of pairs first where one carries a load, else root stress of the gears."""
+    pairs, mean, gears = (
+        [sentence for one in seen.each(where) for sentence in said(one)]
+        for where, said in (
+            ("pairs", said_of_compliance), ("mean_stiffness", said_of_stiffness), ("gears", said_of_root_stress)
+        )
+    )  # fmt: skip
+    loaded = any(one.check.loaded for one in seen.data.pairs.values())
+    return [*pairs, *mean, *gears] if loaded or not gears else [*gears, *pairs, *mean]
+
+
 def _first_figure(seen: Seen) -> str:
     """Of the first gear; of helical pairs alone there is none."""
     return next((f"crosscheck_root_stress_{name}" for name in seen.asked.gears), "")
@@ -435,8 +245,7 @@ _SHEET = Sheet(
     name=lambda _asked: _WHOLE,
     of=Everything.of,
     answer=Answer(
-        Each("pairs", said_of_compliance), Each("mean_stiffness", said_of_stiffness),
-        Each("gears", said_of_root_stress), figure=_first_figure,
+        _said, figure=_first_figure,
     ),
     tables=(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
