@@ -114,7 +114,7 @@ class Gear(Described):
         Parameters
         ----------
         tooth : int
-            Its number in meshing order; one that is cracked already gets the new crack instead.
+            Its number in meshing order; one that differs already gets the new crack instead.
         **crack
             Keys of ``[[gear.NAME.odd_tooth]] crack`` of a case file: ``depth`` or ``depth_ratio``, ``angle``,
             ``tangent_angle`` or another start, ``fillet``.
@@ -128,9 +128,35 @@ class Gear(Described):
         --------
         >>> cracked = pinion.with_crack(tooth=0, depth="0.5 mm", angle="70 deg")
         """
+        return self._with_odd_tooth(tooth, crack=crack)
+
+    def with_hole(self, tooth: int = 0, **hole: Any) -> Gear:
+        """A gear with one more round hole in its body, below a tooth, through the full face width (plane pairs).
+
+        Parameters
+        ----------
+        tooth : int
+            Number of the tooth in meshing order; one that differs already has the hole instead.
+        **hole
+            Keys of ``[[gear.NAME.odd_tooth]] hole`` of a case file: ``diameter``, ``position_radius`` and ``angle``
+            about the gear axis from the tooth centre line, positive towards the loaded flank.
+
+        Raises
+        ------
+        InputError
+            If the gear can have no such hole: key, value, rule, remedy.
+
+        Examples
+        --------
+        >>> weakened = pinion.with_hole(tooth=0, diameter="2.5 mm", position_radius="19.5 mm")
+        """
+        return self._with_odd_tooth(tooth, hole=hole)
+
+    def _with_odd_tooth(self, tooth: int, **what: Any) -> Gear:
+        """A gear of which one tooth is another one."""
         given = self.keys.get("odd_tooth", [])
         others = [one for one in ([given] if isinstance(given, dict) else given) if one.get("tooth", 0) != tooth]
-        return self.changed(odd_tooth=[*others, {"tooth": tooth, "crack": crack}])
+        return self.changed(odd_tooth=[*others, {"tooth": tooth, **what}])
 
     def document(self) -> dict[str, Any]:
         """It as the tables of a case file."""

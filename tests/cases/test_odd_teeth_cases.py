@@ -364,6 +364,24 @@ def test_a_gear_gets_a_crack_in_python():
     assert found.values["I.mesh_stiffness_loss"].si == pytest.approx(0.314, abs=5e-3)
 
 
+@pytest.mark.dear
+def test_a_gear_gets_a_hole_in_python():
+    plain = fegear.Gear(25, "2 mm", face_width="20 mm", bore_radius="10 mm", name="a")
+    hole = {"diameter": "2.5 mm", "position_radius": "19.5 mm"}
+    gear = plain.with_crack(tooth=2, depth="0.5 mm").with_hole(tooth=2, **hole, angle="1 deg")
+    assert gear.keys["odd_tooth"] == [{"tooth": 2, "hole": {**hole, "angle": "1 deg"}}]
+    for wrong, said in (({"tooth": 25, **hole}, "must be less than 25"), ({"diameter": "3 mm"}, "position_radius")):
+        with pytest.raises(InputError, match=said):
+            plain.with_hole(**wrong)
+    wheel = fegear.Gear(30, "2 mm", face_width="20 mm", name="b")
+    found = fegear.mesh_stiffness_revolution(
+        fegear.Pair(plain.with_hole(tooth=3, **hole), wheel), torque="60 N*m", tolerance=2e-2, cache=CACHE
+    )
+    residual = np.abs(column(found, "mesh_stiffness_revolution_I", "te_residual")).reshape(25, -1).max(axis=1)
+    assert residual.argmax() in (2, 3, 4)  # on pair 0 of base pitch 3, on its neighbours before and after
+    assert 0.005 < found.values["I.mesh_stiffness_loss"].si < 0.2
+
+
 RIG = (
     "effects.corner_contact=false", "effects.parametric=true", "effects.contact_loss=true",
     "train.body={ a = { inertia = '0.002 kg*m^2' }, b = { inertia = '0.003 kg*m^2' } }",

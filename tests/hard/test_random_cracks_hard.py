@@ -33,10 +33,11 @@ def covered(seed, numbers):
 
 
 @pytest.mark.dear
-def test_stated_errors_of_two_cracks_cover_the_true_ones():
-    assert covered(71101, (7, 41, 55)) == 2  # one of them has no sound mesh
+def test_stated_errors_of_some_cracks_cover_the_true_ones():
+    """Among them one in a coarse mesh, whose triangles must grow more slowly, and one that ends beside a bore."""
+    assert covered(71101, (7, 41, 55, 131)) == 4
 
 
 @pytest.mark.long
 def test_stated_errors_of_two_hundred_cracks_cover_the_true_ones():
-    assert covered(71101, range(200)) >= 190
+    assert covered(71101, range(200)) >= 195

@@ -24,6 +24,8 @@ from fegear.geometry.tooth_side import ToothSide
 Law = Callable[[Array], Array]
 
 
+#: Edges of a bore beside a crack are not halved for distances below this [modules].
+SHORTEST_BORE_EDGE = 1e-3
 #: Root lands shorter than this [modules], or than this share of the fillet's edge beside them (a rack tip all but
 #: full), are dropped: the fillets meet on the sector's side. Fillet and root circle are tangent there, so the outline
 #: moves by the square of it; the sides' edges would start as short as the land.
@@ -426,3 +428,33 @@ def _along_bore(right: Array, bore_radius: float, angle: Array, pitch_angle: flo
     points[:, 0] = turned(right, -pitch_angle)
     tangents = np.stack([np.cos(angle), -np.sin(angle)])[:, ::2]
     return Chain("bore", points[:, ::2], points[:, 1::2], tangents)
+
+
+def finer_bore(bore: Chain, points: Array, share: float) -> Chain:
+    """The bore with its edges halved until none is longer than a share of its distance from every one of some points.
+
+    Parameters
+    ----------
+    bore : Chain
+        Along a circle about the centre.
+    points : ndarray, shape (2, n)
+        Inside the sector [modules].
+    share : float
+    """
+    radius = float(np.hypot(*bore.vertices[:, 0]))
+    vertices, middles, tangents = bore.vertices, bore.middles, bore.tangents
+    while True:
+        length = np.hypot(*np.diff(vertices))
+        away = np.hypot(*(middles[:, :, None] - points[:, None])).min(axis=1)
+        long = length > share * np.maximum(away, SHORTEST_BORE_EDGE)
+        if not long.any():
+            return Chain(bore.name, vertices, middles, tangents)
+        at = np.flatnonzero(long) + 1
+        new = middles[:, long]
+        halves = [0.5 * (end + new) for end in (vertices[:, :-1][:, long], vertices[:, 1:][:, long])]
+        halves = [radius * half / np.hypot(*half) for half in halves]
+        way = tangents[:, :-1][:, long] + tangents[:, 1:][:, long]
+        middles = np.insert(middles, at, halves[1], axis=1)
+        middles[:, np.flatnonzero(long) + np.arange(at.size)] = halves[0]
+        vertices = np.insert(vertices, at, new, axis=1)
+        tangents = np.insert(tangents, at, way / np.hypot(*way), axis=1)

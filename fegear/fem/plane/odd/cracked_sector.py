@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
 from fegear.base.printed import percent
-from fegear.fem.plane.boundary import Chain, fillet_chain, front_sizes, sector_boundary
+from fegear.fem.plane.boundary import Chain, fillet_chain, finer_bore, front_sizes, sector_boundary
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.odd.crack import SHORTEST, Crack, fillet_length
@@ -42,6 +42,9 @@ _MOUTH_SHARE, _GROWTH = 0.25, 0.35
 _CLEAR = 0.02
 #: How often, and by which factor, edges are shortened when elements turn inside out.
 _MOST_REFINEMENTS, _FINER = 4, 0.7
+#: Where that does not help edges inside grow more slowly by this factor, and edges of the bore are no longer than this
+#: share of their distance from the crack.
+_SLOWER, _OF_DISTANCE = 0.7, 2.0
 
 
 @dataclass(frozen=True)
@@ -110,22 +113,27 @@ def crack_in(
     Parameters and errors as of `cracked_sector`; when the work `started` [s], of `time.perf_counter`.
     """
     path, room = _checked(tooth, crack, np.hstack([chain.vertices[:, :-1] for chain in chains]))
-    scale = 1.0
-    for _ in range(_MOST_REFINEMENTS):
-        try:
-            mesh = _mesh(tooth, settings, crack, chains, path, room, scale, started)
-        except InputError as problem:
-            if problem.key != "mesh":
-                raise
-            refused = problem
-            scale *= _FINER
-            continue
-        way = path[:, -1] - path[:, -2]
-        way = way / np.hypot(*way)
-        return CrackedSector(mesh, path[:, -1], way, room, crack.mouth, crack.back, crack.closing)
+    slower = replace(settings, side_growth=_SLOWER * settings.side_growth)
+    finer = [finer_bore(one, _along(path, 64), _OF_DISTANCE) if one.name == "bore" else one for one in chains]
+    for used, boundary in ((settings, chains), (slower, finer)):
+        for n in range(_MOST_REFINEMENTS):
+            try:
+                mesh = _mesh(tooth, used, crack, boundary, path, room, _FINER**n, started)
+            except InputError as problem:
+                if problem.key != "mesh":
+                    raise
+                refused = problem
+            else:
+                return CrackedSector(mesh, path[:, -1], _way(path), room, crack.mouth, crack.back, crack.closing)
     raise FegearError(
         f"No valid mesh of the cracked tooth: it still {refused.rule}; change depth or angle of the crack a little."
     ) from refused
+
+
+def _way(path: Array) -> Array:
+    """Unit vector in which a crack runs at its tip."""
+    way = path[:, -1] - path[:, -2]
+    return np.asarray(way / np.hypot(*way))
 
 
 def refuse_crack(tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, crack: Crack) -> None:
