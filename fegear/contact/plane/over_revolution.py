@@ -81,6 +81,8 @@ class OverRevolution:
         The same with one compliance each off by its estimated error.
     beyond : Beyond
         What few roll positions leave open.
+    of_changes : float
+        What is taken for an error of what the others change.
     """
 
     x: Array
@@ -95,13 +97,15 @@ class OverRevolution:
     tangent: Array
     others: tuple[OverRevolution, ...] = ()
     beyond: Beyond = Beyond()
+    of_changes: float = 1.0
 
     def shift(self, answer: Callable[[OverRevolution], ArrayLike]) -> Array:
         """Estimated error of an answer: what the compliances' errors change of it; NaN where they state none."""
         here = np.asarray(answer(self), dtype=float)
         if not self.others:
             return np.full_like(here, np.nan)
-        return np.asarray(sum(np.abs(np.asarray(answer(other)) - here) for other in self.others))
+        changes = sum(np.abs(np.asarray(answer(other)) - here) for other in self.others)
+        return np.asarray(self.of_changes * changes)
 
     @cached_property
     def transmission_error_error(self) -> Array:
