@@ -31,7 +31,10 @@ _OF_PINS = ("pin_every", "first_pin", "pin_width")
 
 
 class _PinionPart(Part):
-    pinion: str = Field(description="Pinion: an external spur gear of this case; its module is that of the rack.")
+    pinion: str = Field(
+        description="Pinion: an external gear of this case. The rack has its module and helix angle, and the opposite "
+        "hand."
+    )
 
 
 if TYPE_CHECKING:
@@ -59,6 +62,10 @@ class RackAndPinionPart(_RackKeys):
     """A rack and the pinion on it."""
 
     face_width: PositiveLength | None = Field(default=None, description="Face width. Default: that of the pinion.")
+    width: Literal["plane", "solid"] | None = Field(
+        default=None,
+        description="Tooth model: `plane` (2D) or `solid` (3D). Default: plane for spur, solid for helical racks.",
+    )
     basic_rack: Table[RackPart] | None = Field(
         default=None,
         description="Profile of the rack teeth: addendum, dedendum and root radius, by name or in modules. Default: "
@@ -107,8 +114,8 @@ class RackAndPinionPart(_RackKeys):
     torque: PositiveTorque | None = Field(
         default=None, description="Torque on the pinion, force x reference radius; alternatively `force`."
     )
-    positions: Annotated[int, Field(ge=8, le=400)] = Field(
-        default=32, description="Number of positions per base pitch over the stroke."
+    positions: Annotated[int, Field(ge=8, le=400)] | None = Field(
+        default=None, description="Number of positions per base pitch over the stroke. Default: 32; 12 for 3D racks."
     )
 
     @model_validator(mode="after")

@@ -186,7 +186,7 @@ def _slot(field: Any, k: int) -> Any:
     return field.grad[k - 1] if k else np.asarray(field)
 
 
-def turn(basis: Any, place: Array, tau: float) -> None:
+def turn(basis: Any, place: Array, tau: float, slide: float = 0.0) -> None:
     """Give the functions of a section's basis as third slope their D where nothing changes along the face.
 
     Parameters
@@ -196,10 +196,12 @@ def turn(basis: Any, place: Array, tau: float) -> None:
         Of its quadrature points from the axis [modules].
     tau : float
         [rad/module].
+    slide : float
+        Way of the section along x per length along the axis, of a prism that is sheared, not twisted.
     """
     for (field,) in basis.basis:
         x, y = field.grad
-        field.grad = np.stack([x, y, tau * (place[1] * x - place[0] * y)])
+        field.grad = np.stack([x, y, tau * (place[1] * x - place[0] * y) - slide * x])
 
 
 def shear(basis: Any, place: Array, lean: Array) -> None:

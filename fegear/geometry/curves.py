@@ -372,6 +372,66 @@ class Line:
         return np.ones(np.shape(parameter))
 
 
+@dataclass(frozen=True, slots=True)
+class Stretched:
+    """An arc of a normal section as the transverse section shows it: part of an ellipse; parameter that of the arc.
+
+    Parameters
+    ----------
+    arc : Arc
+        Of the normal section.
+    factor : float
+        By which distances from the tooth's centre line are longer: 1 / cos(beta) of a rack.
+    """
+
+    arc: Arc
+    factor: float
+
+    @property
+    def start(self) -> float:
+        """Of the arc."""
+        return self.arc.start
+
+    @property
+    def end(self) -> float:
+        """Of the arc."""
+        return self.arc.end
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Centre of the ellipse [modules]."""
+        return self.factor * self.arc.centre[0], self.arc.centre[1]
+
+    def moved(self, x: float) -> Stretched:
+        """The same, farther from the tooth's centre line by a length [modules]."""
+        (beside, height), arc = self.arc.centre, self.arc
+        return Stretched(Arc((beside + x / self.factor, height), arc.radius, arc.start, arc.end), self.factor)
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Those of the arc, farther from the centre line."""
+        x, y = self.arc.points(parameter)
+        return np.stack([self.factor * x, y])
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Out of the material."""
+        x, y = self.arc.normals(parameter)
+        found = np.stack([x, self.factor * y])
+        return np.asarray(found / np.hypot(*found))
+
+    def _longer(self, parameter: ArrayLike) -> Array:
+        """Length along the ellipse per length along the arc."""
+        x, y = self.arc.normals(parameter)
+        return np.hypot(self.factor * y, x)
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Of the ellipse."""
+        return np.asarray(self.arc.curvatures(parameter) * self.factor / self._longer(parameter) ** 3)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """The arc's, times by how much the ellipse is longer there."""
+        return np.asarray(self.arc.speed(parameter) * self._longer(parameter))
+
+
 @lru_cache(maxsize=64)
 def arc_length(curve: Curve, intervals: int = 400) -> tuple[Array, Array]:
     """Parameters and arc lengths from the start of a curve, by composite Gauss quadrature of its speed.

@@ -367,7 +367,11 @@ class GearPair:
 
     def radius(self, x: ArrayLike, member: Member) -> Array:
         """Radius [m] of a gear's contact point at x [m]."""
-        return np.hypot(self.gear(member).base_radius, self.flank_curvature_radius(x, member))
+        return self.place_of_length(self.flank_curvature_radius(x, member), member)
+
+    def place_of_length(self, length: ArrayLike, member: Member) -> Array:
+        """Radius [m] at which a gear has a roll length [m]."""
+        return np.hypot(self.gear(member).base_radius, np.asarray(length, dtype=float))
 
     def x_of_radius(self, radius: ArrayLike, member: Member) -> Array:
         """Contact position x [m] at which a gear touches at `radius` [m]."""

@@ -9,6 +9,9 @@ pinion. With x along the line of action from the pitch point, positive toward th
 y_C the height of the rolling line above the rack's reference line. While the pinion turns by phi the rack moves by
 r phi and the contact by r_b phi: lengths along the rack are those along the line of action over cos(alpha), forces
 along it those normal to the flank times cos(alpha).
+
+Of helical teeth all of this is the transverse section, alpha its pressure angle; the teeth of the rack have the hand
+that the pinion has not.
 """
 
 from __future__ import annotations
@@ -21,18 +24,20 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError, InputError
-from fegear.geometry.gear import Gear
+from fegear.geometry.gear import Gear, Hand
 from fegear.geometry.toothed_rack import Rack
 
 #: Modules and angles of pinion and rack agree to this share.
 _AGREE = 1e-9
 #: A base pitch in which less than this share of it has a second pair still counts as covered, for round-off [pitches].
 _ROUND_OFF = 1e-9
+#: Hand of what meshes with a rack.
+OTHER_HAND: dict[Hand, Hand] = {"spur": "spur", "left": "right", "right": "left"}
 
 
 @dataclass(frozen=True)
 class RackAndPinion:
-    """A spur pinion and a rack at a distance.
+    """A pinion and a rack at a distance, spur or helical.
 
     Parameters
     ----------
@@ -56,17 +61,21 @@ class RackAndPinion:
         pinion, rack = self.pinion, self.rack
         if pinion.tooth.internal:
             raise InputError("pinion", "an internal gear", "cannot mesh with a rack", "name an external spur gear")
-        if pinion.helix_angle != 0.0:
-            raise InputError("pinion", f"helix angle {math.degrees(pinion.helix_angle):.6g} deg",
-                             "is not available with racks", "use a spur pinion")  # fmt: skip
+        if abs(pinion.helix_angle - rack.helix_angle) > _AGREE:
+            raise InputError("helix_angle", f"{math.degrees(rack.helix_angle):.6g} deg",
+                             "differs from that of the pinion, "
+                             f"{math.degrees(pinion.helix_angle):.6g} deg")  # fmt: skip
+        if pinion.hand != OTHER_HAND[rack.hand]:
+            raise InputError("hand", f"{rack.hand} rack, {pinion.hand} pinion", "must be opposite",
+                             "change the hand of the pinion")  # fmt: skip
         if pinion.asymmetric:
             raise InputError("pinion", "asymmetric teeth", "are not available with racks",
                              "use equal flanks")  # fmt: skip
         if abs(pinion.module - rack.module) > _AGREE * rack.module:
             raise InputError("module", f"{rack.module * 1e3:.6g} mm",
                              f"differs from the module of the pinion, {pinion.module * 1e3:.6g} mm")  # fmt: skip
-        if abs(pinion.normal_pressure_angle - rack.pressure_angle) > _AGREE:
-            raise InputError("pressure_angle", f"{math.degrees(rack.pressure_angle):.6g} deg",
+        if abs(pinion.normal_pressure_angle - rack.tooth.rack.pressure_angle) > _AGREE:
+            raise InputError("pressure_angle", f"{math.degrees(rack.tooth.rack.pressure_angle):.6g} deg",
                              "differs from that of the pinion")  # fmt: skip
         for clearance, tip, root in (
             (self.pinion_tip_clearance, "pinion", "rack"), (self.rack_tip_clearance, "rack", "pinion"),
@@ -90,10 +99,10 @@ class RackAndPinion:
                 f"gives a negative backlash of {self.backlash * 1e6:.4g} um",
                 f"set distance to at least {(self.distance - self.backlash / 2 / self._slope) * 1e3:.6g} mm",
             )  # fmt: skip
-        if self.contact_ratio < 1.0:
+        if self.total_contact_ratio < 1.0:
             raise GeometryError(
                 "distance", f"{self.distance * 1e3:.6g} mm",
-                f"gives a contact ratio of {self.contact_ratio:.4g}, below 1: contact is interrupted",
+                f"gives a contact ratio of {self.total_contact_ratio:.4g}, below 1: contact is interrupted",
                 "reduce distance, or increase the addendum",
             )  # fmt: skip
 
@@ -179,6 +188,16 @@ class RackAndPinion:
         return (self.x_end - self.x_start) / self.rack.base_pitch
 
     @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta; zero of spur teeth."""
+        return self.face_width * abs(self.rack.slide) / self.rack.pitch
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """epsilon_gamma."""
+        return self.contact_ratio + self.overlap_ratio
+
+    @property
     def pinion_tip_clearance(self) -> float:
         """From the pinion's tip to the rack's root [m]."""
         return self.distance - self.pinion.tip_radius - self.rack.tooth.root_height * self.rack.module
@@ -192,7 +211,7 @@ class RackAndPinion:
     def backlash(self) -> float:
         """j_t, travel of the rack between its flanks with the pinion fixed [m]."""
         y = self.rolling_height / self.rack.module
-        space = math.pi - 2.0 * float(self.rack.tooth.half_thickness(y))
+        space = self.rack.tooth.pitch - 2.0 * float(self.rack.tooth.half_thickness(y))
         tooth = (
             2.0 * float(self.pinion.tooth.flank_angle(self.pinion.tooth.pitch_radius)) * self.pinion.tooth.pitch_radius
         )
@@ -205,7 +224,7 @@ class RackAndPinion:
 
     @property
     def stroke(self) -> float:
-        """Travel from the first contact of the first tooth to the last of the last [m]."""
+        """Travel from the first contact of the first tooth to the last of the last; helical teeth: at mid-face [m]."""
         last = (self.rack.teeth - 1) * self.rack.base_pitch + self.x_end - self.x_start
         return last / math.cos(self.rack.pressure_angle)
 
@@ -214,6 +233,6 @@ def distance_of_backlash(pinion: Gear, rack: Rack, backlash: float) -> float:
     """Distance from the pinion's axis to the rack's reference line at which there is so much backlash [m]."""
     slope = 2.0 * math.tan(rack.pressure_angle)
     half = float(pinion.tooth.flank_angle(pinion.tooth.pitch_radius)) * pinion.tooth.pitch_radius
-    tooth_shift = (2.0 * half - 0.5 * math.pi) / slope
+    tooth_shift = (2.0 * half - 0.5 * rack.tooth.pitch) / slope
     shifts = tooth_shift + rack.tooth.generating_shift
     return pinion.pitch_radius + shifts * rack.module + backlash / slope

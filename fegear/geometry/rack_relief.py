@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.given import given
-from fegear.geometry.curves import Arc, Line
+from fegear.geometry.curves import Arc, Line, Stretched
 from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
 from fegear.geometry.relief import Shape
 
@@ -161,6 +161,8 @@ def relieved_rack_outline(rack: Rack, relief: RackRelief) -> list[Drawn]:
     if isinstance(tooth.tip_edge, Arc):
         edge = tooth.tip_edge
         after.append(Arc((edge.centre[0] - inward, edge.centre[1]), edge.radius, edge.start, edge.end))
+    elif isinstance(ellipse := cast("object", tooth.tip_edge), Stretched):
+        after.append(ellipse.moved(-inward))
     elif tooth.tip_edge is not None:
         after.append(Line((top_x, top_y), (land, tooth.tip_height)))
     return [*before, foot, flank, *after, Line((land, tooth.tip_height), (0.0, tooth.tip_height))]

@@ -1,5 +1,8 @@
 """A rack: a straight row of teeth in its real size, with the body below them, how it is held, and its material.
 
+Sides and ends of a helical rack follow its teeth: its section at z is that in the middle of the face, moved along the
+rack by tan(beta) z.
+
 It is no `Gear`: it has no bore, no circles and no axis, and it has two ends. What takes a gear cannot be given one.
 """
 
@@ -11,8 +14,8 @@ from dataclasses import dataclass, field
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.given import given
 from fegear.base.shown import shown
-from fegear.geometry.gear import Material, Plane
-from fegear.geometry.rack_tooth import PITCH, RackTooth
+from fegear.geometry.gear import Hand, Material, Plane
+from fegear.geometry.rack_tooth import RackTooth
 
 #: Teeth of the longest rack; the middle teeth of longer ones answer as these.
 MOST_TEETH = 1000
@@ -47,7 +50,7 @@ class RackPins:
 
 @dataclass(frozen=True)
 class Rack:
-    """A spur rack in SI.
+    """A spur or helical rack in SI.
 
     Parameters
     ----------
@@ -64,6 +67,8 @@ class Rack:
     plane : {"strain", "stress"}
     pins : RackPins, optional
         By default all of the back is held.
+    hand : {"spur", "left", "right"}
+        As of the gear that the rack is the limit of: a right-handed one meshes with a left-handed pinion.
 
     Raises
     ------
@@ -83,6 +88,7 @@ class Rack:
     material: Material = field(default_factory=Material)
     plane: Plane = "strain"
     pins: RackPins | None = None
+    hand: Hand = "spur"
 
     def __post_init__(self) -> None:
         """Refuse sizes that cannot be."""
@@ -93,6 +99,9 @@ class Rack:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise GeometryError(name, value, "must be positive and finite")
+        if (self.hand == "spur") != (self.tooth.helix_angle == 0.0):
+            raise GeometryError("hand", f'"{self.hand}"', "contradicts the helix angle of "
+                                f"{math.degrees(self.tooth.helix_angle):.6g} deg")  # fmt: skip
         if not self.body > 0.0:
             raise GeometryError(
                 "reference_height", f"{self.reference_height * 1e3:.6g} mm",
@@ -113,25 +122,35 @@ class Rack:
             raise GeometryError(
                 "first_pin", pins.first + 1, f"must be between 1 and {self.teeth}, the teeth of the rack"
             )
-        low, high = _NARROWEST * self.module, (PITCH - _NARROWEST) * self.module
+        low, high = _NARROWEST * self.module, (self.tooth.pitch - _NARROWEST) * self.module
         if not low <= pins.width <= high:
             raise GeometryError("pin_width", f"{pins.width * 1e3:.6g} mm",
                                 f"must be between {low * 1e3:.4g} and {high * 1e3:.4g} mm (one pitch)")  # fmt: skip
 
     @property
     def pitch(self) -> float:
-        """p = pi m [m]."""
-        return PITCH * self.module
+        """p_t = pi m_n / cos(beta) [m]."""
+        return self.tooth.pitch * self.module
 
     @property
     def base_pitch(self) -> float:
-        """p_b = p cos(alpha) [m]."""
+        """p_bt = p_t cos(alpha_t) [m]."""
         return self.pitch * math.cos(self.pressure_angle)
 
     @property
     def pressure_angle(self) -> float:
-        """alpha [rad]."""
+        """alpha_t [rad]."""
         return self.tooth.pressure_angle
+
+    @property
+    def helix_angle(self) -> float:
+        """beta [rad]."""
+        return self.tooth.helix_angle
+
+    @property
+    def slide(self) -> float:
+        """Way of the section along the rack per length along the face: -tan(beta) of a right hand."""
+        return {"spur": 0.0, "left": 1.0, "right": -1.0}[self.hand] * math.tan(self.helix_angle)
 
     @property
     def body(self) -> float:

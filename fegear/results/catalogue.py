@@ -294,6 +294,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
     ),
     "Racks": (
         Entry("rack-solution", "rack.solved_rack.RACK_SOLUTION", "Influence functions of a rack (2D)"),
+        Entry("solid-rack-solution", "rack.solid_rack.SOLID_RACK_SOLUTION", "Influence functions of a rack (3D)"),
         Entry("rack-geometry", "rack.rack_geometry.RACK_GEOMETRY", "Geometry of rack and pinion", ("rack-geometry",),
               "rack and pinion in mesh: contact ratio, path, backlash, clearances, stroke; drawing", table="rack.NAME"),
         Entry("rack-stiffness", "rack.rack_stiffness.RACK_STIFFNESS", "Stiffness of the teeth of a rack",

@@ -31,8 +31,8 @@ class Rack(Described):
     Parameters
     ----------
     pinion : Gear
-        An external spur gear, whose module, pressure angle, profile and material the rack has unless it is given
-        its own.
+        An external gear, spur or helical, whose module, pressure angle, profile and material the rack has unless it
+        is given its own.
     teeth : int
         Number of teeth of the rack.
     reference_height : str, quantity or float

@@ -17,7 +17,10 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
 
-GEARS = {"p": {"teeth": 20, "module": "2 mm", "profile_shift": 0.3, "face_width": "20 mm"}}
+GEARS = {
+    "p": {"teeth": 20, "module": "2 mm", "profile_shift": 0.3, "face_width": "20 mm"},
+    "h": {"teeth": 17, "normal_module": "2 mm", "helix_angle": "15 deg", "hand": "left", "face_width": "20 mm"},
+}
 RACKS = [
     {
         "pinion": "p", "teeth": 12, "reference_height": "10 mm", "face_width": "15 mm", "backlash": "40 um",
@@ -31,6 +34,11 @@ RACKS = [
         "pinion": "p", "teeth": 5, "reference_height": "8 mm", "mounting_distance": "28.7 mm", "torque": "40 N*m",
         "tip_radius_rounding": "0.2 mm", "support": "back", "basic_rack": "ISO 53 A", "material": "42CrMo4",
         "tip_relief": {"amount": "6 um", "length": "1 mm"},
+    },
+    {
+        "pinion": "h", "teeth": 7, "reference_height": "8 mm", "width": "solid", "face_width": "12 mm",
+        "backlash": "20 um", "force": "1 kN", "tip_radius_rounding": "0.1 mm", "positions": 12,
+        "support": "pins", "pin_every": 3,
     },
 ]  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.base.errors import InputError
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.built.rack import loaded_rack_inputs, rack_inputs
 from fegear.case.reading import build_scene as scene_of
 from fegear.contact.rack.over_stroke import _standing, positions
@@ -20,6 +21,7 @@ from fegear.formulas.iso6336.part3_root_stress import root_form
 from fegear.formulas.iso6336.rack_limit import rack_root_form
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.rack_and_pinion import RackAndPinion
 from fegear.geometry.rack_outline import rack_outline
 from fegear.geometry.rack_tooth import RackTooth
 from fegear.output.export import export_gears
@@ -119,7 +121,6 @@ def test_what_cannot_be_is_refused_under_its_key(more, words):
 @pytest.mark.parametrize(
     ("gear", "words"),
     [
-        ({"helix_angle": "10 deg", "hand": "left", "module": None, "normal_module": "2 mm"}, "spur"),
         ({"coast_pressure_angle": "25 deg"}, "equal flanks"),
     ],
 )
@@ -281,3 +282,73 @@ def test_base_pitches_of_a_rack_are_alike_where_all_teeth_that_count_are():
     found = SimpleNamespace(numbers=np.array([-1, 0, 1]))
     stand = {tooth: list(_standing(SimpleNamespace(driven=rack), found, tooth)) for tooth in (-1, 2, 4)}
     assert stand == {-1: [-1, -1, -1, 7, 8], 2: [7, 8, 8, 8, 9], 4: [8, 8, 9, -1, -1]}
+
+
+HELICAL = {"helix_angle": "20 deg", "hand": "left", "module": None, "normal_module": "2 mm"}
+
+
+def helical_case(results=("rack-geometry",), **more):
+    """The case with a helical pinion."""
+    given = case(results, **more)
+    gear = given["gear"]["p"] | HELICAL
+    given["gear"]["p"] = {key: value for key, value in gear.items() if value is not None}
+    return given
+
+
+def test_a_helical_rack_has_the_other_hand_and_the_transverse_section_of_its_pinion():
+    found = rack_inputs(build_scene(helical_case(backlash="40 um")), "r")
+    pair, beta = found.pair, math.radians(20.0)
+    assert found.wide
+    assert pair.rack.hand == "right"
+    assert pair.rack.slide == pytest.approx(-math.tan(beta))
+    assert pair.rack.pitch == pytest.approx(math.pi * 2e-3 / math.cos(beta))
+    assert math.tan(pair.rack.pressure_angle) == pytest.approx(math.tan(math.radians(20.0)) / math.cos(beta))
+    assert pair.backlash == pytest.approx(40e-6)
+    assert pair.rack.base_pitch == pytest.approx(pair.pinion.base_pitch)
+    assert pair.overlap_ratio == pytest.approx(20e-3 * math.sin(beta) / (math.pi * 2e-3))
+    assert pair.travel_per_turn == pytest.approx(20 * pair.rack.pitch)
+
+
+def test_positions_and_width_of_racks_by_their_kind():
+    assert rack_inputs(build_scene(case(positions=None)), "r").positions == 32
+    assert rack_inputs(build_scene(case(positions=None, width="solid")), "r").positions == 12
+    assert not rack_inputs(build_scene(case(width="plane")), "r").wide
+    with pytest.raises(InputError, match="spur racks only"):
+        rack_inputs(build_scene(helical_case(width="plane")), "r")
+
+
+def test_a_rack_of_another_helix_or_hand_is_refused():
+    pair = rack_inputs(build_scene(helical_case()), "r").pair
+    spur = rack_inputs(build_scene(case()), "r").pair
+    with pytest.raises(InputError, match="helix_angle"):
+        RackAndPinion(pair.pinion, spur.rack, pair.distance)
+    with pytest.raises(InputError, match="hand"):
+        RackAndPinion(pair.pinion, replace(pair.rack, hand="left"), pair.distance)
+    with pytest.raises(GeometryError, match="hand"):
+        replace(pair.rack, hand="spur")
+
+
+def test_3d_racks_want_a_face_width_that_is_solved():
+    given = case(["rack-stiffness"], width="solid")
+    del given["gear"]["p"]["face_width"]
+    with pytest.raises(InputError, match="face_width"):
+        make_plan(build_scene(given), STAGES)
+    with pytest.raises(InputError, match=r"rack\.r\.face_width"):
+        make_plan(build_scene(case(["rack-stiffness"], width="solid", face_width="0.1 mm")), STAGES)
+    with pytest.raises(InputError, match=r"rack\.r\.reference_height"):
+        make_plan(build_scene(case(["rack-stiffness"], width="solid", reference_height="200 mm")), STAGES)
+
+
+@pytest.mark.dear
+def test_results_of_a_helical_rack():
+    """A narrow rack of three teeth: tables over the face, and what the standard does not say left out."""
+    asked = ["rack-transmission-error", "rack-stiffness"]
+    scene = build_scene(helical_case(asked, teeth=3, face_width="5 mm", force="500 N", reference_height="6 mm"))
+    results = run_plan(scene, make_plan(scene, STAGES))
+    tables, values = {one.name: one for one in results.tables}, {one.name: one for one in results.values}
+    assert "r.sigma_F0" not in values
+    assert 0.0 < values["r.te_mean"].error < 0.1 * values["r.te_mean"].si
+    assert values["r.te_max"].si > values["r.te_mean"].si
+    lines = tables["rack_line_load_r"]
+    assert {column.name for column in lines.columns} >= {"face_position", "line_load", "height", "tooth"}
+    assert {"rack_stiffness_over_face_r_1", "rack_stiffness_over_face_r_3"} <= set(tables)

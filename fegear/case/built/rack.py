@@ -13,7 +13,7 @@ from fegear.case.nearest import nearest
 from fegear.case.part import at
 from fegear.contact.rack.rack_flanks import RackFlanks
 from fegear.geometry.external_tooth import Tooth
-from fegear.geometry.rack_and_pinion import RackAndPinion, distance_of_backlash
+from fegear.geometry.rack_and_pinion import OTHER_HAND, RackAndPinion, distance_of_backlash
 from fegear.geometry.rack_relief import RackReliefSpec
 from fegear.geometry.rack_tooth import RackTooth
 from fegear.geometry.relief import UNMODIFIED
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 #: Keys of the rack's teeth under other names in a case.
 _KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "body":
          "reference_height", "module": "pinion", "pressure_angle": "pinion"}  # fmt: skip
+#: Positions in a base pitch where the case does not say: of plane racks, and of those with their width.
+_POSITIONS, _WIDE_POSITIONS = 32, 12
 #: Keys of its tooth that a case gives as lengths.
 _LENGTHS = ("thickness_allowance", "tip_rounding", "tip_chamfer")
 
@@ -51,6 +53,8 @@ class RackInputs:
         Of the rack and of its pinion.
     left_out : tuple of str
         Keys of reliefs that do not count, for the effect is off.
+    wide : bool
+        Whether the teeth are solved with their width (3D).
     """
 
     pair: RackAndPinion
@@ -60,6 +64,7 @@ class RackInputs:
     name: str = field(compare=False)
     pinion: str = field(compare=False)
     left_out: tuple[str, ...] = field(default=(), compare=False)
+    wide: bool = False
 
 
 def racks(scene: Scene) -> tuple[str, ...]:
@@ -80,6 +85,20 @@ def rack_pinion(scene: Scene, name: str) -> str:
         raise InputError(f"rack.{name}.pinion", f'"{pinion}"', "is not a gear of this case",
                          nearest(pinion, scene.gears))  # fmt: skip
     return pinion
+
+
+def is_wide_rack(scene: Scene, name: str) -> bool:
+    """Whether a rack is solved with its width: as given, else helical ones.
+
+    Raises
+    ------
+    InputError
+        If a helical rack is to be plane, or its pinion is not a gear of the case.
+    """
+    given, helical = scene.case.rack[name].width, scene.gears[rack_pinion(scene, name)].helix_angle != 0.0
+    if helical and given == "plane":
+        raise InputError(f"rack.{name}.width", '"plane"', "is available for spur racks only", "remove width")
+    return helical or given == "solid"
 
 
 def rack_inputs(scene: Scene, name: str) -> RackInputs:
@@ -103,9 +122,11 @@ def rack_inputs(scene: Scene, name: str) -> RackInputs:
     force = part.force or 0.0
     if part.torque is not None:
         force = part.torque / gear.pitch_radius
+    wide = is_wide_rack(scene, name)
+    positions = part.positions or (_WIDE_POSITIONS if wide else _POSITIONS)
     if scene.case.effects.relief:
-        return RackInputs(pair, force, part.positions, _flanks(scene, name, pair), name, pinion)
-    return RackInputs(pair, force, part.positions, RackFlanks(), name, pinion, relieved_parts(scene, name))
+        return RackInputs(pair, force, positions, _flanks(scene, name, pair), name, pinion, wide=wide)
+    return RackInputs(pair, force, positions, RackFlanks(), name, pinion, relieved_parts(scene, name), wide)
 
 
 def relieved_parts(scene: Scene, name: str) -> tuple[str, ...]:
@@ -201,11 +222,8 @@ def replace_key(error: InputError, key: str) -> InputError:
 def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
     tooth, module = gear.tooth, gear.module
     if not isinstance(tooth, Tooth):
-        raise InputError("pinion", f'"{part.pinion}"', "must be an external spur gear with equal flanks cut by a rack",
+        raise InputError("pinion", f'"{part.pinion}"', "must be an external gear with equal flanks cut by a rack",
                          "remove internal, fillet or coast_pressure_angle of the gear")  # fmt: skip
-    if gear.helix_angle != 0.0:
-        raise InputError("pinion", f'"{part.pinion}"', "is helical, which is not available with racks",
-                         "use a spur pinion, or a pair with a helical gear of 1000 teeth as the rack")  # fmt: skip
     if part.basic_rack is None:
         basic = replace(tooth.rack, protuberance=0.0, grinding_allowance=0.0) if tooth.rack.protuberance else tooth.rack
     elif part.basic_rack.coast_tip_radius is not None:
@@ -214,12 +232,14 @@ def _pair(part: RackAndPinionPart, gear: Gear) -> RackAndPinion:
     else:
         basic = part.basic_rack.build(tooth.rack.pressure_angle, module)
     straight = RackTooth(
-        basic, part.thickness_allowance / module, part.tip_radius_rounding / module, part.tip_chamfer / module
-    )
+        basic, part.thickness_allowance / module, part.tip_radius_rounding / module, part.tip_chamfer / module,
+        gear.helix_angle,
+    )  # fmt: skip
     rack = Rack(
         straight, module, part.teeth, part.reference_height,
         gear.face_width if part.face_width is None else part.face_width,
         gear.material if part.material is None else part.material.build(), gear.plane_assumption, part.pins(module),
+        OTHER_HAND[gear.hand],
     )  # fmt: skip
     distance = part.distance
     if part.mounting_distance is not None:

@@ -91,7 +91,8 @@ class Stroke:
     @property
     def middle(self) -> int:
         """The base pitch farthest from both ends of the rack, in contact throughout."""
-        return min(self.tooth.size // 2, self.rack_tension.size - 1)
+        first, last = int(self.tooth[0]), int(self.tooth[-1])
+        return min((first + last + 1) // 2, self.rack_tension.size - 1) - first
 
 
 def positions(found: RackContacts, count: int, flanks: RackFlanks = AS_GENERATED) -> Array:

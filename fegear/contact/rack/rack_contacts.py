@@ -87,7 +87,7 @@ class RackContacts:
         pair = self.pair
         at = np.atleast_1d(np.asarray(x, dtype=float))
         xs = at + self.numbers[:, None] * pair.rack.base_pitch
-        gap, length, height, curvature, edge = self._touching(xs)
+        gap, length, height, curvature, edge = self.touching(xs)
         on_rack = tooth - self.numbers
         gap[(on_rack < 0) | (on_rack >= pair.rack.teeth)] = np.inf
         rb = pair.pinion.base_radius
@@ -97,7 +97,7 @@ class RackContacts:
             edge, gap,
         )  # fmt: skip
 
-    def _touching(self, x: Array) -> tuple[Array, Array, Array, Array, Array]:
+    def touching(self, x: Array) -> tuple[Array, Array, Array, Array, Array]:
         """Gap, the pinion's roll length, height on the rack, curvature of both together, and `Contacts.edge`."""
         pair = self.pair
         slack = 1e-10 * pair.rack.base_pitch

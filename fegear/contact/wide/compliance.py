@@ -181,7 +181,7 @@ def flank_compliance(
 
 
 def like_cycle(gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: int) -> int:
-    """The first base pitch whose teeth answer as those of another: 0 where all teeth are alike."""
+    """The first base pitch whose teeth answer as those of another, itself if no other: 0 where all teeth are alike."""
     pairs = lines.pair[lines.present]
     low, high = int(pairs.min()), int(pairs.max())
 
@@ -191,7 +191,7 @@ def like_cycle(gears: Mapping[Member, FlankBody], lines: ContactLines, cycle: in
         return driver, driven
 
     every = math.lcm(*(gears[member].period for member in MEMBERS))
-    return next(number for number in range(every) if pattern(number) == pattern(cycle))
+    return next((number for number in range(every) if pattern(number) == pattern(cycle)), cycle)
 
 
 def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:

@@ -73,7 +73,7 @@ class ContactLines(ReadOnlyArrays):
 
     def radius(self, pair: GearPair, member: Member) -> Array:
         """Radius of one gear where the stations touch, shape (P, M) [m]."""
-        return np.hypot(pair.gear(member).base_radius, self.roll_length(pair, member))
+        return pair.place_of_length(self.roll_length(pair, member), member)
 
     def mean(self, values: Array) -> Array:
         """Mean over a base pitch of what is known at the roll positions, shape (P, ...)."""

@@ -9,6 +9,8 @@ the coordinates of the plane of action, x = x_0 + j p_bt - z tan(beta_b), with a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial, singledispatch
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,12 +19,17 @@ from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.contact.plane.meshing import Meshing
 from fegear.geometry.pair import GearPair, Member
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.contact.plane.corner import CornerContact, InternalCornerContact
+
 #: Approach of a tooth pair times Young's modulus over the load per face width: 15 to 20, and as much again.
 _SOFTNESS = 40.0
 
 
 #: Points on which the reach of an edge is looked up, and how much of a base pitch it covers at most.
-_POINTS, _MOST = 400, 0.9
+_POINTS, FARTHEST = 400, 0.9
 
 
 @dataclass(frozen=True)
@@ -54,19 +61,32 @@ class TipEdges(ReadOnlyArrays):
         return self.driver_length if member == "driver" else self.driven_length
 
 
-def edge_reach(pair: GearPair, most_gap: float) -> tuple[float, float]:
+@singledispatch
+def edge_reach(pair: object, most_gap: float) -> tuple[float, float]:
     """How far beyond the start and the end of the path [m] a tip edge is no farther from its mate than a gap [m]."""
     if most_gap <= 0.0:
         return 0.0, 0.0
+    assert isinstance(pair, GearPair)  # noqa: S101  (for mypy: others are registered)
     found = []
     for corner in Meshing(pair, corner_contact=True).corners:
         if not corner.exists:
             found.append(0.0)
             continue
-        beyond = np.linspace(0.0, min(corner.reach, _MOST * pair.base_pitch), _POINTS)
-        gap = corner.locate(beyond)[0]
-        found.append(float(np.interp(most_gap, gap, beyond)))
+        farthest = min(corner.reach, FARTHEST * pair.base_pitch)
+        found.append(reach_of_corner(partial(_gap_of, corner), farthest, most_gap))
     return found[0], found[1]
+
+
+def _gap_of(corner: CornerContact | InternalCornerContact, beyond: Array) -> Array:
+    return corner.locate(beyond)[0]
+
+
+def reach_of_corner(gap: Callable[[Array], Array], farthest: float, most_gap: float) -> float:
+    """Distance beyond the path, up to the farthest, at which a corner's gap is as given [m]."""
+    beyond = np.linspace(0.0, farthest, _POINTS)
+    found = gap(beyond)
+    there = np.isfinite(found)
+    return float(np.interp(most_gap, found[there], beyond[there]))
 
 
 def usual_gap(pair: GearPair, load: float) -> float:
@@ -75,7 +95,8 @@ def usual_gap(pair: GearPair, load: float) -> float:
     return _SOFTNESS * load / (modulus * pair.face_width)
 
 
-def tip_edges(pair: GearPair, x: ArrayLike) -> TipEdges:
+@singledispatch
+def tip_edges(pair: object, x: ArrayLike) -> TipEdges:
     """Contact at places along the line of action, on the path or beyond it.
 
     Parameters
@@ -84,5 +105,6 @@ def tip_edges(pair: GearPair, x: ArrayLike) -> TipEdges:
     x : array_like, shape (P, M)
         [m].
     """
+    assert isinstance(pair, GearPair)  # noqa: S101  (for mypy: others are registered)
     at = Meshing(pair, corner_contact=True).touching(np.asarray(x, dtype=float))
     return TipEdges(at.gap, at.driver_length, at.driven_length, at.relative_radius, at.edge)

@@ -217,7 +217,7 @@ def _at_the_faces(solution: SolidFlank, line: Bands, b: float) -> Array:
     """What end faces without traction add to their mirrors, by a logarithm beside them, (P, P)."""
     half = 0.5 * solution.width
     x, w = 0.5 + 0.5 * _END_POINTS[0], 0.5 * _END_POINTS[1]
-    lean = math.copysign(math.acos(1.0 / solution.normal_length), solution.tau)
+    lean = math.atan(solution.base_twist)
     total = np.zeros((line.count, line.count))
     square, even = end_slope(0.0, solution.poisson_ratio), np.dot(_SQUARE_SPREAD, (1.0, solution.poisson_ratio))
     for side, angle in ((-1.0, lean), (1.0, -lean)):

@@ -125,8 +125,9 @@ def _integral(xi: Array, speed: Array) -> Array:
 
 
 def surface_stress(
-    fillet: SolidFillet, tau: float, poisson_ratio: float, displacement: Array, values: Array, slopes: Array
-) -> Array:
+    fillet: SolidFillet, tau: float, poisson_ratio: float, displacement: Array, values: Array, slopes: Array,
+    slide: float = 0.0,
+) -> Array:  # fmt: skip
     """Stress in the surface, E = 1.
 
     Parameters
@@ -139,6 +140,8 @@ def surface_stress(
         v (x, y, z) at the fillet's nodes, function by function along the face.
     values, slopes : ndarray, shape (functions, Z)
         Of the functions where the stress is wanted.
+    slide : float
+        Of a rack's section, as of `fegear.fem.solid.section.Straight`.
 
     Returns
     -------
@@ -147,7 +150,7 @@ def surface_stress(
         between both.
     """
     (x, y), (tx, ty) = fillet.place, fillet.tangent
-    gx, gy, none = -tau * y, tau * x, np.zeros_like(x)
+    gx, gy, none = slide - tau * y, tau * x, np.zeros_like(x)
     skew = tx * gx + ty * gy
     across = np.sqrt(1.0 + gx**2 + gy**2 - skew**2)
     # Every strain as a sum over what the three displacements change up the section and along the helix, (2, 3, points).

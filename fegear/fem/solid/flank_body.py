@@ -115,9 +115,14 @@ class TwistedFlank(AlikeTeeth):
         return np.clip(self.settings.room_share * room, _NARROWEST * length, self.settings.band_half_width)
 
     @property
+    def base_twist(self) -> float:
+        """tan(beta_b), positive for a right hand."""
+        return self.tau * self.tooth.base_radius
+
+    @property
     def normal_length(self) -> float:
         """1 / cos(beta_b): length of N, and of the contact line per length along the face."""
-        return math.hypot(1.0, self.tau * self.tooth.base_radius)
+        return math.hypot(1.0, self.base_twist)
 
     @property
     def contact_slope(self) -> float:

@@ -170,7 +170,7 @@ class SolidInfluence:
         orders = {one.settings.section.order for one in (self.fine, self.coarse) if one is not None}
         if len(orders) > 1:
             return _ENTRY_SHARES | _OF_ANOTHER_ORDER
-        return _ENTRY_SHARES | (_OF_SPUR_GEARS if self.fine.tau == 0.0 else {})
+        return _ENTRY_SHARES | (_OF_SPUR_GEARS if self.fine.base_twist == 0.0 else {})
 
     def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
         """Surface stress of a fillet: see `SolidSolution.fillet_stress`."""

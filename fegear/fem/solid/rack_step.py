@@ -1,4 +1,4 @@
-"""The solid rack as a STEP file: its outline as splines and lines, raised over the face, shown to be watertight."""
+"""The solid rack as a STEP file: its outline as splines and lines, raised along its helix, shown to be watertight."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def write_rack_step(
         occ = gmsh.model.occ
         try:
             loop = occ.addCurveLoop(_outline(occ, rack, half))
-            occ.extrude([(2, occ.addPlaneSurface([loop]))], 0.0, 0.0, width * _MM)
+            occ.extrude([(2, occ.addPlaneSurface([loop]))], rack.slide * width * _MM, 0.0, width * _MM)
             occ.synchronize()
         except Exception as problem:
             raise FegearError(f"{path.name}: OpenCASCADE could not create a solid: {problem}") from problem
@@ -80,10 +80,11 @@ def _area(rack: Rack, half: Sequence[Spline]) -> float:
 def _outline(occ: Any, rack: Rack, half: Sequence[Spline]) -> list[int]:
     """Edges of the section counter-clockwise, at the lower end of the face; neighbours share their points."""
     z, scale, pitch = -0.5 * rack.face_width * _MM, rack.module * _MM, rack.pitch * _MM
+    lower = rack.slide * z  # way of the section there
     back = -rack.reference_height * _MM
     left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in half]
     far = (rack.teeth - 0.5) * pitch
-    first = occ.addPoint(far, float(half[0].control[0, 1]) * scale, z)
+    first = occ.addPoint(far + lower, float(half[0].control[0, 1]) * scale, z)
     edges, last = [], first
 
     def follow(spline: Spline, beside: float, *, backwards: bool) -> None:
@@ -91,7 +92,7 @@ def _outline(occ: Any, rack: Rack, half: Sequence[Spline]) -> list[int]:
         control = spline.control[::-1] if backwards else spline.control
         knots = spline.knots[-1] + spline.knots[0] - spline.knots[::-1] if backwards else spline.knots
         values, count = np.unique(knots, return_counts=True)
-        points = [occ.addPoint(float(x) * scale + beside, float(y) * scale, z) for x, y in control[1:]]
+        points = [occ.addPoint(float(x) * scale + beside + lower, float(y) * scale, z) for x, y in control[1:]]
         edges.append(
             occ.addBSpline([last, *points], degree=DEGREE, knots=values.tolist(), multiplicities=count.tolist())
         )
@@ -102,7 +103,7 @@ def _outline(occ: Any, rack: Rack, half: Sequence[Spline]) -> list[int]:
             follow(spline, number * pitch, backwards=False)
         for spline in left[::-1]:
             follow(spline, number * pitch, backwards=True)
-    corners = [occ.addPoint(x, back, z) for x in (-0.5 * pitch, far)]
+    corners = [occ.addPoint(x + lower, back, z) for x in (-0.5 * pitch, far)]
     for a, b in zip((last, *corners), (*corners, first), strict=True):
         edges.append(occ.addLine(a, b))
     return edges

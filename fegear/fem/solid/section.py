@@ -7,6 +7,9 @@ sum of products of section and face integrals.
 An inclined web is a sheared straight one: its functions are those of the place z - s (r_rim - r) at which the inclined
 line through a point meets the rim, s the tangent of the inclination. With them B1 gets slopes s N / r (xi, eta, 0), and
 no volume changes. The hub has the functions of the places that the web leads to it.
+
+The section of a helical rack is not turned but moved along the rack, X = (xi + slide zeta, eta): D is then
+d/dz - slide d/dxi, and no component of a displacement turns.
 """
 
 from __future__ import annotations
@@ -45,6 +48,22 @@ class AlongFace(Protocol):
 
 
 @dataclass(frozen=True)
+class Straight:
+    """What the section of a rack has in place of base circle and twist.
+
+    Parameters
+    ----------
+    pressure_angle : float
+        alpha_t [rad].
+    slide : float
+        Way of the section along the rack per length along the face: -tan(beta) of a right hand.
+    """
+
+    pressure_angle: float
+    slide: float
+
+
+@dataclass(frozen=True)
 class Section:
     """The section's matrices, element by element; E = 1.
 
@@ -71,7 +90,7 @@ class Section:
         Nodes of the sides from the bore outward.
     order : int
     tau : float
-        Twist [rad/module].
+        Twist [rad/module]; 0 of a rack.
     poisson_ratio : float
     zone : ndarray of int, shape (M,)
         Rim and teeth (0), web (1) or hub (2) that each element belongs to.
@@ -86,6 +105,8 @@ class Section:
         Places in the hub under an inclined web.
     whole : tuple of SectionMatrices, optional
         The section's matrices of each zone, assembled by scikit-fem, which then eliminates too (`scikit_fem_solver`).
+    straight : Straight, optional
+        Of a rack's.
     """
 
     stiffness: tuple[Array, Array, Array]
@@ -106,6 +127,7 @@ class Section:
     lean: Array | None = None
     along: BodyAlong | None = None
     whole: tuple[SectionMatrices, ...] | None = None
+    straight: Straight | None = None
 
     @property
     def size(self) -> int:
@@ -133,14 +155,14 @@ def upward(section: Section, name: str) -> tuple[Index, Array]:
         [modules].
     """
     nodes, places = section.edge_nodes[name], section.edge_places[name]
-    height = section.side * np.hypot(*places)
+    height = places[1] if section.straight is not None else section.side * np.hypot(*places)
     rising = height[0] < height[-1]
     # The curve's middle decides for edges whose ends lie on the root circle alike.
     order = np.argsort(height[1] + height[-2])
     return np.where(rising, nodes, nodes[::-1])[:, order], np.where(rising, places, places[:, ::-1])[:, :, order]
 
 
-def flank_normals(tangent: Array, place: Array, tau: float) -> Array:
+def flank_normals(tangent: Array, place: Array, tau: float, slide: float = 0.0) -> Array:
     """Unnormalised normals of the twisted flank out of the material, N = (n, tau t . x), shape (3, ...).
 
     Their length on an involute is 1 / cos(beta_b): a pressure p on the area of the flank is the force -p N ds dz, and
@@ -153,8 +175,10 @@ def flank_normals(tangent: Array, place: Array, tau: float) -> Array:
     place : ndarray, shape (2, ...)
         [modules].
     tau : float
+    slide : float
+        As of `Straight`.
     """
-    return np.stack([tangent[1], -tangent[0], tau * (tangent * place).sum(axis=0)])
+    return np.stack([tangent[1], -tangent[0], tau * (tangent * place).sum(axis=0) - slide * tangent[1]])
 
 
 def make_section(
@@ -169,6 +193,7 @@ def make_section(
     along: BodyAlong | None = None,
     polar: Sequence[str] = (),
     solver: Solver = "condensed",
+    straight: Straight | None = None,
 ) -> Section:
     """Integrate the section's matrices.
 
@@ -192,6 +217,8 @@ def make_section(
         Boundaries besides the sides whose nodes have polar axes.
     solver : {"condensed", "scikit-fem"}
         What assembles the sector and eliminates its inner unknowns.
+    straight : Straight, optional
+        Of a rack's section; base radius, twist, body and polar axes are a gear's, and scikit-fem assembles gears only.
 
     Returns
     -------
@@ -205,16 +232,21 @@ def make_section(
     elements = sector_elements(mesh, order)
     nodes, places = elements.element_nodes, elements.node_places()
     edge_nodes = {name: elements.nodes_along(edges) for name, edges in mesh.edges.items()}
-    side_a, side_b = (_outward(edge_nodes[name], places) for name in ("side_a", "side_b"))
-    _check_sides(side_a, side_b, places, mesh.teeth)
+    side_a, side_b = (_outward(edge_nodes[name], places, mesh) for name in ("side_a", "side_b"))
+    _check_sides(side_a, side_b, places, mesh)
     count = nodes.shape[0]
     flank = np.unique(edge_nodes.get("flank", np.zeros(0, dtype=np.int64)))
     turned = np.unique(np.concatenate([side_a, side_b, *(edge_nodes[name].ravel() for name in polar)]))
-    axes = _axes(places, turned, flank, (base_radius, side), tau)
+    if straight is None:
+        axes = _axes(places, turned, flank, (base_radius, side), tau)
+    else:
+        axes = _axes_of_rack(places, flank, straight)
     zone = np.zeros(count, dtype=np.int64) if body is None else zones(body, mesh.points, mesh.triangles[:3])
     lean = body.lean * (zone == WEB) if body is not None and body.lean else None
     return Section(
-        stiffness=_stiffness(elements, axes[nodes], tau, poisson_ratio, lean),
+        stiffness=_stiffness(
+            elements, axes[nodes], (tau, 0.0 if straight is None else straight.slide), poisson_ratio, lean
+        ),
         element_dofs=(3 * nodes[:, :, None] + np.arange(3)).reshape(count, -1),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
         axes=axes,
@@ -232,18 +264,20 @@ def make_section(
         lean=lean,
         along=None if lean is None else along,
         whole=assembled_zones(elements, axes, tau, poisson_ratio, zone, lean) if solver == "scikit-fem" else None,
+        straight=straight,
     )
 
 
-def _outward(edges: Index, places: Array) -> Index:
+def _outward(edges: Index, places: Array, mesh: SectorMesh) -> Index:
     nodes = np.unique(edges)
-    return nodes[np.argsort(np.hypot(*places[:, nodes]))]
+    return nodes[np.argsort(mesh.outward(places[:, nodes]))]
 
 
-def _check_sides(side_a: Index, side_b: Index, places: Array, teeth: int) -> None:
+def _check_sides(side_a: Index, side_b: Index, places: Array, mesh: SectorMesh) -> None:
     if side_a.size == side_b.size:
         a, b = places[:, side_a], places[:, side_b]
-        turn = 2.0 * np.pi / teeth
+        turn = 0.0 if mesh.pitch else 2.0 * np.pi / mesh.teeth
+        a = a + np.array([[mesh.pitch], [0.0]])
         turned = np.stack([np.cos(turn) * a[0] + np.sin(turn) * a[1], np.cos(turn) * a[1] - np.sin(turn) * a[0]])
         if np.abs(turned - b).max() < 1e-6 * np.abs(b).max():
             return
@@ -267,7 +301,21 @@ def _axes(places: Array, sides: Index, flank: Index, base: tuple[float, int], ta
     cos = np.minimum(base_radius / r, 1.0)
     sin = side * np.sqrt(1.0 - cos * cos)
     tangent = np.stack([cos * x - sin * y, sin * x + cos * y]) / r
-    normal = flank_normals(tangent, places[:, flank], tau)
+    _against_flank(axes, flank, tangent, flank_normals(tangent, places[:, flank], tau))
+    return axes
+
+
+def _axes_of_rack(places: Array, flank: Index, straight: Straight) -> Array:
+    """The same of a rack, whose sides go on as they are: x, y and z everywhere but on the flank."""
+    axes = np.tile(np.eye(3), (places.shape[1], 1, 1))
+    upward = np.array([[-np.sin(straight.pressure_angle)], [np.cos(straight.pressure_angle)]])
+    tangent = np.repeat(upward, flank.size, axis=1)
+    _against_flank(axes, flank, tangent, flank_normals(tangent, places[:, flank], 0.0, straight.slide))
+    return axes
+
+
+def _against_flank(axes: Array, flank: Index, tangent: Array, normal: Array) -> None:
+    """Give the flank's nodes their axes."""
     length = (normal * normal).sum(axis=0)
     # Unknowns a with u = sum of axes times a, the first of which is a_0 = -N . u.
     axes[flank, :, 0] = (-normal / length).T
@@ -275,18 +323,18 @@ def _axes(places: Array, sides: Index, flank: Index, base: tuple[float, int], ta
     axes[flank, 2, 1] = 0.0
     second = np.cross(normal.T, axes[flank, :, 1])
     axes[flank, :, 2] = second / np.linalg.norm(second, axis=1)[:, None]
-    return axes
 
 
 def _stiffness(
-    elements: SectorElements, axes: Array, tau: float, poisson_ratio: float, lean: Array | None
+    elements: SectorElements, axes: Array, motion: tuple[float, float], poisson_ratio: float, lean: Array | None
 ) -> tuple[Array, Array, Array]:
-    """The section's matrices for unknowns along axes of shape (M, n, 3, 3)."""
+    """The section's matrices for unknowns along axes of shape (M, n, 3, 3); `motion` is its twist and its slide."""
     from fegear.fem.forms import coefficients, element_matrices, products, shear, turn, turned_elasticity
 
+    tau, slide = motion
     basis = elements.basis()
     place = basis.mapping.F(basis.X) + elements.tip
-    turn(basis, place, tau)
+    turn(basis, place, tau, slide)
     # What changes along the face adds P' times the function itself to its D, and in an inclined web to its slopes.
     slots, along, gained = 4, [0], 3
     if lean is not None:

@@ -230,11 +230,11 @@ def flank_nodes(section: Section) -> Index:
 
 def section_flank(mesh: SectorMesh, section: Section, tooth: InvoluteSide) -> LoadedFlank:
     """The loaded flank of a section; nothing presses on fillet or tip rounding."""
-    return loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
+    return loaded_flank(mesh, PlaneUnknowns(section), tooth, margin=0.0)
 
 
 @dataclass(frozen=True)
-class _Plane:
+class PlaneUnknowns:
     """The section's boundary with plane unknowns, as the trace of the flank wants them."""
 
     section: Section

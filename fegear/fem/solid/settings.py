@@ -187,6 +187,27 @@ _HIGHEST_DEGREE = 100
 _SHORTEST_HELD = 0.02
 
 
+def check_width(width: float, settings: SolidSettings) -> None:
+    """Refuse face widths [modules] that are not solved.
+
+    Raises
+    ------
+    RangeError
+    """
+    if not (1.0 - _LIMIT_ROUND_OFF) * _NARROWEST <= width <= (1.0 + _LIMIT_ROUND_OFF) * _WIDEST:
+        raise RangeError(
+            "face_width", f"{width:.12g} modules", f"must be between {_NARROWEST:g} and {_WIDEST:g} modules",
+            "use the plane (2D) model for narrower gears; reduce wider ones to the loaded part",
+        )  # fmt: skip
+    if settings.degree(width) > _HIGHEST_DEGREE:
+        raise RangeError(
+            "face_width", f"{width:.6g} modules",
+            f"requires polynomials of degree {settings.degree(width)} along it at {settings.waves_per_module:g} "
+            f"waves per module (maximum {_HIGHEST_DEGREE})",
+            f"reduce it to {percent(_HIGHEST_DEGREE / settings.degree(width))}, or increase the tolerance",
+        )  # fmt: skip
+
+
 def check_solid(
     section: InvoluteSide,
     tau: float,
@@ -202,11 +223,7 @@ def check_solid(
     ------
     RangeError
     """
-    if not (1.0 - _LIMIT_ROUND_OFF) * _NARROWEST <= width <= (1.0 + _LIMIT_ROUND_OFF) * _WIDEST:
-        raise RangeError(
-            "face_width", f"{width:.12g} modules", f"must be between {_NARROWEST:g} and {_WIDEST:g} modules",
-            "use the plane (2D) model for narrower gears; reduce wider ones to the loaded part",
-        )  # fmt: skip
+    check_width(width, settings)
     outer, where = (section.root_radius, "root") if section.internal else (section.tip_radius, "tip")
     if not abs(tau) <= math.tan(_STEEPEST) / outer:
         angle = math.degrees(math.atan(tau * outer)) if math.isfinite(tau) else tau
@@ -215,13 +232,6 @@ def check_solid(
         )
     if not -1.0 < poisson_ratio < 0.5:
         raise RangeError("poisson_ratio", poisson_ratio, "must be between -1 and 0.5")
-    if settings.degree(width) > _HIGHEST_DEGREE:
-        raise RangeError(
-            "face_width", f"{width:.6g} modules",
-            f"requires polynomials of degree {settings.degree(width)} along it at {settings.waves_per_module:g} "
-            f"waves per module (maximum {_HIGHEST_DEGREE})",
-            f"reduce it to {percent(_HIGHEST_DEGREE / settings.degree(width))}, or increase the tolerance",
-        )  # fmt: skip
     if reach < 0:
         raise RangeError("reach", reach, "must be at least 0")
     if held is None:

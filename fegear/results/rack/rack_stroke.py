@@ -12,7 +12,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import neglecting
 from fegear.base.printed import figures, rounded
 from fegear.base.shown import shown
-from fegear.case.built.rack import loaded_rack_inputs, racks
+from fegear.case.built.rack import is_wide_rack, loaded_rack_inputs, rack_inputs, racks
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
@@ -23,7 +23,8 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, PATCH, RING
-from fegear.results.gear.solved_gear import solution_of
+from fegear.results.gear.solved_gear import solid_solution_of, solution_of
+from fegear.results.rack.solid_rack import needs_solid_rack, solid_rack_of
 from fegear.results.rack.solved_rack import compliances, needs_rack, rack_of
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ if TYPE_CHECKING:
     from fegear.contact.rack.over_stroke import Stroke
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Forecast, Upstream, Work
+
+
+#: Seconds of a 3D rack at one position of a base pitch of the stroke, both solutions; base pitches that differ.
+_SECONDS_WIDE, _APART = 0.13, 10
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,20 @@ class OverTeeth:
 
 
 @dataclass(frozen=True)
+class LinesOverFace:
+    """Stations of the contact lines over one base pitch in the middle of the rack, shape (N,)."""
+
+    travel: Array = shown(
+        "mm", "travel of the rack from the first contact of its first tooth", label="travel of the rack"
+    )
+    tooth: NDArray[np.int64] = shown("", "tooth of the rack, from 1")
+    z: Array = shown("mm", "face position from mid-face", name="face_position", label="face position")
+    height: Array = shown("mm", "height of the contact above the reference line of the rack")
+    load: Array = shown("N/mm", "line load (transverse force per face width)", name="line_load", label="line load")
+    pressure: Array = shown("MPa", "maximum pressure of smooth flanks (line contact)", name="hertz_pressure")
+
+
+@dataclass(frozen=True)
 class StrokeNumbers:
     """What the stroke comes to; of all loads along the rack."""
 
@@ -96,7 +115,9 @@ class RackStroke:
     numbers, errors : StrokeNumbers
         Errors are not numbers where they are not estimated.
     root_stress, contact_stress : float
-        Nominal ones of ISO 6336 with z -> infinity [Pa].
+        Nominal ones of ISO 6336 with z -> infinity [Pa]; not numbers for helical racks.
+    over_face : LinesOverFace or None
+        Contact lines in the middle of the rack; None of plane teeth.
     """
 
     positions: OverStroke
@@ -109,6 +130,7 @@ class RackStroke:
     contact_stress: float = shown(
         "MPa", "nominal contact stress to ISO 6336-2 (u -> infinity, all K factors 1)", name="sigma_H0"
     )
+    over_face: LinesOverFace | None = None
 
 
 def _numbers(stroke: Stroke, force: float) -> StrokeNumbers:
@@ -129,10 +151,10 @@ def _sampling(stroke: Stroke) -> float:
     return float(np.ptp(middle) - max(np.ptp(one) for one in fewer))
 
 
-def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
+def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None]:
+    """The stroke, and that by the coarser elements."""
     from fegear.contact.rack.over_stroke import over_stroke
     from fegear.contact.rack.rack_contacts import RackContacts
-    from fegear.formulas.iso6336.rack_limit import nominal_contact_stress_on_rack, nominal_root_stress_of_rack
 
     pair, force = asked.pair, asked.force
     fine, coarse = compliances(pair, rack_of(upstream, asked.name), solution_of(upstream, asked.pinion))
@@ -142,16 +164,51 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     except InputError as error:  # of the load on one pair of teeth
         raise InputError(f"rack.{asked.name}.force", f"{force:.6g} N", error.rule, error.remedy) from None
     work.progress(0.6)
+    other = None if coarse is None else over_stroke(coarse, found, force, asked.positions, asked.flanks)
+    return stroke, other, None
+
+
+def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, LinesOverFace]:
+    """The same of teeth with their width, and their contact lines."""
+    from fegear.contact.rack.rack_in_mesh import RackInMesh
+    from fegear.contact.rack.wide_stroke import WideRackFlanks, wide_over_stroke
+
+    pair, force, rack = RackInMesh(asked.pair), asked.force, solid_rack_of(upstream, asked.name)
+    pinion = solid_solution_of(upstream, asked.pinion)
+    fine = WideRackFlanks(pair, pinion.fine, rack.fine, asked.flanks, asked.positions)
+    found = wide_over_stroke(fine, force, lambda part: work.progress(0.6 * part))
+    other = None
+    if pinion.coarse is not None:
+        coarse = WideRackFlanks(pair, pinion.coarse, rack.coarse, asked.flanks, asked.positions)
+        other = wide_over_stroke(coarse, force, lambda part: work.progress(0.6 + 0.4 * part)).stroke
+    at, lines = found.middle, found.middle.lines
+    on = lines.present
+    row = np.broadcast_to(np.arange(lines.roll.size)[:, None], on.shape)[on]
+    over = LinesOverFace(
+        found.travel[row], (found.cycle - lines.pair + 1)[on], lines.z[on], lines.roll_length(at.pair, "driven")[on],
+        at.line_load[on][:, 0], at.pressure[on][:, 0],
+    )  # fmt: skip
+    return found.stroke, other, over
+
+
+def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
+    from fegear.formulas.iso6336.rack_limit import nominal_contact_stress_on_rack, nominal_root_stress_of_rack
+
+    pair, force = asked.pair, asked.force
+    stroke, coarse, over_face = (_wide if asked.wide else _plane)(asked, upstream, work)
     numbers = _numbers(stroke, force)
     names = StrokeNumbers.__dataclass_fields__
     errors = StrokeNumbers(*(math.nan for _ in names))
     if coarse is not None:
-        other = _numbers(over_stroke(coarse, found, force, asked.positions, asked.flanks), force)
+        other = _numbers(coarse, force)
         off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
         off["peak_to_peak"] += _sampling(stroke)
         errors = StrokeNumbers(**off)
     there, tangential = ~np.isnan(stroke.error), asked.force
     tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
+    by_standard = (math.nan, math.nan)
+    if not pair.rack.helix_angle:
+        by_standard = (nominal_root_stress_of_rack(pair, tangential), nominal_contact_stress_on_rack(pair, tangential))
     count = np.arange(1, pair.rack.teeth + 1)
     return RackStroke(
         OverStroke(
@@ -159,8 +216,7 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
             stroke.largest_share[there], stroke.pinion_tension[there],
         ),
         OverTeeth(count, stroke.rack_tension, stroke.rack_compression),
-        numbers, errors, nominal_root_stress_of_rack(pair, tangential),
-        nominal_contact_stress_on_rack(pair, tangential),
+        numbers, errors, *by_standard, over_face,
     )  # fmt: skip
 
 
@@ -185,10 +241,12 @@ def _answer(seen: Seen) -> Iterator[str]:
 
 def _remarks(seen: Seen) -> Iterator[str]:
     name = seen.name
-    yield (
-        f"Rack {name}: ISO 6336 with z -> infinity gives nominal stresses only; K factors, safety factors and life "
-        "are not available."
-    )
+    if seen.asked.pair.rack.helix_angle:
+        yield f"Rack {name}: nominal stresses to ISO 6336 are given for spur racks only."
+    else:
+        yield _by_iso(name)
+    if seen.asked.wide:
+        yield f"Rack {name}: sides and ends of the 3D rack follow the helix; its stroke counts at mid-face."
     yield neglecting(
         f"Rack {name}: friction, deviations and misalignment are not included; the pinion is fixed at its bore."
     )
@@ -199,6 +257,13 @@ def _remarks(seen: Seen) -> Iterator[str]:
         )
     if seen.asked.pair.pinion.tooth.undercut:
         yield f"Rack {name}: the pinion is undercut; contact starts at its root form circle."
+
+
+def _by_iso(name: str) -> str:
+    return (
+        f"Rack {name}: ISO 6336 with z -> infinity gives nominal stresses only; K factors, safety factors and life "
+        "are not available."
+    )
 
 
 _VALUES = tuple(StrokeNumbers.__dataclass_fields__)
@@ -217,6 +282,10 @@ _SHEET = Sheet(
         ),
         Rows("rack_root_stress_{name}", "Root stress of the teeth of rack {name}", ("number", "tension", "compression"),
              of="teeth"),
+        Rows(
+            "rack_line_load_{name}", "Contact lines of rack {name} in its middle, over one base pitch",
+            ("travel", "tooth", "z", "height", "load", "pressure"), of="over_face",
+        ),
     ),
     values=(
         *(Number(f"numbers.{one}", _error(one)) for one in _VALUES),
@@ -248,13 +317,16 @@ def _check(scene: Scene, name: str) -> None:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    part = scene.case.rack[name]
-    return forecasts.constant(0.1 + 0.001 * min(part.teeth, 35) * part.positions)
+    asked = rack_inputs(scene, name)
+    teeth = asked.pair.rack.teeth
+    if asked.wide:
+        return forecasts.constant(_SECONDS_WIDE * min(teeth + 1, _APART) * asked.positions)
+    return forecasts.constant(0.1 + 0.001 * min(teeth, 35) * asked.positions)
 
 
 RACK_TRANSMISSION_ERROR = Stage(
     subjects=racks,
-    needs=needs_rack,
+    needs=lambda scene, name: (needs_solid_rack if is_wide_rack(scene, name) else needs_rack)(scene, name),
     inputs=loaded_rack_inputs,
     compute=_compute,
     present=_SHEET.present,

@@ -14,7 +14,7 @@ from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.tooth_meshing import mesh_inside
-from fegear.geometry.rack_tooth import PITCH, RackTooth
+from fegear.geometry.rack_tooth import RackTooth
 
 #: Bodies below the root that can be meshed [modules].
 THINNEST_BODY, THICKEST_BODY = 0.25, 50.0
@@ -50,7 +50,7 @@ def rack_sector(tooth: RackTooth, body: float, settings: MeshSettings, pin_width
                          f"must be between {THINNEST_BODY:g} and {THICKEST_BODY:g} modules")  # fmt: skip
     started = time.perf_counter()
     mesh = mesh_inside(rack_boundary(tooth, body, settings, pin_width), 1, started, settings.side_growth)
-    mesh = replace(mesh, pitch=PITCH)
+    mesh = replace(mesh, pitch=tooth.pitch)
     if settings.order > 2:
         check_cubic_edges(mesh)
     return mesh
@@ -58,11 +58,11 @@ def rack_sector(tooth: RackTooth, body: float, settings: MeshSettings, pin_width
 
 def rack_boundary(tooth: RackTooth, body: float, settings: MeshSettings, pin_width: float = 0.0) -> list[Chain]:
     """Discretise the closed boundary of one sector, counterclockwise from the back on the left; as `rack_sector`."""
-    above, beyond = tooth_chains(tooth, settings)
+    pitch, (above, beyond) = tooth.pitch, tooth_chains(tooth, settings)
     top = above[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
     back = tooth.root_height - body
-    widest = min(settings.body_fraction * PITCH, settings.rim_fraction * body)
+    widest = min(settings.body_fraction * pitch, settings.rim_fraction * body)
     end = _PIN_END * settings.root_edge_length
 
     def size(depth: Array) -> Array:
@@ -71,11 +71,11 @@ def rack_boundary(tooth: RackTooth, body: float, settings: MeshSettings, pin_wid
     at = np.union1d(np.linspace(0.0, body, 513), np.geomspace(0.1 * min(first, body), body, 65))
     heights = tooth.root_height - graded(body, size, at=at)[::-1]
     heights[0], heights[-1] = back, tooth.root_height
-    side_b = _upright("side_b", 0.5 * PITCH, heights)
-    side_a = _upright("side_a", -0.5 * PITCH, heights[::-1])
+    side_b = _upright("side_b", 0.5 * pitch, heights)
+    side_a = _upright("side_a", -0.5 * pitch, heights[::-1])
     if not pin_width:
-        edges = max(1, round(PITCH / float(size(np.array(body)))))
-        return [_level("bore", np.linspace(-0.5, 0.5, edges + 1) * PITCH, back), side_b, *above, *beyond, side_a]
+        edges = max(1, round(pitch / float(size(np.array(body)))))
+        return [_level("bore", np.linspace(-0.5, 0.5, edges + 1) * pitch, back), side_b, *above, *beyond, side_a]
 
     def from_end(length: float) -> Array:
         fine = np.union1d(np.linspace(0.0, length, 257), np.geomspace(0.1 * end, length, 129))
@@ -83,8 +83,8 @@ def rack_boundary(tooth: RackTooth, body: float, settings: MeshSettings, pin_wid
 
     half = from_end(0.5 * pin_width)
     held = np.concatenate([half[:-1] - 0.5 * pin_width, (0.5 * pin_width - half)[::-1]])
-    free = 0.5 * pin_width + from_end(0.5 * (PITCH - pin_width))
-    free[-1] = 0.5 * PITCH
+    free = 0.5 * pin_width + from_end(0.5 * (pitch - pin_width))
+    free[-1] = 0.5 * pitch
     return [
         _level("back", -free[::-1], back), _level("bore", held, back), _level("back", free, back),
         side_b, *above, *beyond, side_a,

@@ -87,10 +87,13 @@ class Row:
         Sectors that differ.
     order : tuple of int
         Which of them each sector is, from the first to the last.
+    alike : float
+        Stiffnesses of what lies beyond a side that agree to this share are one.
     """
 
     kinds: tuple[BetweenSides, ...]
     order: tuple[int, ...]
+    alike: float = _ALIKE
 
     @property
     def count(self) -> int:
@@ -116,7 +119,7 @@ class Row:
                     new = aa - ab @ np.linalg.solve(bb + rest, ab.T)
                 new = 0.5 * (new + new.T)
                 size = np.abs(new).max()
-                same = (i for i, old in enumerate(stored) if np.abs(old - new).max() <= _ALIKE * size)
+                same = (i for i, old in enumerate(stored) if np.abs(old - new).max() <= self.alike * size)
                 found = next(same, None)
                 if found is None:
                     stored.append(new)
@@ -172,7 +175,7 @@ class Row:
         return {j - i: np.vstack([side[j], side[j + 1]]) for j in range(low, high + 1)}
 
 
-def row_of(kinds: Sequence[BetweenSides], order: Sequence[int]) -> Row:
+def row_of(kinds: Sequence[BetweenSides], order: Sequence[int], alike: float = _ALIKE) -> Row:
     """A row of sectors, at least one of them held.
 
     Parameters
@@ -180,5 +183,7 @@ def row_of(kinds: Sequence[BetweenSides], order: Sequence[int]) -> Row:
     kinds : sequence of BetweenSides
     order : sequence of int
         Which of them each sector is.
+    alike : float
+        As of `Row`.
     """
-    return Row(tuple(kinds), tuple(order))
+    return Row(tuple(kinds), tuple(order), alike)
