@@ -347,7 +347,7 @@ def test_results_of_a_helical_rack():
     results = run_plan(scene, make_plan(scene, STAGES))
     tables, values = {one.name: one for one in results.tables}, {one.name: one for one in results.values}
     assert "r.sigma_F0" not in values
-    assert 0.0 < values["r.te_mean"].error < 0.1 * values["r.te_mean"].si
+    assert 0.0 < values["r.te_mean"].error < 1.0  # in µm
     assert values["r.te_max"].si > values["r.te_mean"].si
     lines = tables["rack_line_load_r"]
     assert {column.name for column in lines.columns} >= {"face_position", "line_load", "height", "tooth"}

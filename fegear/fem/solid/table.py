@@ -212,7 +212,10 @@ class BandNumbers:
 
         Of root stress the curves along the face are compared beside the largest: largest values may agree by chance.
         """
-        found = {key: np.abs(other.compliance[key] / value - 1.0) for key, value in self.compliance.items()}
+        found = {}
+        for key, value in self.compliance.items():  # at the end of a rack there is no next tooth
+            apart = np.abs(other.compliance[key] - value)
+            found[key] = np.divide(apart, np.abs(value), out=np.zeros_like(apart), where=value != 0.0)
         for side, root in self.root.items():
             sign = 1.0 if side == "tension" else -1.0
             apart = curves_apart(sign * root.along, sign * other.root[side].along, BESIDE_LARGEST)
