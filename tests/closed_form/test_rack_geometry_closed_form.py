@@ -120,7 +120,7 @@ def test_corners_part_by_the_square_and_vanish_on_the_path():
     found = RackContacts(pair)
     for end, sign in ((pair.x_start, -1.0), (pair.x_end, 1.0)):
         step = 1e-3 * pair.rack.base_pitch
-        gap = [float(found._touching(np.array([end + sign * n * step]))[0][0]) for n in (1.0, 2.0)]
+        gap = [float(found.touching(np.array([end + sign * n * step]))[0][0]) for n in (1.0, 2.0)]
         assert gap[1] / gap[0] == pytest.approx(4.0, rel=0.02)
     contacts = found.contacts([0.5 * (pair.x_start + pair.x_end)], 0)
     assert not contacts.present[contacts.number > 0].any()  # no teeth before the first
@@ -134,7 +134,7 @@ def test_corner_of_the_pinion_by_own_turning():
     beyond = 0.13 * pair.rack.base_pitch
     ra, along = pair.pinion.tip_radius, float(pair.roll_length(pair.x_end))
     angle = math.atan2(along, rb) + beyond / rb
-    gap, _, height, *_ = found._touching(np.array([pair.x_end + beyond]))
+    gap, _, height, *_ = found.touching(np.array([pair.x_end + beyond]))
     assert gap[0] == pytest.approx(along + beyond - ra * math.sin(angle), rel=1e-9)
     assert height[0] == pytest.approx(pair.distance - ra * math.cos(angle - pair.rack.pressure_angle), rel=1e-9)
 

@@ -96,7 +96,7 @@ def test_maxwell_and_the_ends():
     rack = rack_of(20.0, teeth=15)
     size = np.abs(rack.coupling(2, 2)).max()
     for i, j in ((0, 0), (0, 1), (2, 3)):
-        assert np.abs(rack.coupling(i, j) - rack.coupling(j, i).T).max() < 1e-8 * size
+        assert np.abs(rack.coupling(i, j) - rack.coupling(j, i).T).max() < 1e-6 * size  # like teeth are merged at 1e-5
     assert not rack.loaded(0).compliance[-1].any()
     first, middle = (numbers(rack.loaded(j), 0.2)[0][:3] for j in (0, 2))
     assert (first > 1.05 * middle).all()
