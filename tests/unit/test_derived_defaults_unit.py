@@ -220,6 +220,8 @@ ROWS = {
                 "mesh": [{"gears": ["one", "step.first"]}, {"gears": ["two", "step.second"]}]}}},
         "compound.S.output", "carrier"),
     "RackAndPinionPart.face_width": (RACK, "rack.axis.face_width", "20 mm"),
+    "RackAndPinionPart.width": (RACK, "rack.axis.width", "plane"),
+    "RackAndPinionPart.positions": (RACK, "rack.axis.positions", 32),
     "RackAndPinionPart.basic_rack": (RACK, "rack.axis.basic_rack", "ISO 53 C"),
     "RackAndPinionPart.material": (RACK, "rack.axis.material", {"young_modulus": "206.8 GPa"}),
     "RackAndPinionPart.distance": (RACK, "rack.axis.distance", "20.6 mm"),
