@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.results.pair.mesh_stiffness_data import loaded_harmonics
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 
@@ -205,6 +207,43 @@ def test_harmonics_beyond_those_of_half_the_positions_are_stated_no_better_than_
     true = np.abs(te.series.amplitude - exact)
     assert (true <= 1.5 * stated).all()
     assert np.sqrt(np.mean(stated**2)) < 20.0 * np.sqrt(np.mean(true**2))
+
+
+def with_kink(place, positions):
+    """Known harmonics of a loaded pair whose curve has a kink at a place of the base pitch, and roll positions [m]."""
+    points = roll_points(pair(20.0), positions)
+    turn = (points.x - points.breaks[0]) / points.period
+    te = (1.0 - 2.0 * np.abs(np.mod(turn - place + 0.5, 1.0) - 0.5))[:, None]
+    flanks = SimpleNamespace(at=0, found=SimpleNamespace(transmission_error=te))
+    flanks.error = SimpleNamespace(coarse=flanks.found)
+    found = SimpleNamespace(points=points)
+    return loaded_harmonics(SimpleNamespace(flanks=flanks, found=found, other=found), positions // 4, shuttling=False)
+
+
+#: Where a kink stands within the base pitch: no two of them alike beside the positions.
+KINKS = np.linspace(0.05, 0.95, 16)
+
+
+@pytest.mark.parametrize("positions", [16, 17, 32])
+def test_harmonics_that_excite_a_pair_err_by_no_more_than_stated_of_a_curve_with_a_kink(positions):
+    """Half of the positions share the kink's place with all of them: beyond their harmonics both know nothing."""
+    n = np.arange(1, positions // 4 + 1)
+    found = [with_kink(place, positions) for place in KINKS]
+    assert {one.shape for pair in found for one in pair} == {(n.size, 5)}
+    assert not any(stated[:, 1:].any() for _, stated in found)
+    size, stated = (np.abs(np.stack([pair[i][:, 0] for pair in found])) for i in (0, 1))
+    true = np.abs(size - np.where(n % 2, 4.0 / (math.pi * n) ** 2, 0.0))
+    assert (true <= 1.5 * stated).all()
+    assert np.sqrt(np.mean(stated**2)) < 8.0 * np.sqrt(np.mean(true**2))
+
+
+def test_errors_of_harmonics_of_a_kink_fall_with_the_square_of_the_positions():
+    """The law by which `no_less_than_shown_by_half` goes on: root mean square over places of the kink and harmonics."""
+    n = np.arange(1, 7)
+    exact = np.where(n % 2, 4.0 / (math.pi * n) ** 2, 0.0)
+    off = [[np.abs(with_kink(place, count)[0][:6, 0]) - exact for place in KINKS] for count in (24, 96)]
+    few, many = np.sqrt(np.mean(np.square(off), axis=(1, 2)))
+    assert 1.6 < math.log(few / many, 4.0) < 2.4
 
 
 def test_what_half_of_the_positions_show_is_continued():

@@ -12,7 +12,7 @@ from fegear.results.pair.load_factors import _OF_LOAD, FlankLoadFactorsData, _tr
 
 
 def factors(face, transverse, left=(0.0, 0.0)):
-    return SimpleNamespace(face=face, transverse=transverse, left_by_positions=FactorsLeft(*left))
+    return SimpleNamespace(face=face, transverse=transverse, left_by_positions=FactorsLeft(*left, 0.0))
 
 
 def off(factor, coarse, by_load=0.0037, longer=None, left=(0.0, 0.0)):
@@ -79,6 +79,7 @@ def test_what_roll_positions_miss_of_largest_shares_is_an_error_of_the_factors(m
     left = root.left_by_positions.transverse
     assert transverse_left_by_positions(found, perfect)[0] == left
     assert 1.3 - root.transverse <= left <= 1.01 / count
+    assert root.left_by_positions.largest == left  # the same share is the largest tension here
     # what is the same everywhere leaves nothing open
     assert root_factors(perfect, perfect, Rooted(), np.zeros(1), 0) == RootFactors(1.0, 1.0, 1.0)
 

@@ -10,8 +10,8 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of
 from fegear.case.built import tooth_influence
-from fegear.contact.wide import load_factors, rated, root_stress
-from fegear.contact.wide.load_factors import RootFactors
+from fegear.contact.wide import load_factors, over_pitch, rated, root_stress
+from fegear.contact.wide.load_factors import FactorsLeft, RootFactors
 from fegear.contact.wide.rated import SolvedFlanks, computed_flanks
 from fegear.engine import processes
 from fegear.exchange.rexs import model_to_case
@@ -109,7 +109,7 @@ def test_stages_are_counted_in_roman_numbers_and_faces_along_the_gearbox():
 
 
 def test_rated_flanks_hand_their_factors_on(monkeypatch):
-    """Root factor: s_3 b m_n / F_t, errors by the coarser solution under the first load; in the order of the wheels."""
+    """Root factor: s_3 b m_n / F_t, errors by coarser solution and positions under the first load; in the order of the wheels."""
     numbers = {  # solution, member, load: K_Fbeta, K_Falpha, largest tension
         ("fine", "driver", 0): (1.2, 1.1, 3e8), ("fine", "driven", 0): (1.3, 1.05, 2e8),
         ("fine", "driver", 1): (1.4, 1.15, 6e8), ("fine", "driven", 1): (1.5, 1.25, 5e8),
@@ -128,7 +128,7 @@ def test_rated_flanks_hand_their_factors_on(monkeypatch):
             )
 
     pair = SimpleNamespace(gear=lambda member: SimpleNamespace(module=2e-3 if member == "driver" else 3e-3))
-    flanks = SimpleNamespace(pair=pair, solve=Found)
+    flanks = SimpleNamespace(pair=pair, solve=Found, points="points")
     influences = {
         "driver": SimpleNamespace(fine=("fine", "driver"), coarse=("coarse", "driver")),
         "driven": SimpleNamespace(fine=("fine", "driven"), coarse=None),
@@ -141,9 +141,18 @@ def test_rated_flanks_hand_their_factors_on(monkeypatch):
 
     def factors(found, perfect, rooted, z, case):
         assert (perfect.gaps, z) == (None, "places")
-        return RootFactors(*numbers[found.known, rooted, case])
+        left = {"driver": 6e6, "driven": 1e6}[rooted] if found.known == "fine" else 9e9
+        return RootFactors(*numbers[found.known, rooted, case], FactorsLeft(7.0, 8.0, left))
+
+    def face_left(points, found):
+        assert points == "points"
+        return 0.032 * np.ones(found.face_load_factor.size)
 
     monkeypatch.setattr(root_stress, "rooted_lines", rooted_lines)
+    monkeypatch.setattr(over_pitch, "face_left_by_positions", face_left)
+    monkeypatch.setattr(
+        load_factors, "transverse_left_by_positions", lambda found, _: 0.0102 * np.ones(found.face_load_factor.size)
+    )
     monkeypatch.setattr(load_factors, "root_factors", factors)
     monkeypatch.setattr(
         load_factors, "transverse_load_factor",
@@ -163,8 +172,8 @@ def test_rated_flanks_hand_their_factors_on(monkeypatch):
         2e8 / (1.3 * 1.05) * 0.03 * 3e-3 / 9e3, 3e8 / (1.2 * 1.1) * 0.02 * 2e-3 / 9e3,
     ))  # fmt: skip
     assert second.replacement.root_factor[1] == pytest.approx(6e8 / (1.4 * 1.15) * 0.02 * 2e-3 / 1.8e4)
-    assert first.contact_error == second.contact_error == pytest.approx(0.5 * (0.1 + 0.1))
-    assert first.bending_error == pytest.approx((0.05, 0.1))
+    assert first.contact_error == second.contact_error == pytest.approx(0.5 * (0.1 + 0.1 + 0.02 + 0.01))
+    assert first.bending_error == pytest.approx((0.05 + 0.005, 0.1 + 0.02))
     assert [(found.load, found.pressure) for found in (first, second)] == [(1e4, 1e9), (2e4, 2e9)]
 
 

@@ -44,20 +44,21 @@ _READ = 101
 
 
 class FactorsLeft(NamedTuple):
-    """What the number of roll positions leaves open of K_Fbeta and K_Falpha."""
+    """What the number of roll positions leaves open of K_Fbeta, K_Falpha and the largest root tension [Pa]."""
 
     face: float
     transverse: float
+    largest: float
 
 
-_NOTHING_LEFT = FactorsLeft(0.0, 0.0)
+_NOTHING_LEFT = FactorsLeft(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class RootFactors:
     """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa].
 
-    `left_by_positions` is what the number of roll positions leaves open of both factors.
+    `left_by_positions` is what the number of roll positions leaves open of these.
     """
 
     face: float = shown("", "maximum root stress over that with uniform load along each contact line", name="K_Fbeta")
@@ -142,12 +143,11 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
 
     whole = largest()
     face, transverse = _ratios(whole)
-    changes = [
-        part * np.abs(np.subtract(_ratios(largest(at)), (face, transverse)))
-        for part, at in fewer_positions(lines.roll.size)
-    ]
-    left = np.max(changes, axis=0)
-    return RootFactors(face, transverse, whole[0], FactorsLeft(*left.tolist()))
+    changes = []
+    for part, at in fewer_positions(lines.roll.size):
+        fewer = largest(at)
+        changes.append(part * np.abs(np.subtract((*_ratios(fewer), fewer[0]), (face, transverse, whole[0]))))
+    return RootFactors(face, transverse, whole[0], FactorsLeft(*np.max(changes, axis=0).tolist()))
 
 
 def _ratios(largest: Sequence[float]) -> tuple[float, float]:

@@ -91,7 +91,7 @@ class OverPitch(ReadOnlyArrays):
         straight = np.array([_straight_mean(x, one, period) for one in te.T])
         mean = np.maximum(_OF_MEAN * np.abs(fewer - straight), np.abs(straight - found.mean_transmission_error))
         return Stated(
-            mean, self.beyond, _OF_FACE * _face_by_half(self.points, found),
+            mean, self.beyond, face_left_by_positions(self.points, found),
             *(one.max(axis=0) - one[kept].max(axis=0) for one in (found.largest_line_loads, found.largest_pressures)),
         )  # fmt: skip
 
@@ -201,8 +201,11 @@ def worth_a_look(x: Array, peaks: list[tuple[Array, Array]], period: float) -> A
     return np.array(new)
 
 
-def _face_by_half(points: Panels, found: LoadedFlanks) -> Array:
-    """Largest change of the mean load anywhere on the face by half of the roll positions, over the mean, (L,)."""
+def face_left_by_positions(points: Panels, found: LoadedFlanks) -> Array:
+    """What the number of roll positions leaves open of K_Hbeta, shape (L,).
+
+    A part of the largest change of the mean load anywhere on the face by half of them, over the mean.
+    """
     lines, kept = found.lines, every_second(points)
     fewer = replace(
         lines, roll=lines.roll[kept], pair=lines.pair[kept], present=lines.present[kept], x=lines.x[kept],
@@ -210,4 +213,4 @@ def _face_by_half(points: Panels, found: LoadedFlanks) -> Array:
     )  # fmt: skip
     again = swept_mean(fewer, found.line_load[kept], found.cells, points.period) / np.diff(found.cells)[:, None]
     mean = found.load / (lines.high - lines.low)
-    return np.asarray(np.abs(again - found.mean_over_face).max(axis=0) / mean)
+    return np.asarray(_OF_FACE * np.abs(again - found.mean_over_face).max(axis=0) / mean)

@@ -122,12 +122,14 @@ def computed_flanks(
         Which of driver and driven pinion and wheel are.
     loads : sequence of (float, float)
         Along the transverse line of action, with K_A K_gamma and K_v, and the same at the reference circle [N]. Errors
-        are estimated under the first one and hold for all.
+        are estimated under the first one and hold for all: what coarser solutions change, and what the number of roll
+        positions leaves open.
     """
     fine = _factors(solved, loads, solved.fine, coarse=False)
-    again = _factors(solved, loads[:1], solved.coarse, coarse=True)[0]
-    contact = 0.5 * (abs(again.face / fine[0].face - 1.0) + abs(again.transverse / fine[0].transverse - 1.0))
-    root = {m: abs(again.largest(m) / fine[0].largest(m) - 1.0) for m in MEMBERS}
+    again, one = _factors(solved, loads[:1], solved.coarse, coarse=True)[0], fine[0]
+    # contact stress goes with the root of both factors
+    contact = 0.5 * (abs(again.face / one.face - 1.0) + abs(again.transverse / one.transverse - 1.0) + one.left)
+    root = {m: abs(again.largest(m) / one.largest(m) - 1.0) + one.root_left[m] for m in MEMBERS}
 
     def both(values: Mapping[Member, float]) -> Both:
         return values[members[0]], values[members[1]]
@@ -146,7 +148,11 @@ def computed_flanks(
 
 @dataclass(frozen=True)
 class _Factors:
-    """Factors of one solution; those of the root by member."""
+    """Factors of one solution; those of the root by member.
+
+    The number of roll positions leaves `left` open of K_Hbeta K_Halpha, and `root_left` of the largest root stress,
+    relatively.
+    """
 
     face: float
     transverse: float
@@ -154,6 +160,8 @@ class _Factors:
     root_transverse: Mapping[Member, float]
     root: Mapping[Member, float]
     pressure: float
+    left: float
+    root_left: Mapping[Member, float]
 
     def largest(self, member: Member) -> float:
         """Root stress with all its factors."""
@@ -162,13 +170,20 @@ class _Factors:
 
 def _factors(solved: SolvedFlanks, loads: Sequence[Both], known: FlankCompliance, *, coarse: bool) -> list[_Factors]:
     """Factors under every load, solved in one go."""
-    from fegear.contact.wide.load_factors import root_factors, transverse_load_factor
+    from fegear.contact.wide.load_factors import (
+        root_factors,
+        transverse_left_by_positions,
+        transverse_load_factor,
+    )
+    from fegear.contact.wide.over_pitch import face_left_by_positions
     from fegear.contact.wide.root_stress import rooted_lines
 
     pair, normal = solved.flanks.pair, [load for load, _ in loads]
     found = solved.flanks.solve(normal, solved.gaps, known)
     perfect = solved.flanks.solve(normal, None, known)
     across = transverse_load_factor(found, perfect)
+    left = face_left_by_positions(solved.flanks.points, found) / found.face_load_factor
+    left = left + transverse_left_by_positions(found, perfect) / across
     rooted = {}
     for member in MEMBERS:
         influence = solved.influences[member]
@@ -183,7 +198,8 @@ def _factors(solved: SolvedFlanks, loads: Sequence[Both], known: FlankCompliance
                 float(found.face_load_factor[case]), float(across[case]), {m: factors[m].face for m in MEMBERS},
                 {m: factors[m].transverse for m in MEMBERS},
                 {m: factors[m].largest / (factors[m].face * factors[m].transverse) * size[m] for m in MEMBERS},
-                float(found.largest_pressure[case]),
+                float(found.largest_pressure[case]), float(left[case]),
+                {m: factors[m].left_by_positions.largest / factors[m].largest for m in MEMBERS},
             )
         )  # fmt: skip
     return made

@@ -142,7 +142,7 @@ def flank_transmission_error_shift(
         Of what coarser gears change, so much is error: of means, and of the curve's shape.
     """
     # read between the positions as `series_over_pitch` reads what is stated
-    fewer = _error(te.load, te.points, *(_of_half(te.points, one) for one in (te.values, te.local, te.secant)))
+    fewer = _error(te.load, te.points, *(of_half(te.points, one) for one in (te.values, te.local, te.secant)))
     pairs = ((te, fewer), (fine, longer), (longer, coarse))
     mean, shape = ((1.0, 1.0, part) for part in of_gears)
 
@@ -207,7 +207,7 @@ def _reaches_ends(points: Panels, piece: int, own: Index) -> bool:
     return bool(max(at[0] - ends[0], ends[1] - at[-1]) < _ON_END * points.period)
 
 
-def _of_half(points: Panels, values: Array) -> Array:
+def of_half(points: Panels, values: Array) -> Array:
     """What half of the roll positions say at all of them, read as by `curve_through`, shape (P,)."""
     own, kept = np.searchsorted(points.breaks, points.x), every_second(points)
     found = np.interp(points.x, points.x[kept], values[kept], period=points.period)

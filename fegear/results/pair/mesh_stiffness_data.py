@@ -263,26 +263,31 @@ def loaded_harmonics(data: MeshStiffnessData, count: int, shuttling: bool) -> tu
     ndarray of complex, shape (N, 5)
         0-peak [m].
     ndarray, shape (N, 5)
-        Changes by the coarser solution and by half as many roll positions.
+        Changes by the coarser solution, and by half as many roll positions as of `no_less_than_shown_by_half`.
     """
-    from fegear.contact.wide.transmission_error import from_half
+    from fegear.contact.error_over_pitch import no_less_than_beside
+    from fegear.contact.wide.transmission_error import no_less_than_shown_by_half, of_half
 
     flanks = data.flanks
     found, other = (_over_q(one, te, flanks.at, shuttling) for one, te in (
         (data.found, flanks.found.transmission_error), (data.other, flanks.error.coarse.transmission_error)
     ))  # fmt: skip
     points = data.found.points
-    fewer = np.stack([from_half(points, curve) for curve in found.T], axis=1)
-    series, half, coarse = (_series(points, curves, count) for curves in (found, fewer, other))
-    return series, np.abs(series - coarse) + np.abs(series - half)
+    fewer = np.stack([of_half(points, curve) for curve in found.T], axis=1)
+    series, half, coarse = (_series(points, curves) for curves in (found, fewer, other))
+    by_positions, by_gears = np.abs(series - half), np.abs(series - coarse)
+    each = [
+        no_less_than_beside(no_less_than_shown_by_half(one) + two)
+        for one, two in zip(by_positions.T, by_gears.T, strict=True)
+    ]
+    return series[:count], np.stack(each, axis=1)[:count]
 
 
-def _series(points: Panels, curves: Array, count: int) -> Complex:
-    """Complex 0-peak amplitudes of curves (P, k) over the base pitch, shape (N, k)."""
+def _series(points: Panels, curves: Array) -> Complex:
+    """Complex 0-peak amplitudes of curves (P, k) over the base pitch that the roll positions show, shape (N, k)."""
     from fegear.contact.wide.transmission_error import series_over_pitch
 
-    found = [2.0 * series_over_pitch(points, curve).coefficients[1 : count + 1] for curve in curves.T]
-    return np.stack(found, axis=1)
+    return np.stack([2.0 * series_over_pitch(points, curve).coefficients[1:] for curve in curves.T], axis=1)
 
 
 def _over_q(one: MeshStiffness, te: Array, case: int, shuttling: bool) -> Array:
