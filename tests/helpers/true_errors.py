@@ -256,9 +256,10 @@ def of_elements(case, accuracy):
 
 
 def both_answers(case, accuracy):
-    """`answers`, and the same `of_elements`, which of gears by themselves is None: no tip touches."""
+    """`answers`, and the same `of_elements`; None where nothing plane touches with its tip: gears, helical pairs."""
     found = answers(case, accuracy)
-    return found, of_elements(case, accuracy) if case.get("pair") or case.get("planetary") else None
+    plane = not any(gear.get("helix_angle") for gear in case["gear"].values())
+    return found, of_elements(case, accuracy) if plane and (case.get("pair") or case.get("planetary")) else None
 
 
 @dataclass
@@ -434,13 +435,13 @@ def true_answers(kind, case):
                     if key[0].startswith("value largest_")
                 }
         return found
-    cache = SolutionCache()
+    cache, panels = SolutionCache(), {"panels": PANELS}
     with ExitStack() as finer:
         finer.enter_context(patch.object(solid_influence, "settings_of_case", fine_solid))
         finer.enter_context(patch.object(over_pitch, "POSITIONS", POSITIONS))
-        found = answers(case | ({"load_distribution": {"panels": PANELS}} if kind == "wide pair" else {}), FINEST, cache)
+        found = answers(case | ({"load_distribution": panels} if kind == "wide pair" else {}), FINEST, cache)
         if kind == "wide pair":
-            many = answers(case | {"load_distribution": {"panels": PANELS, "positions": POSITIONS}}, FINEST, cache)
+            many = answers(case | {"load_distribution": {**panels, "positions": POSITIONS}}, FINEST, cache)
             found |= {key: one for key, one in many.items() if key[0].startswith(BETWEEN_POSITIONS)}
     if kind == "wide pair" and not any(gear.get("helix_angle") for gear in case["gear"].values()):
         # spur pairs have these of plane teeth

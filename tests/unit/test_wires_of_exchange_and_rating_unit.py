@@ -109,7 +109,7 @@ def test_stages_are_counted_in_roman_numbers_and_faces_along_the_gearbox():
 
 
 def test_rated_flanks_hand_their_factors_on(monkeypatch):
-    """Root factor: s_3 b m_n / F_t, errors by coarser solution and positions under the first load; in the order of the wheels."""
+    """Root factor: s_3 b m_n / F_t, in the order of the wheels; errors by coarser gears and fewer positions."""
     numbers = {  # solution, member, load: K_Fbeta, K_Falpha, largest tension
         ("fine", "driver", 0): (1.2, 1.1, 3e8), ("fine", "driven", 0): (1.3, 1.05, 2e8),
         ("fine", "driver", 1): (1.4, 1.15, 6e8), ("fine", "driven", 1): (1.5, 1.25, 5e8),
