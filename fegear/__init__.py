@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fegear.base.errors import FegearError, InputError
     from fegear.workbench.fillet import fillet_design
     from fegear.workbench.gear import Gear
+    from fegear.workbench.measured import gauge, measured_transmission_error
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import (
         dynamic_factor,
@@ -35,8 +36,8 @@ __version__ = "0.2.0"
 
 __all__ = [
     "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "fillet_design",
-    "flank_design", "load_sharing", "mesh_stiffness_revolution", "rating", "relief",
-    "root_stress", "run", "stiffness_table", "transmission_error",
+    "flank_design", "gauge", "load_sharing", "measured_transmission_error", "mesh_stiffness_revolution", "rating",
+    "relief", "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
 #: Modules of the names above, besides the version.
@@ -50,7 +51,9 @@ _HOMES = {
     "dynamic_factor": "workbench.questions",
     "fillet_design": "workbench.fillet",
     "flank_design": "workbench.questions",
+    "gauge": "workbench.measured",
     "load_sharing": "workbench.questions",
+    "measured_transmission_error": "workbench.measured",
     "mesh_stiffness_revolution": "workbench.questions",
     "rating": "workbench.rating",
     "relief": "workbench.questions",

@@ -30,6 +30,8 @@ _TITLES = {
     "stiffness": "Stiffness",
     "crosscheck": "Root stress and compliance",
     "load-sharing": "Load sharing",
+    "gauge": "Strain of gauges",
+    "measured-transmission-error": "Measured transmission error",
     "mesh-stiffness-revolution": "Mesh stiffness over a revolution",
     "root-stress-history": "Root stress over the mesh cycle",
     "transmission-error": "Transmission error",
@@ -78,7 +80,7 @@ def _one_load(pair: Pair, torque: object, load: object) -> None:
         )  # fmt: skip
 
 
-def _loaded(
+def loaded_document(
     pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
 ) -> dict[str, Any]:
     """The pair's document under its load or loads, along the line of action."""
@@ -107,7 +109,7 @@ def _designed_for(
     if torque is not None and (isinstance(torque, Mapping) or listed(torque, "torque") is not None):
         return pair.document(torques=torque), {}
     several = load is not None and listed(load, "load") is not None
-    return _loaded(pair, torque, load), {"over": "torques"} if several else {}
+    return loaded_document(pair, torque, load), {"over": "torques"} if several else {}
 
 
 def stiffness_table(
@@ -149,6 +151,8 @@ def stiffness_table(
     """
     if not isinstance(gear, Gear):
         raise InputError("gear", shown(gear), "must be a fegear.Gear", 'use fegear.Gear(20, "3 mm")')
+    if isinstance(radii, int):
+        raise InputError("radii", f"{radii}", "must be lengths", f"use positions={radii} for so many load positions")
     part: dict[str, Any] = {"gear": gear.name}
     given = {"radii": None if radii is None else listed(radii, "radii") or [radii], "positions": positions,
              "contact_half_width": contact_half_width, "face_positions": face_positions, "source": source}  # fmt: skip
@@ -198,7 +202,7 @@ def root_stress(
     if isinstance(gears, Pair):
         if positions is not None:
             raise InputError("positions", shown(positions), "applies to gears only", "remove it")
-        document = _loaded(gears, torque, load)
+        document = loaded_document(gears, torque, load)
         return ask_of_pair(
             "root-stress-history", gears, document, effects, tolerance, progress, cache, neglected=neglected
         )
@@ -257,7 +261,7 @@ def transmission_error(
     return ask_of_pair(
         "transmission-error",
         pair,
-        _loaded(pair, torque, load),
+        loaded_document(pair, torque, load),
         effects,
         tolerance,
         progress,
@@ -292,7 +296,14 @@ def load_sharing(
         ``<pair>.largest_load``, ``<pair>.largest_hertz_pressure``, ...
     """
     return ask_of_pair(
-        "load-sharing", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache, neglected=neglected
+        "load-sharing",
+        pair,
+        loaded_document(pair, torque, load),
+        effects,
+        tolerance,
+        progress,
+        cache,
+        neglected=neglected,
     )
 
 
@@ -323,7 +334,7 @@ def mesh_stiffness_revolution(
         ``<pair>.mesh_stiffness_min``, ``<pair>.te_residual_max``, ...
     """
     return ask_of_pair(
-        "mesh-stiffness-revolution", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache,
+        "mesh-stiffness-revolution", pair, loaded_document(pair, torque, load), effects, tolerance, progress, cache,
         neglected=False,
     )  # fmt: skip
 
@@ -441,7 +452,7 @@ def dynamic_factor(
     Results
         Table ``dynamic_factor_<pair>``, values ``<pair>.largest_dynamic_factor``, ``<pair>.speed_of_largest``.
     """
-    document = _loaded(pair, torque, None)
+    document = loaded_document(pair, torque, None)
     driver, driven = pair.names
     ratio = DAMPING_RATIO if damping_ratio is None else damping_ratio
     document["train"] = table(train, "train") if train is not None else {

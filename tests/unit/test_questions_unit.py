@@ -326,3 +326,29 @@ def test_a_rating_has_the_pair_s_own_keys_and_those_that_are_asked_for(pair, ask
     assert (one.pair["I"].torque, one.pair["I"].operation.application_factor) == (90.0, 1.3)
     assert one.pair["I"].speed == pytest.approx(50.0 * math.pi)
     assert list(fegear.rating(pair, load="1 kN", beside="computed").case.rating.beside) == ["computed"]
+
+
+def test_gauges_and_traces_are_asked_for_by_the_keys_of_a_case(asked, tmp_path):
+    pair = fegear.Pair(PINION, WHEEL)
+    one = fegear.gauge(pair, {"grid_length": "0.5 mm", "fillet": "compression"}, torque="90 N*m").case
+    assert list(one.gauge) == ["g"]
+    assert (one.gauge["g"].gear, one.gauge["g"].pair, one.gauge["g"].fillet) == ("pinion", "I", "compression")
+    two = fegear.gauge(pair, {"left": {"gear": "wheel"}, "right": {"height": "0.4 mm"}}, load="3 kN").case.gauge
+    assert [(name, gauge.gear) for name, gauge in two.items()] == [("left", "wheel"), ("right", "pinion")]
+    files = [{"file": "one.csv", "torque": "60 N*m"}, {"file": "two.csv", "torque": "90 N*m"}]
+    found = fegear.measured_transmission_error(
+        pair, files, torque=["60 N*m", "90 N*m"], encoders={"fit": ["offset"], "te_at": "driven"}
+    ).case
+    assert [trace.torque for trace in found.encoders["rig"].traces] == [60.0, 90.0]
+    assert (found.encoders["rig"].fit, found.encoders["rig"].te_at) == (["offset"], "driven")
+    single = fegear.measured_transmission_error(pair, tmp_path / "one.csv", load="3 kN").case.encoders["rig"]
+    assert single.traces[0].file == str(tmp_path / "one.csv")
+    with pytest.raises(InputError, match="at least one file"):
+        fegear.measured_transmission_error(pair, [], torque="90 N*m")
+    with pytest.raises(InputError, match="grid_lenght"):
+        fegear.gauge(pair, {"grid_lenght": "0.5 mm"}, torque="90 N*m")
+
+
+def test_a_number_of_positions_is_no_radius():
+    with pytest.raises(InputError, match="use positions=40"):
+        fegear.stiffness_table(PINION, 40)

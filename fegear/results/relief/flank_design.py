@@ -19,6 +19,7 @@ from fegear.results.gear.solved_gear import needs_solid_solution, solid_solution
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.relief.flank_design_data import FlankDesignData, FlankDesignInputs
 from fegear.results.relief.flank_design_sheet import FLANK_DESIGN_SHEET
+from fegear.results.relief.relief_over_face import misaligned
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -64,7 +65,7 @@ def _check(scene: Scene, name: str) -> None:
 def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     over = None if _part(scene).loads else design_range(scene, name)
-    return FlankDesignInputs(_part(scene), name, gears, over, flank_tolerance(scene, name))
+    return FlankDesignInputs(_part(scene), name, gears, over, flank_tolerance(scene, name), misaligned(scene, name))
 
 
 def _grid(part: FlankDesignPart) -> ReliefGrid | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -57,6 +57,8 @@ class FlankDesignInputs:
         Loads that what can be ground is chosen for together.
     tolerance : FlankTolerance
         Of what is ground.
+    misaligned : str
+        The misalignment that counts as given, in words; empty for none.
     """
 
     part: FlankDesignPart
@@ -64,6 +66,7 @@ class FlankDesignInputs:
     gears: Mapping[Member, str]
     over: LoadRange | None
     tolerance: FlankTolerance
+    misaligned: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.base.notes import assuming
 from fegear.base.printed import figures, percent
 from fegear.contact.wide.lines import ContactLines
 from fegear.engine.figure.axis import Axis
@@ -366,6 +367,14 @@ FLANK_DESIGN_SHEET = Sheet(
     ),
     remarks=(
         Remark(_keys, each="design.chosen"),
+        Remark(
+            lambda seen: assuming(
+                f"Pair {seen.name}: designed for {seen.asked.misaligned} with its sign; with the opposite sign or none "
+                "these flanks can result in more transmission error than no relief. If the sign varies, set "
+                "flank_design.scatter."
+            ),
+            when=lambda seen: bool(seen.asked.misaligned) and not seen.data.design.scattered,
+        ),
         Remark(
             "Pair {name}: shaft deflection is kept at that of the present flanks during the design; rerun with the "
             "designed modification to update it.",
