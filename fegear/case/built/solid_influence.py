@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 #: elements of order 4 are taken, as fine as a case asks for.
 _USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
 #: Processor seconds of a solid gear with the usual settings and its error estimate: those of a narrow gear, what the
-#: width [modules] to a power adds, the power (measured from 10 to 45 modules), and that of one over the edge length, or
+#: width [modules] to a power adds, the power (measured from 4 to 24 modules), and that of one over the edge length, or
 #: of the elements' order, with which both grow.
-_SECONDS, _BY_WIDTH, _WIDER, _GROWTH = 2.0, 0.021, 2.4, 4.0
+_SECONDS, _BY_WIDTH, _WIDER, _GROWTH = 1.1, 0.0078, 2.4, 4.0
 #: The share of what the width adds that is left where motions that mirror at the middle of the face are solved apart.
 _APART = 0.35
 #: Of one in slices.
