@@ -196,6 +196,14 @@ class RollingElementsPart(Part):
 class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
     """``life = { dynamic_rating = "32.5 kN", axial_factor = 1.6, ... }`` of the catalogue, for ISO 281."""
 
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        """Refuse X or e without Y: P would be less than without an axial force."""
+        if self.axial_factor is None and (self.radial_factor is not None or self.limit is not None):
+            key = "radial_factor" if self.radial_factor is not None else "limit"
+            raise refuse(f"is required with {key}", f"specify it, or remove {key}", key="axial_factor")
+        return self
+
 
 class CataloguePart(_CatalogueKeys):  # type: ignore[misc]  # frozen by pydantic
     """``catalogue = { kind = "ball", bore = "30 mm", outside_diameter = "62 mm", width = "16 mm", ... }``."""

@@ -77,6 +77,8 @@ def test_a_bearing_of_a_case_takes_what_is_missing_from_its_designation_and_its_
     [({"designation": "6206", "radial": "20 N/um"}, "contradicts other keys"),
      ({"catalogue": {"kind": "ball", "bore": "30 mm", "width": "16 mm"}}, "is required without a designation"),
      ({"designation": "6026"}, "is not a known designation"),
+     ({"designation": "6206", "life": {"radial_factor": 0.56, "limit": 0.26}}, "is required with radial_factor"),
+     ({"designation": "6206", "life": {"limit": 0.26}}, "is required with limit"),
      ({"designation": "6206", "life": {"dynamic_rating": "190 kN"}}, "is not possible within the envelope")],
 )  # fmt: skip
 def test_a_bearing_of_a_case_is_refused(given, said):
@@ -198,6 +200,23 @@ def test_an_exponent_follows_from_what_rolls_unless_given():
     assert BearingPart.model_validate({"designation": "NU206", "life": life}).rating.kind == "roller"
     assert BearingPart.model_validate({"designation": "NU206", "life": life | {"kind": "ball"}}).rating.kind == "ball"
     assert BearingPart.model_validate({"radial": "200 N/um", "life": life}).rating.kind == "ball"
+
+
+def test_axial_force_counts_where_what_rolls_is_known_unless_factors_are_given():
+    """A 6308 of C 42.5 and C_0 25 kN under 1724 and 1330 N had P = F_r; f_0 = 13.2 of its print gives 3225 N."""
+    life = {"dynamic_rating": "42.5 kN"}
+    printed = {"designation": "6308", "catalogue": {"static_rating": "25 kN"}}
+    known = BearingPart.model_validate({**printed, "life": life}).rating
+    assert known.equivalent_load(1724.0, 1330.0) == pytest.approx(3225.0, rel=5e-3)
+    own = {**life, "radial_factor": 0.56, "axial_factor": 1.4, "limit": 0.31}
+    said = BearingPart.model_validate({**printed, "life": own}).rating
+    assert said.equivalent_load(1724.0, 1330.0) == pytest.approx(0.56 * 1724.0 + 1.4 * 1330.0)
+    balls = {"kind": "ball", "count": 8, "diameter": "15.08 mm", "pitch_diameter": "65 mm"}
+    rolling = BearingPart.model_validate({"elements": balls, "life": life}).rating
+    assert rolling.equivalent_load(1724.0, 1330.0) == pytest.approx(3225.0, rel=2e-2)
+    plain = BearingPart.model_validate({"radial": "200 N/um", "life": life}).rating
+    assert plain.equivalent_load(1724.0, 1330.0) == 1724.0
+    assert plain.overlooks(1724.0, 1330.0)
 
 
 def shaft_on(*bearings: dict) -> dict:
