@@ -199,8 +199,9 @@ class BearingLifePart(_LifeKeys):  # type: ignore[misc]  # frozen by pydantic
     @model_validator(mode="after")
     def _whole(self) -> Self:
         """Refuse X or e without Y: P would be less than without an axial force."""
-        if self.axial_factor is None and (self.radial_factor is not None or self.limit is not None):
-            key = "radial_factor" if self.radial_factor is not None else "limit"
+        partial = [key for key in ("radial_factor", "limit") if key in self.given]
+        if partial and "axial_factor" not in self.given:
+            key = partial[0]
             raise refuse(f"is required with {key}", f"specify it, or remove {key}", key="axial_factor")
         return self
 
