@@ -115,7 +115,7 @@ class RackAndPinionPart(_RackKeys):
         default=None, description="Torque on the pinion, force x reference radius; alternatively `force`."
     )
     positions: Annotated[int, Field(ge=8, le=400)] | None = Field(
-        default=None, description="Number of positions per base pitch over the stroke. Default: 32; 12 for 3D racks."
+        default=None, description="Number of positions per base pitch over the stroke. Default: 32; 24 for 3D racks."
     )
 
     @model_validator(mode="after")

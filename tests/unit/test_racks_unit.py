@@ -311,7 +311,7 @@ def test_a_helical_rack_has_the_other_hand_and_the_transverse_section_of_its_pin
 
 def test_positions_and_width_of_racks_by_their_kind():
     assert rack_inputs(build_scene(case(positions=None)), "r").positions == 32
-    assert rack_inputs(build_scene(case(positions=None, width="solid")), "r").positions == 12
+    assert rack_inputs(build_scene(case(positions=None, width="solid")), "r").positions == 24
     assert not rack_inputs(build_scene(case(width="plane")), "r").wide
     with pytest.raises(InputError, match="spur racks only"):
         rack_inputs(build_scene(helical_case(width="plane")), "r")

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _KEYS = {"rack": "basic_rack", "tip_rounding": "tip_radius_rounding", "body":
          "reference_height", "module": "pinion", "pressure_angle": "pinion"}  # fmt: skip
 #: Positions in a base pitch where the case does not say: of plane racks, and of those with their width.
-_POSITIONS, _WIDE_POSITIONS = 32, 12
+_POSITIONS, _WIDE_POSITIONS = 32, 24
 #: Keys of its tooth that a case gives as lengths.
 _LENGTHS = ("thickness_allowance", "tip_rounding", "tip_chamfer")
 

@@ -205,12 +205,15 @@ class WideStroke:
         Tooth of pair 0 there.
     travel : ndarray, shape (P,)
         Of the rack there [m].
+    sampling : float
+        What fewer positions change of the peak-to-peak transmission error there, along the rack [m].
     """
 
     stroke: Stroke
     middle: LoadedFlanks
     cycle: int
     travel: Array
+    sampling: float
 
 
 def wide_over_stroke(
@@ -266,7 +269,12 @@ def wide_over_stroke(
     stroke = Stroke(travel, error, pairs, share, worst, pressed, of_rack["tension"], of_rack["compression"], cycles)
     cycle = int(cycles[stroke.middle])
     middle = cast("LoadedFlanks", of_cycle[cycle])
-    return WideStroke(stroke, middle, cycle, travel[stroke.middle][np.isin(every, middle.lines.roll)])
+    fewer = cast(
+        "LoadedFlanks", replace(ready, positions=max(4, 2 * ready.positions // 3)).base_pitch(force / cos, cycle)
+    )
+    apart = float(np.ptp(middle.transmission_error) - np.ptp(fewer.transmission_error))
+    way = travel[stroke.middle][np.isin(every, middle.lines.roll)]
+    return WideStroke(stroke, middle, cycle, way, abs(apart) / cos)
 
 
 def _roots(

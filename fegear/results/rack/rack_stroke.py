@@ -151,8 +151,8 @@ def _sampling(stroke: Stroke) -> float:
     return float(np.ptp(middle) - max(np.ptp(one) for one in fewer))
 
 
-def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None]:
-    """The stroke, and that by the coarser elements."""
+def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None, float]:
+    """The stroke, that by the coarser elements, and what fewer positions change of the peak to peak."""
     from fegear.contact.rack.over_stroke import over_stroke
     from fegear.contact.rack.rack_contacts import RackContacts
 
@@ -165,10 +165,10 @@ def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, S
         raise InputError(f"rack.{asked.name}.force", f"{force:.6g} N", error.rule, error.remedy) from None
     work.progress(0.6)
     other = None if coarse is None else over_stroke(coarse, found, force, asked.positions, asked.flanks)
-    return stroke, other, None
+    return stroke, other, None, _sampling(stroke)
 
 
-def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, LinesOverFace]:
+def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, LinesOverFace, float]:
     """The same of teeth with their width, and their contact lines."""
     from fegear.contact.rack.rack_in_mesh import RackInMesh
     from fegear.contact.rack.wide_stroke import WideRackFlanks, wide_over_stroke
@@ -188,21 +188,21 @@ def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, St
         found.travel[row], (found.cycle - lines.pair + 1)[on], lines.z[on], lines.roll_length(at.pair, "driven")[on],
         at.line_load[on][:, 0], at.pressure[on][:, 0],
     )  # fmt: skip
-    return found.stroke, other, over
+    return found.stroke, other, over, found.sampling
 
 
 def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     from fegear.formulas.iso6336.rack_limit import nominal_contact_stress_on_rack, nominal_root_stress_of_rack
 
     pair, force = asked.pair, asked.force
-    stroke, coarse, over_face = (_wide if asked.wide else _plane)(asked, upstream, work)
+    stroke, coarse, over_face, sampling = (_wide if asked.wide else _plane)(asked, upstream, work)
     numbers = _numbers(stroke, force)
     names = StrokeNumbers.__dataclass_fields__
     errors = StrokeNumbers(*(math.nan for _ in names))
     if coarse is not None:
         other = _numbers(coarse, force)
         off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
-        off["peak_to_peak"] += _sampling(stroke)
+        off["peak_to_peak"] += sampling
         errors = StrokeNumbers(**off)
     there, tangential = ~np.isnan(stroke.error), asked.force
     tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
