@@ -70,7 +70,7 @@ EXTERNAL = {
     "atlas-gear", "body-modes", "contact-lines", "crack-path", "crosscheck", "design-chart", "double-helical",
     "flank-design", "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "odd-solid-solution", "pair-forced-response",
-    "rack-geometry", "rack-solution",
+    "rack-geometry", "rack-solution", "solid-rack-solution",
     "rack-stiffness", "rack-transmission-error", "sizing", "tooth-contact",
     "transmissibility",
 }  # fmt: skip
