@@ -25,11 +25,13 @@ _SHARE = {2: 0.1, 3: 0.25, 4: 1.3}
 #: falls with this power of the number of edges below the wider half-width where that is smaller than this number.
 _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
 #: Neighbours err by the width of the pressures, which both orders share: this times what pressures half as wide change,
-#: those that are narrowed beside the flank's ends, too; and by a part of what elements one order lower do. Of fourth
-#: order that part is for a half-width of so much, and grows with this power of wider ones, which go with the root of
-#: the edges' length.
-_WIDTH_SHARE, _NEIGHBOUR_SHARE = 1.5, {2: 0.5, 3: 0.5, 4: 0.3}
-_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER = 0.25, 0.6
+#: those that are narrowed beside the flank's ends, too; and by a part of what elements one order lower do. What halves
+#: of a width change goes with its fourth power (docs/numerics.md): 16/15 of it is error, and true
+#: errors of 80 gears and rings are 1.05 times it; of elements of lower orders, which were not looked at, more counts.
+#: The part of fourth order, which is true of a tenth and less of that of gears, is for a half-width of so much, and
+#: grows with this power of wider ones, which go with the root of the edges' length; where edges are few it is another.
+_WIDTH_SHARE, _NEIGHBOUR_SHARE = {2: 1.5, 3: 1.5, 4: 1.2}, {2: 0.5, 3: 0.5, 4: 0.16}
+_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER, _NEIGHBOUR_OF_FEW_EDGES = 0.25, 0.6, 0.3
 #: Of what all teeth have in common, as a gear turns as a whole, that part is, and grows so.
 _COMMON_SHARE, _COMMON_POWER = {2: 0.5, 3: 0.5, 4: 0.15}, 2.5
 #: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
@@ -38,14 +40,18 @@ _COMMON_SHARE, _COMMON_POWER = {2: 0.5, 3: 0.5, 4: 0.15}, 2.5
 #: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
 _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
 #: What both orders have, edges that are few and their own curves, shows as scatter of stress about the smooth curve
-#: along a fillet. Of what is usual beside the largest stress so much is error, of that at one contact on the tooth
-#: itself so much, and on the next tooth so much. It counts on long fillets of long edges, and below contacts beside a
-#: fillet.
+#: along a fillet. Of what is usual beside the largest stress so much counts, of that at one contact on the tooth itself
+#: so much, and on the next tooth so much. It counts on long fillets of long edges, and below contacts beside a fillet.
 _SCATTERED, _SCATTERED_HERE, _SCATTERED_NEXT = 0.65, 0.85, 1.2
 #: On a tooth itself the larger of both is more than the error: so much of it is, and so many times the part more, no
 #: more than so much where edges are few (60 random gears and rings, docs/numerics.md). Whether a tolerance is met is
 #: judged by all of it.
 _OWN_STRESS, _OWN_STRESS_BY_SHARE, _MOST_OWN_STRESS = 0.45, 0.55, 0.8
+#: Of scatter, as of the whole, less is error than counts where a tolerance is judged: the usual one, and that at one
+#: contact. Of what a tooth's own stress usually differs by over the flank so many times is error at least; tension,
+#: which bends the whole tooth, differs everywhere by much the same (103 gears and rings need 0.9 at most).
+_OWN_SCATTERED, _OWN_SCATTERED_HERE = 0.5, 0.65
+_OWN_USUAL: dict[Side, float] = {"tension": 1.2, "compression": 1.5}
 #: Both fillets have one shape and edges as long: one errs by no less than the other usually does, should its difference
 #: vanish by chance; by so many times the part less, down to so much of it, for where edges are few those of the
 #: compressed fillet, which are graded where its stress is largest, err by more of their own (of four of 18 gears and
@@ -73,14 +79,17 @@ _SCATTERS = 3.0
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
 #: Of neighbours, whose errors by the width of the pressures are local: of fourth order for that half-width, more by
-#: this power of wider ones up to so much (at a tolerance of 0.01 no place of 39 gears and 64 rings needs more than 0.17
+#: this power of wider ones up to so much (of 24 gears and 56 rings at a tolerance of 0.01 no place needs more than 0.1
 #: but by the tips of three rings).
-_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR = 0.2, 3.8, 0.25
-#: Where the wider half-width covers fewer edges than these, longer ones than those of that tolerance, of lower orders,
-#: and by the tip of a ring's teeth up to so much: there pressures are narrow, their width says nothing, and what
-#: elements one order lower change is all that is known, of three rings a third of the error or less. The tip is so much
-#: of the flank, and fades over so much of it.
-_FEWEST_KNOWN, _LITTLE_KNOWN, _TIP_OF_RING, _FADES = 1.25, 0.8, 0.35, 0.25
+_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR = 0.15, 6.0, 0.2
+#: Where the wider half-width covers fewer edges than these, longer ones than those of that tolerance, and of lower
+#: orders so much.
+_FEWEST_KNOWN, _LITTLE_KNOWN = 1.25, 0.8
+#: By the tip of a ring's teeth up to so much on a thin rim: there pressures are narrow, their width says nothing, and
+#: what elements one order lower change is all that is known, of three rings with rims of 2.5 to 2.8 modules less than
+#: the error, of none of 40 with thicker ones. The tip is so much of the flank, and fades over so much of it; a rim of
+#: the first thickness is thin, one of the second is not [modules].
+_BY_TIP_OF_RING, _TIP_OF_RING, _FADES, _THIN_RIM = 1.3, 0.35, 0.25, (3.0, 4.0)
 #: By how much the gear turns on its bore both orders may agree by chance: so much of the smallest deflection of its
 #: neighbours is error at least (of one gear 8e-7 was, 5 times what was stated at a tolerance of 1e-4).
 _OF_TURNING = 1e-6
@@ -100,6 +109,19 @@ class _Stress(NamedTuple):
     place: Array
     difference: Array
     scatter: Array
+
+
+class _Counts(NamedTuple):
+    """How much counts of what the own fillet's stress usually differs by, of that of the other one, and of scatter."""
+
+    usual: float
+    of_other: float
+    scatter: float
+    scatter_here: float
+
+
+#: Where it is judged whether a tolerance is met.
+_JUDGED = _Counts(_USUAL, 1.0, _SCATTERED, _SCATTERED_HERE)
 
 
 @dataclass(frozen=True)
@@ -163,7 +185,7 @@ class Estimate:
             errors["c_neighbour"] = self._neighbour_estimate(1, difference, least) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
-            error = self._own_stress_estimate(side, value, difference, self._scatter[0, side], 1.0)
+            error = self._own_stress_estimate(side, value, difference, self._scatter[0, side], _JUDGED)
             errors[f"root_{side}"] = error / _stress_scale(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
@@ -237,7 +259,8 @@ class Estimate:
         value = self.fine.neighbour(k, p, q, self.patch)
         of_width = np.abs(value - self.fine.neighbour(k, p, q, self.patch, 0.5))
         of_order = np.abs(value - self.coarse.neighbour(k, p, q, self.patch) - self._turned)
-        return value, _WIDTH_SHARE * of_width + self._neighbour_share * of_order + self._of_edges(k, p, q)
+        of_width *= _WIDTH_SHARE[self.fine.flank.order]
+        return value, of_width + self._neighbour_share * of_order + self._of_edges(k, p, q)
 
     def _of_edges(self, k: int, p: Array, q: Array) -> Array:
         """What both solutions have in common: fillets' edges that leave the exact curves."""
@@ -250,7 +273,10 @@ class Estimate:
 
     @property
     def _neighbour_share(self) -> float:
-        return self._for_width(_NEIGHBOUR_SHARE[self.fine.flank.order], _NEIGHBOUR_POWER)
+        share = _NEIGHBOUR_SHARE[self.fine.flank.order]
+        if self._edges_below < _FEWEST_KNOWN:
+            share = max(share, _NEIGHBOUR_OF_FEW_EDGES)
+        return self._for_width(share, _NEIGHBOUR_POWER)
 
     def _for_width(self, share: float, power: float) -> float:
         """A share, more of fourth order where pressures are wide."""
@@ -270,16 +296,16 @@ class Estimate:
     def _least_of_usual(self, radius: Array) -> Array:
         """How much of neighbours' usual difference is their error at least, shape (P,)."""
         wanted, tooth = self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), self.fine.tooth
-        most = _LITTLE_KNOWN if self.fine.flank.order < 4 else min(wanted, _LITTLE_KNOWN)
         if self.fine.flank.order < 4 or self._edges_below < _FEWEST_KNOWN:
-            return np.full(np.shape(radius), most)
-        least = min(wanted, _MOST_USUAL_NEIGHBOUR)
+            return np.full(np.shape(radius), _LITTLE_KNOWN)
+        least, most = min(wanted, _MOST_USUAL_NEIGHBOUR), min(wanted, _BY_TIP_OF_RING)
         if tooth.side > 0:
             return np.full(np.shape(radius), least)
         first, last = tooth.roll(self._samples[[0, _SAMPLES - 1]]).tolist()
         along = (tooth.roll(np.maximum(radius, tooth.base_radius)) - first) / (last - first)
         by_tip = np.clip((_TIP_OF_RING + _FADES - along) / _FADES, 0.0, 1.0)
-        return np.asarray(least + by_tip * (most - least))
+        rim = float(np.hypot(*self.fine.mesh.points).max()) - tooth.root_radius
+        return np.asarray(least + np.interp(rim, _THIN_RIM, (1.0, 0.0)) * by_tip * (most - least))
 
     @cached_property
     def _least_beside(self) -> float:
@@ -368,21 +394,22 @@ class Estimate:
             least = _USUAL * max(self._usual_stress.values())
             return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
         of_other = max(1.0 - _LESS_OF_OTHER * share, _LEAST_OF_OTHER)
-        found = self._own_stress_estimate(side, value, difference, scatter, of_other)
+        counts = _Counts(_OWN_USUAL[side], of_other, _OWN_SCATTERED, _OWN_SCATTERED_HERE)
+        found = self._own_stress_estimate(side, value, difference, scatter, counts)
         return self._own_stress_part * found
 
     def _own_stress_estimate(
-        self, side: Side, value: Array, difference: Array, scatter: Array | float, of_other: float
+        self, side: Side, value: Array, difference: Array, scatter: Array | float, counts: _Counts
     ) -> Array:
-        """All that the loaded tooth's own stress may err by, with so much of what the other fillet usually does."""
+        """All that the loaded tooth's own stress may err by, with so much of what is known of both fillets."""
         share, own, usual = self._stress_share, self._stress_at_samples(0), self._usual_stress
-        least = _USUAL * max(usual[side], of_other * max(usual.values()))
+        least = counts.usual * max(usual[side], counts.of_other * max(usual.values()))
         size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
         if side == "compression":
             share *= _COMPRESSED
         error = share * np.maximum(difference, least * size)
         known = (self._scatter[0, side] / _stress_scale(own[side][0]))[:_SAMPLES]
-        scattered = np.maximum(_SCATTERED_HERE * scatter, _SCATTERED * _root_mean_square(known) * size)
+        scattered = np.maximum(counts.scatter_here * scatter, counts.scatter * _root_mean_square(known) * size)
         return np.asarray(np.maximum(error, scattered))
 
     @property
