@@ -22,7 +22,7 @@ EDGE, LONG_EDGE, WIDE = 0.26, 0.44, 0.36
 def least(tooth, edge=EDGE, patch=WIDE, order=4, rim=2.7):
     """Ascending along the flank; of a ring with a rim of so many modules."""
     flank = SimpleNamespace(order=order, arc=np.linspace(0.0, 5.0 * edge, 6))
-    mesh = SimpleNamespace(points=np.array([[0.0, 3.0], [10.0, tooth.root_radius + rim]]))
+    mesh = SimpleNamespace(points=np.array([[0.0, 0.0], [10.0, tooth.root_radius + rim]]))
     found = Estimate(SimpleNamespace(flank=flank, tooth=tooth, mesh=mesh), None, patch, 2.0 * patch)
     low, high = sorted(tooth.involute_radii)
     samples = np.linspace(max(low, tooth.base_radius), high, _SAMPLES)
