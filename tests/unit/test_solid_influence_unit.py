@@ -14,7 +14,12 @@ from fegear.fem.solid import influence
 from fegear.fem.solid.bands import hats
 from fegear.fem.solid.influence import SolidInfluence, solid_influence
 from fegear.fem.solid.settings import SolidSettings, solid_settings, whole
-from fegear.fem.solid.table import BandNumbers, RootStressOfBands, _no_less_than_part_of_the_other
+from fegear.fem.solid.table import (
+    BandNumbers,
+    RootStressOfBands,
+    _no_less_than_part_of_the_other,
+    _usual_beside,
+)
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 
@@ -162,6 +167,33 @@ def test_where_stress_is_low_along_the_face_a_difference_is_no_error_of_the_larg
         for wave in (0.0, np.where(np.abs(places) > 0.5, 3.0, 0.2))
     )  # fmt: skip
     assert one.apart(other)["root_tension"] == pytest.approx(0.2 / 40.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_usually_two_solutions_differ_by_the_larger_one_of_largest_values_and_of_curves_beside_them(sign):
+    """A wave along the face counts by its root mean square; far from the largest it counts not at all."""
+    places = np.linspace(-1.5, 1.5, 3001)
+    fixed, along = np.zeros((2, 1)), sign * 40.0 * np.exp(-(places**2)) * np.ones((2, 1, 1))
+
+    def numbers(changed, largest):
+        of = RootStressOfBands(sign * np.full((2, 1), largest), fixed, fixed, fixed, fixed, places, changed)
+        return BandNumbers({}, {"compression": of})
+
+    near = np.abs(places) < 0.35
+    wave = np.where(near, 2.0 * np.sin(200.0 * places), 30.0 * np.exp(-((np.abs(places) - 1.4) ** 2) / 0.01))
+    one = numbers(along, 40.0)
+    (square,) = one.usually_apart(numbers(along + wave, 40.0)).values()
+    assert np.sqrt(square) == pytest.approx(np.full(2, 2.0 / 40.0 / math.sqrt(2.0)), rel=0.02)
+    (square,) = one.usually_apart(numbers(along, 41.0)).values()
+    assert np.sqrt(square) == pytest.approx(np.full(2, 1.0 / 40.0))
+    (square,) = one.usually_apart(one).values()
+    assert square.tolist() == [0.0, 0.0]
+
+
+def test_what_is_usual_is_looked_for_beside_each_radius():
+    beside = np.array([[True, True, False], [True, True, True], [False, True, True]])
+    found = _usual_beside(np.array([1.0, 3.0, 11.0]), beside)
+    assert found.ravel() == pytest.approx(np.sqrt([2.0, 5.0, 7.0]))
 
 
 def test_a_fillet_errs_by_no_less_than_half_of_what_the_other_one_does():

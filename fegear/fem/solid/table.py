@@ -36,6 +36,10 @@ _ESTIMATE = {
     "c_self": "contact", "c_prev": "neighbour", "c_next": "neighbour", "root_tension": "root_tension",
     "root_compression": "root_compression",
 }  # fmt: skip
+#: Of root compression of spur gears: so many times what two solutions differ by as a root mean square. The largest
+#: difference along the face is that of waves which the coarser polynomials lack, not that of the finer ones (nine gears
+#: on a web need 1.0; 7 times the true error was stated in the median).
+_USUAL_COMPRESSION = 1.1
 #: Places along the face per module at which root stress is looked at, and how many at least.
 _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
@@ -128,10 +132,14 @@ def solid_table(
     if influence.settings.source == "slices":
         relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine.names}
     elif influence.coarse is not None:
-        beside = _radii_beside(influence.fine, asked.radius)
-        for key, difference in fine.apart(band_numbers(influence.coarse, asked, m)).items():
+        beside, coarse = _radii_beside(influence.fine, asked.radius), band_numbers(influence.coarse, asked, m)
+        for key, difference in fine.apart(coarse).items():
             relative[key] = influence.entry_shares[_ESTIMATE[key]] * _worst_beside(difference.max(axis=1), beside)
         relative |= _no_less_than_part_of_the_other(relative)
+        if influence.fine.tau == 0.0:
+            usual = {side: _usual_beside(square, beside) for side, square in fine.usually_apart(coarse).items()}
+            part = np.maximum(usual["compression"], OF_OTHER_FILLET * usual["tension"])
+            relative["root_compression"] = _USUAL_COMPRESSION * part
     c = {key: value / (gear.material.young_modulus * m) for key, value in fine.compliance.items()}
     errors = {
         "c_self": relative["c_self"] * c["c_self"],
@@ -222,6 +230,20 @@ class BandNumbers:
             found[f"root_{side}"] = apart / np.abs(root.value)
         return found
 
+    def usually_apart(self, other: BandNumbers) -> dict[Side, Array]:
+        """Mean square over the face of how far another solution's root stress lies from this one, shape (R,).
+
+        The larger one of two: of the largest values, and of the curves along the face beside them, over these.
+        """
+        found = {}
+        for side, root in self.root.items():
+            high = root.along / root.value[..., None]
+            counts = high >= BESIDE_LARGEST * high.max(axis=-1, keepdims=True)
+            curves = (other.root[side].along - root.along) / root.value[..., None]
+            along = np.where(counts, curves**2, 0.0).sum(axis=(1, 2)) / counts.sum(axis=(1, 2))
+            found[side] = np.maximum(along, np.mean((other.root[side].value / root.value - 1.0) ** 2, axis=1))
+        return found
+
 
 def band_numbers(solution: SolidSolution, asked: BandsOfTable, module: float = 1.0) -> BandNumbers:
     """Compliances and largest root stresses, stress per unit force on a gear of this module."""
@@ -246,6 +268,11 @@ def _radii_beside(solution: SolidSolution, radius: Array) -> Mask:
 def _worst_beside(apart: Array, beside: Mask) -> Array:
     """Largest of what two solutions differ by beside each radius, shape (R, 1)."""
     return np.where(beside, apart, 0.0).max(axis=1, keepdims=True)
+
+
+def _usual_beside(square: Array, beside: Mask) -> Array:
+    """Root mean square of what two solutions differ by beside each radius, shape (R, 1)."""
+    return np.sqrt(np.where(beside, square, 0.0).sum(axis=1, keepdims=True) / beside.sum(axis=1, keepdims=True))
 
 
 def _no_less_than_part_of_the_other(relative: Mapping[str, Array]) -> dict[str, Array]:
