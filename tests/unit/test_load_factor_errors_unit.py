@@ -1,14 +1,19 @@
 """Errors of the root factors of solved flanks: what two solutions share by chance is not stated as certain."""
 
-from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.contact.wide import load_factors
-from fegear.contact.wide.load_factors import FactorsLeft, RootFactors, root_factors, transverse_left_by_positions
-from fegear.results.pair.load_factors import _OF_LOAD, FlankLoadFactorsData, _transverse_left
+from fegear.contact.wide.load_factors import (
+    FactorsLeft,
+    RootFactors,
+    left_of_largest,
+    root_factors,
+    transverse_left_by_positions,
+)
+from fegear.results.pair.load_factors import _OF_LOAD, FlankLoadFactorsData
 
 
 def factors(face, transverse, left=(0.0, 0.0)):
@@ -21,8 +26,11 @@ def off(factor, coarse, by_load=0.0037, longer=None, left=(0.0, 0.0)):
         stated=SimpleNamespace(face_load_factor=np.array([7.0, 1.25])),
     )  # fmt: skip
     root = {"driver": factors(1.0, 1.1), "driven": factors(1.2, 1.0, left)}
-    coarser = {member: ((longer[member],) if longer else ()) + (one,) for member, one in coarse.items() if one}
-    return FlankLoadFactorsData.off(SimpleNamespace(loaded=loaded, root=root, coarser=coarser), factor)
+    again = {
+        member: (root[member], *((longer[member],) if longer else ()), *((one,) if one else ()))
+        for member, one in coarse.items()
+    }
+    return FlankLoadFactorsData.off(SimpleNamespace(loaded=loaded, root=root, again=again), factor)
 
 
 def test_the_root_factor_of_the_face_errs_by_a_part_of_what_the_load_over_it_does():
@@ -91,29 +99,23 @@ def test_few_roll_positions_are_parted_as_far_as_they_go():
         assert all(at.any() and at.size == count for _, at in every)
 
 
-@dataclass(frozen=True)
-class Flanks:
-    """What shares of one everywhere are solved with, and at how many positions."""
-
-    positions: int
-
-    def solve(self, load, gaps, known):
-        assert (gaps, known) == (None, "many")
-        return shares(np.ones(self.positions))
+def test_many_roll_positions_leave_half_as_much_open():
+    """Largest values of 48 positions come with the second power of their distance, of fewer as at a kink."""
+    for (few, one), (many, other) in zip(
+        load_factors.fewer_positions(47), load_factors.fewer_positions(48), strict=True
+    ):
+        assert (many, one.tolist()) == (0.5 * few, other[:47].tolist())
 
 
-def shares(share):
-    return SimpleNamespace(
-        pair_load=share[None, :, None], known="many", load=np.ones(1), lines=SimpleNamespace(roll=np.arange(share.size))
-    )
-
-
-def test_the_factor_of_shares_errs_by_what_many_roll_positions_change():
-    """Of a helical pair it was 1.000 at 16 positions, certain to 1e-8, and 1.005 at 48."""
-    many = np.ones(48)
-    many[20] = 1.005  # between the few
-    loaded = SimpleNamespace(found=shares(np.ones(16)), over=SimpleNamespace(found=shares(many)), flanks=Flanks(16))
-    left = _transverse_left(loaded, np.ones(1), shares(np.ones(16)))
-    np.testing.assert_allclose(left, 2 * 0.005)  # without that position nothing is left of it, either
-    loaded.over.found = loaded.found
-    np.testing.assert_array_equal(_transverse_left(loaded, np.ones(1), shares(np.ones(16))), 0.0)
+@pytest.mark.parametrize("count", [48, 96])
+def test_largest_stress_between_positions_is_within_what_is_left_of_smooth_curves(count):
+    """Two loads; smooth peaks anywhere between the positions, each position with two teeth of which one is low."""
+    position = np.repeat(np.arange(count), 2)
+    for beside in np.linspace(0.0, 1.0, 7):
+        turn = 2.0 * np.pi * (np.arange(count) + beside) / count
+        values = np.stack([3.0 + np.cos(turn), 5.0 + np.cos(turn - 0.3) ** 3], axis=1)
+        both = np.stack([values, 0.5 * values], axis=1).reshape(2 * count, 2)
+        left = left_of_largest(both, position, count)
+        missed = np.array([4.0, 6.0]) - values.max(axis=0)
+        assert (missed <= 1.5 * left + 1e-12).all()
+        assert (left <= 0.04 * (48 / count) ** 2).all()

@@ -23,6 +23,28 @@ from fegear.geometry.pair import Member
 _FILLETS: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
 
 
+class LargestBetween(NamedTuple):
+    """Largest root stresses at more positions than a table has, under each load; arrays of shape (L,).
+
+    Attributes
+    ----------
+    tension, compression : ndarray
+        Largest and most negative [Pa].
+    tension_x, tension_z, compression_x : ndarray
+        Position of the tooth's contact, and the place along the face [m].
+    tension_error, compression_error : ndarray
+        Estimated, with what the positions leave open [Pa]; NaN where the source does not know it.
+    """
+
+    tension: Array
+    compression: Array
+    tension_x: Array
+    tension_z: Array
+    compression_x: Array
+    tension_error: Array
+    compression_error: Array
+
+
 @dataclass(frozen=True)
 class ToothStress:
     """Largest root stresses of one tooth while its pair passes through the mesh; arrays of shape (P, L).
@@ -39,6 +61,8 @@ class ToothStress:
         Estimated [Pa]; NaN where the source does not know its own.
     compression_error : ndarray or None
         As `tension_error`; None where the source knows no compression.
+    between : LargestBetween or None
+        Largest values at more positions; None where these are enough.
     """
 
     x: Array = shown("mm", "position of the tooth's contact on the line of action")
@@ -51,6 +75,7 @@ class ToothStress:
     compression: Array | None = shown("MPa", "root stress, compression side: minimum stress in the opposite fillet")
     tension_error: Array = shown("MPa", "estimated error of stress", name="stress_error")
     compression_error: Array | None = shown("MPa", "estimated error of compression")
+    between: LargestBetween | None = None
 
     @property
     def knows_error(self) -> bool:
@@ -63,7 +88,11 @@ class ToothStress:
 
     def error(self, i: int) -> float | None:
         """Estimated error of the largest tension under load number i [Pa]; None where the source does not know it."""
-        return _known(self.tension_error[self.worst(i), i])
+        return _known(self._tension_off(i))
+
+    def _tension_off(self, i: int) -> float:
+        between = self.between
+        return float(self.tension_error[self.worst(i), i] if between is None else between.tension_error[i])
 
     def largest_pressed(self, i: int) -> int | None:
         """Position of the most negative compression under load number i; None where the source knows none."""
@@ -72,30 +101,45 @@ class ToothStress:
     def compression_off(self, i: int) -> float | None:
         """Estimated error of the most negative compression under load number i [Pa]; None if it is not known."""
         at = self.largest_pressed(i)
-        return None if at is None or self.compression_error is None else _known(self.compression_error[at, i])
+        if at is None or self.compression_error is None:
+            return None
+        return _known(self.compression_error[at, i] if self.between is None else self.between.compression_error[i])
 
     def range_off(self, i: int) -> float | None:
         """Estimated error of the range of stress under load number i [Pa]: those of both its ends together."""
         least = int(np.argmin(np.where(np.isnan(self.tension[:, i]), np.inf, self.tension[:, i])))
-        return _known(self.tension_error[self.worst(i), i] + self.tension_error[least, i])
+        return _known(self._tension_off(i) + self.tension_error[least, i])
+
+    def x_of_tension(self, i: int) -> float:
+        """Position of the tooth's contact under the largest tension of load number i [m]."""
+        return float(self.x[self.worst(i)] if self.between is None else self.between.tension_x[i])
+
+    def x_of_compression(self, i: int) -> float | None:
+        """The same under the most negative compression [m]; None where the source knows none."""
+        at = self.largest_pressed(i)
+        if at is None:
+            return None
+        return float(self.x[at] if self.between is None else self.between.compression_x[i])
 
     @property
     @shows("MPa", "of the mesh cycle", name="largest_root_tension")
     def largest_tension(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
-        return np.asarray(np.fmax.reduce(self.tension, axis=0))
+        return np.asarray(np.fmax.reduce(self.tension, axis=0) if self.between is None else self.between.tension)
 
     @property
     @shows("MPa", "of the mesh cycle", name="largest_root_compression")
     def largest_compression(self) -> Array | None:
         """Most negative under each load, shape (L,) [Pa]; None where the source knows none."""
+        if self.between is not None:
+            return self.between.compression
         return None if self.compression is None else np.asarray(self.compression.min(axis=0))
 
     @property
     @shows("MPa", "stress range in the fillet of the loaded flank over the mesh cycle", name="root_stress_range")
     def tension_range(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
-        return np.asarray(np.fmax.reduce(self.tension, axis=0) - np.fmin.reduce(self.tension, axis=0))
+        return np.asarray(self.largest_tension - np.fmin.reduce(self.tension, axis=0))
 
 
 def _or_least(stress: Array) -> Array:

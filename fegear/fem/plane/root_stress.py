@@ -362,6 +362,12 @@ def curves_apart(values: Array, others: Array, part: float = 0.5) -> Array:
     return np.asarray(np.where(counts, np.abs(others - values), 0.0).max(axis=-1))
 
 
+def usually_apart(values: Array, others: Array, part: float) -> Array:
+    """Root mean square of how far two curves are apart where the first counts, shape (...): see `curves_apart`."""
+    counts = values >= part * values.max(axis=-1, keepdims=True)
+    return np.asarray(np.sqrt(np.where(counts, (others - values) ** 2, 0.0).sum(axis=-1) / counts.sum(axis=-1)))
+
+
 def smooth_curve(arc: Array) -> tuple[csr_array, csr_array]:
     """Matrices from values at a fillet's points to the heights and slopes of the smooth curve through them.
 

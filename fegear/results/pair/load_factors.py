@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.load_factors import RootFactors
-    from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.geometry.pair import Member
 
@@ -58,9 +57,10 @@ class FlankLoadFactorsData:
     transverse, transverse_error : ndarray, shape (L,)
         K_Halpha and its estimated error.
     root : mapping of Member to RootFactors
-        At the nominal load.
-    coarser : mapping of Member to tuple of RootFactors
-        On longer panels, and of coarser gears on these; empty where there is no coarser solution.
+        At the nominal load, at the roll positions of numbers of a whole base pitch.
+    again : mapping of Member to tuple of RootFactors
+        At those of the tables: as solved, on longer panels, and of coarser gears on these; without a coarser solution
+        fewer.
     by_iso : ndarray, shape (L,), or None
         K_Hbeta of ISO 6336-1; None where the standard does not hold.
     why_not : str
@@ -72,7 +72,7 @@ class FlankLoadFactorsData:
     loaded: LoadedWidePair
     transverse_error: Array
     root: Mapping[Member, RootFactors]
-    coarser: Mapping[Member, tuple[RootFactors, ...]]
+    again: Mapping[Member, tuple[RootFactors, ...]]
     why_not: str
     exponent: float
     gap: float = shown("um", "straight part of the gap over the face")
@@ -94,13 +94,13 @@ class FlankLoadFactorsData:
         """Estimated error of a factor: what solutions and roll positions change, of both gears the farther.
 
         One of them may agree by chance, for a factor is the ratio of two largest values, and both feel the same loads.
-        Longer panels and coarser gears may change it in opposite directions: their changes add up, with what half of
-        the roll positions change. K_Fbeta is off by a part of what the load over the face is off by, for that reaches
+        Longer panels and coarser gears may change it in opposite directions: their changes add up, with what fewer
+        roll positions change. K_Fbeta is off by a part of what the load over the face is off by, for that reaches
         the root smoothed.
         """
         apart = [
-            sum(abs(getattr(two, factor) - getattr(one, factor)) for one, two in pairwise((self.root[member], *others)))
-            for member, others in self.coarser.items() if others
+            sum(abs(getattr(two, factor) - getattr(one, factor)) for one, two in pairwise(solutions))
+            for solutions in self.again.values() if len(solutions) > 1
         ]  # fmt: skip
         if not apart:
             return None
@@ -124,6 +124,7 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
         iso_root_exponent,
         root_factors,
         straight_gap,
+        transverse_left_by_positions,
         transverse_load_factor,
     )
     from fegear.contact.wide.root_stress import rooted_lines
@@ -134,45 +135,34 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
     solutions = (found, *((loaded.error.longer, loaded.error.coarse) if loaded.estimated else ()))
     # Perfect flanks on the same lines, each with its own compliances.
     ideal = [loaded.flanks.solve(found.load, None, one.known) for one in solutions]
+    many = loaded.over.found  # largest values stand between the positions of tables
+    perfect = ideal[0]
+    if many.lines.roll.size != found.lines.roll.size:
+        perfect = replace(loaded.flanks, positions=many.lines.roll.size).solve(many.load, None, many.known)
     root: dict[Member, RootFactors] = {}
-    coarser: dict[Member, tuple[RootFactors, ...]] = {}
+    again: dict[Member, tuple[RootFactors, ...]] = {}
     for member, gear in inputs.gears.items():
         influence = solid_solution_of(upstream, gear)
+        root[member] = root_factors(many, perfect, loaded.rooted(member, many, influence.fine), z, i)
         bodies = [influence.fine, influence.fine, influence.coarse] if influence.coarse else [influence.fine]
-        root[member], *others = (
-            root_factors(one, perfect, rooted_lines(pair, member, one.lines, body, coupling=coupling), z, i)
-            for one, perfect, body in zip(solutions, ideal, bodies, strict=False)
+        again[member] = tuple(
+            root_factors(one, flanks, rooted_lines(pair, member, one.lines, body, coupling=coupling), z, i)
+            for one, flanks, body in zip(solutions, ideal, bodies, strict=False)
         )
-        coarser[member] = tuple(others)
-    factors = [transverse_load_factor(one, perfect) for one, perfect in zip(solutions, ideal, strict=True)]
-    transverse, off = factors[0], np.full(found.load.shape, np.nan)
+    transverse, off = transverse_load_factor(many, perfect), np.full(found.load.shape, np.nan)
     if loaded.estimated:
+        factors = [transverse_load_factor(one, flanks) for one, flanks in zip(solutions, ideal, strict=True)]
         off = np.sum([_apart(one, two) for one, two in pairwise(factors)], axis=0)
-        off = off + _transverse_left(loaded, transverse, ideal[0])
+        off = off + transverse_left_by_positions(many, perfect)
     by_iso, why_not = None, ""
     try:
         by_iso = np.array([iso_face_load_factor(pair, loaded.gaps, load) for load in found.load.tolist()])
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, off, root, coarser, why_not, iso_root_exponent(pair),
+        loaded, off, root, again, why_not, iso_root_exponent(pair),
         straight_gap(pair, loaded.gaps.under(loaded.nominal)), by_iso, transverse,
     )  # fmt: skip
-
-
-def _transverse_left(loaded: LoadedWidePair, transverse: Array, perfect: LoadedFlanks) -> Array:
-    """What the number of roll positions leaves open of K_Halpha, shape (L,).
-
-    Its change at the many positions of numbers of a whole base pitch, which are solved anyway, and what these leave.
-    """
-    from fegear.contact.wide.load_factors import transverse_left_by_positions, transverse_load_factor
-
-    many = loaded.over.found
-    if many.lines.roll.size > loaded.found.lines.roll.size:
-        flanks = replace(loaded.flanks, positions=many.lines.roll.size)
-        perfect = flanks.solve(many.load, None, many.known)
-    change = np.abs(transverse_load_factor(many, perfect) - transverse)
-    return np.asarray(change + transverse_left_by_positions(many, perfect))
 
 
 def _apart(factor: Array, other: Array) -> Array:

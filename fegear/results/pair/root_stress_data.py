@@ -103,20 +103,22 @@ class StressBySource:
         """Whether it gives any stress at the nominal load."""
         return not bool(np.isnan(self.stress.tension[:, self.at]).all())
 
-    def _at(self, position: int) -> str:
-        by = self.said if self.over_face is None else self.over_face.where(self.stress.worst(self.at))
-        return f"gear {self.gear}, {by}, contact at x = {self.stress.x[position] * 1e3:.5g} mm"
+    def _at(self, x: float) -> str:
+        by = self.said
+        if self.stress.between is not None:
+            by = f"largest tension at face position {float(self.stress.between.tension_z[self.at]) * 1e3:.4g} mm"
+        return f"gear {self.gear}, {by}, contact at x = {x * 1e3:.5g} mm"
 
     @property
     def at_tension(self) -> str:
         """Where tension is largest, and by what it was found."""
-        return self._at(self.stress.worst(self.at))
+        return self._at(self.stress.x_of_tension(self.at))
 
     @property
     def at_compression(self) -> str:
         """The same of compression."""
-        at = self.stress.largest_pressed(self.at)
-        return "" if at is None else self._at(at)
+        x = self.stress.x_of_compression(self.at)
+        return "" if x is None else self._at(x)
 
     @property
     def tension_off(self) -> float | None:
@@ -155,10 +157,6 @@ class StressAlongFace:
     def pressed_z(self) -> Array:
         """Where compression is largest along the face [m]."""
         return self.compression.largest(-1.0)[1]
-
-    def where(self, position: int) -> str:
-        """Where tension is largest at a position of the tooth, in words."""
-        return f"largest tension at face position {float(self.pulled_z[position]) * 1e3:.4g} mm"
 
     def rows(self, side: str, quantity: str) -> Array:
         """A quantity of one fillet in rows, the place along the face fastest."""
