@@ -108,7 +108,9 @@ def test_where_a_difference_changes_its_sign_the_error_is_that_of_places_beside_
 def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
     """K_Fbeta of one gear agreed by chance: 8 times the stated error off."""
     fine = {"driver": RootFactors(1.01, 1.1, 3e8), "driven": RootFactors(1.02, 1.2, 2e8)}
-    coarse = {"driver": (RootFactors(1.01, 1.15, 3e8),), "driven": (RootFactors(1.023, 1.21, 2e8),)}
+    coarse = {
+        "driver": (fine["driver"], RootFactors(1.01, 1.15, 3e8)), "driven": (fine["driven"], RootFactors(1.023, 1.21, 2e8))
+    }  # fmt: skip
     of_load = SimpleNamespace(face_load_factor=np.array([0.02]))
     loaded = SimpleNamespace(at=0, error=of_load, stated=SimpleNamespace(face_load_factor=np.ones(1)))
     data = FlankLoadFactorsData(loaded, np.zeros(1), fine, coarse, "", 0.9, 0.0, None, np.ones(1))
