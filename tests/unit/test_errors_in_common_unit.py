@@ -109,8 +109,9 @@ def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
     """K_Fbeta of one gear agreed by chance: 8 times the stated error off."""
     fine = {"driver": RootFactors(1.01, 1.1, 3e8), "driven": RootFactors(1.02, 1.2, 2e8)}
     coarse = {
-        "driver": (fine["driver"], RootFactors(1.01, 1.15, 3e8)), "driven": (fine["driven"], RootFactors(1.023, 1.21, 2e8))
-    }  # fmt: skip
+        "driver": (fine["driver"], RootFactors(1.01, 1.15, 3e8)),
+        "driven": (fine["driven"], RootFactors(1.023, 1.21, 2e8)),
+    }
     of_load = SimpleNamespace(face_load_factor=np.array([0.02]))
     loaded = SimpleNamespace(at=0, error=of_load, stated=SimpleNamespace(face_load_factor=np.ones(1)))
     data = FlankLoadFactorsData(loaded, np.zeros(1), fine, coarse, "", 0.9, 0.0, None, np.ones(1))
@@ -122,7 +123,7 @@ def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
     of_load.face_load_factor[:] = 0.2  # a load that is off by a fifth is felt at the root
     assert data.members["driver"].off("face") == pytest.approx(0.01)
     assert data.members["driver"].off("transverse") == pytest.approx(0.05)
-    none = replace(data, coarser={"driver": (), "driven": ()})
+    none = replace(data, again={"driver": (), "driven": ()})
     assert none.members["driver"].off("face") is None
-    half = replace(data, coarser={"driver": (), "driven": coarse["driven"]})
+    half = replace(data, again={"driver": (), "driven": coarse["driven"]})
     assert half.members["driver"].off("transverse") == pytest.approx(0.01)
