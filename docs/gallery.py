@@ -41,7 +41,7 @@ _ABOUT = 200
 #: Ten pictures, each from one command: case, picture, and what it shows.
 TEN = (
     ("thin_rim", "deformed_rim", "A tooth on a thin rim under load, displacements magnified, with the stress inside."),
-    ("calculix_pair", "load_sharing_I", "What one tooth pair carries on its way through the mesh, at four loads."),
+    ("calculix_pair", "load_sharing_I", "Load of one tooth pair over its engagement, at four loads."),
     (
         "pinion_and_wheel",
         "root_stress_history_I",

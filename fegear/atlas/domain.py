@@ -99,7 +99,7 @@ class Domain:
             if low > high:
                 raise InputError(
                     "shift", f"{self.shift[0]:.6g} to {self.shift[1]:.6g}",
-                    f"leaves nothing on its side of the undercut line at z = {z}",
+                    f"has no gears on its side of the undercut line at z = {z}",
                 )  # fmt: skip
 
     def shift_ends(self, family: Family, teeth: float) -> Ends:

@@ -26,7 +26,7 @@ def open(  # noqa: A001 - it is the name of the command
         ),
     ] = None,
     read_only_link: Annotated[
-        bool, typer.Option("--read-only-link", help="Print a second address for viewers who can change nothing.")
+        bool, typer.Option("--read-only-link", help="Print a second, read-only address for viewers.")
     ] = False,
 ) -> None:
     """Open the live workbench in the browser: change a case and see the results follow.

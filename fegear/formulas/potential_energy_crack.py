@@ -55,7 +55,7 @@ def cracked_tooth_compliance(
     x, y = tip
     left = np.where(cut.height > y, 0.5 * (cut.half_thickness + np.minimum(cut.half_thickness, x)), cut.half_thickness)
     if not left.min() > 0.0:
-        raise RangeError("depth", x, "leaves nothing of a section of the beam", "reduce the depth of the crack")
+        raise RangeError("depth", x, "must leave material in every beam section", "reduce the depth of the crack")
     i = beam.integrals(beam.Sections(cut.height, left, cut.weight), load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)
     flexibility = 1.0 / gear.plane_modulus

@@ -179,7 +179,7 @@ class PointsFillet:
         if not (np.all(x > -reach) or np.all(x < reach)):
             raise GeometryError(
                 "fillet.points", f"{x.min():.4g} to {x.max():.4g} modules", "must be on one side of the centre line",
-                "specify the fillet of one flank (both fillets of a tooth are alike)",
+                "specify the fillet of one flank (both fillets of a tooth are equal)",
             )  # fmt: skip
         points = np.stack([np.abs(x), given[1]])
         if self.of_space:

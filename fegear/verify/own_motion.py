@@ -65,7 +65,7 @@ def planets_that_lift() -> Iterator[Compared]:
         )
 
 
-@ROWS.add("contact states of planetary sets", "own", "every state of contact tried, least squares")
+@ROWS.add("contact states of planetary sets", "own", "all contact states enumerated, least squares")
 def planetary_contact_states() -> Iterator[Compared]:
     """Mesh forces of 40 random sets of two to four planets, most of which lift one or several."""
     from fegear.dynamics.planetary.planet_loads import planet_loads

@@ -442,7 +442,7 @@ def test_a_crack_grows_in_a_case():
     assert ((error > 0.0) & (error < 0.05 * k)).all()
     low = number(found, "I.K_I_min_start_pinion_0")
     assert low == pytest.approx(column(found, "stress_intensity_I_pinion_0", "K_I").min(), rel=1e-9)
-    pressed = [said for said in found.remarks if "press the crack of tooth 0 of gear pinion together" in said]
+    pressed = [said for said in found.remarks if "close the crack of tooth 0 of gear pinion" in said]
     assert len(pressed) == (low < -0.02 * column(found, "stress_intensity_I_pinion_0", "K_I").max())
     assert low < 0.0
 

@@ -33,7 +33,7 @@ def test_half_a_tooth_bends_eight_times_as_much():
     assert half.bending == pytest.approx(8.0 * whole.bending, rel=1e-9)
     assert half.shear == pytest.approx(2.0 * whole.shear, rel=1e-9)
     assert half.foundation == pytest.approx(whole.foundation, rel=1e-12)
-    with pytest.raises(RangeError, match="leaves nothing of a section"):
+    with pytest.raises(RangeError, match="must leave material in every beam section"):
         cracked_tooth_compliance(gear, RADII, (-1.2, 0.0))
 
 

@@ -188,7 +188,7 @@ def test_regions_end_at_the_undercut_line():
         assert {FAMILY.gear(place).tooth.undercut for place in inside} == {cut}
         for place in places:
             assert domain.outside(FAMILY, place) is None
-    with pytest.raises(InputError, match="leaves nothing"):
+    with pytest.raises(InputError, match="has no gears on its side"):
         Domain((12, 14), (-0.2, 0.1)).check(FAMILY)
     with pytest.raises(InputError, match="must be below 0 on the undercut side"):
         Domain((12, 16), (-0.2, 0.6), side="undercut")

@@ -326,7 +326,7 @@ def test_in_a_train_equal_halves_are_two_meshes_side_by_side():
             assert both[name].value == pytest.approx(factor.get(name, 1.0) * value.value, rel=1e-9), name
     assert "I.axial_force" not in both
     notes = [str(note) for outcome in ran.outcomes.values() for note in outcome.remarks]
-    assert any("double helical, two equal meshes side by side" in note for note in notes)
+    assert any("double helical, two equal meshes in parallel" in note for note in notes)
 
 
 @pytest.mark.parametrize(

@@ -227,8 +227,8 @@ def rollers_that_pull(name: str, influence: GearInfluence) -> tuple[str, ...]:
     if share < _PULLS:
         return ()
     said = neglecting(
-        f"Gear {name}: rollers are assumed to carry tension as well, up to {percent(share)} of the largest force for a "
-        "load on one tooth. A rim that lifts off its rollers is less stiff."
+        f"Gear {name}: rollers are assumed to carry tension as well, up to {percent(share)} of the maximum force for a "
+        "load on one tooth. A rim that loses contact with its rollers is less stiff."
     )
     return (said,)
 

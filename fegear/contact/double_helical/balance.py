@@ -180,7 +180,7 @@ def _stopped(
     least, most = first.touch - full_two[0], full_one[0] - second.touch
     spread = most - least
     if not (spread > 0.0).all():
-        raise ConvergenceError("The approach of a half does not grow with its load: check compliances and gaps.")
+        raise ConvergenceError("The approach of a half does not increase with its load: check compliances and gaps.")
     alone = ~floats & (most <= target), ~floats & (least >= target)
     open_ = ~(floats | alone[0] | alone[1])
     share = np.where(floats, free, np.where(alone[0], 1.0, np.where(alone[1], 0.0, (target - least) / spread)))

@@ -254,8 +254,8 @@ class CompoundSet:
             if first.name == second.name:
                 raise InputError(key, both, "must be two members", "name another member")
             if first.carrier != second.carrier:
-                raise InputError(key, both, f"ride on two carriers, {first.carrier} and {second.carrier}",
-                                 "planets in mesh must ride on the same carrier")  # fmt: skip
+                raise InputError(key, both, f"are on two carriers, {first.carrier} and {second.carrier}",
+                                 "planets in mesh must be on the same carrier")  # fmt: skip
             if first.count != second.count:
                 raise InputError(key, both, f"are {first.count} and {second.count} planets",
                                  "planets in mesh must be equal in number")  # fmt: skip

@@ -65,7 +65,7 @@ def _open(seen: Seen) -> Iterator[str]:
         else:
             yield neglecting(
                 f"Gear {gear}: contact of the crack faces of tooth {tooth} is neglected (3D pair): loads on the tooth "
-                "itself open them, those on the next one press them together."
+                "open them, loads on the next tooth close them."
             )
 
 

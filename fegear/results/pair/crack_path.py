@@ -258,8 +258,8 @@ _SHEET = Sheet(
             each="paths",
         ),
         Remark(
-            "Pair {name}: loads on the next teeth press the crack of tooth {one.tooth} of gear {one.gear} together "
-            "(K_I down to {one.ratio} of its maximum); closed there, it grows by ΔK from zero.",
+            "Pair {name}: loads on the next teeth close the crack of tooth {one.tooth} of gear {one.gear} (K_I down to "
+            "{one.ratio} of its maximum); ΔK begins at zero.",
             each="paths", when="pressed",
         ),
     ),

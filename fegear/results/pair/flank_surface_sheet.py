@@ -182,17 +182,17 @@ FIGURES = (
     ),
     Chart(
         "surface_temperature_{name}", "Temperature of the flanks of pair {name}",
-        "Pair {name}: rise of the flanks above the teeth while they touch, and contact temperature, from A to E: by "
-        "the computed load (teeth {d.computed.bulk:.4g}) and by ISO/TS 6336-20 (teeth {d.data.flash.bulk:.4g}). "
-        "At C nothing slides.",
+        "Pair {name}: flash temperature (rise above the bulk temperature) and contact temperature, from A to E: by the "
+        "computed load (bulk temperature {d.computed.bulk:.4g}) and by ISO/TS 6336-20 ({d.data.flash.bulk:.4g}). "
+        "No sliding at C.",
         (_compared("flash", _FLASH), _compared("contact", _FLASH, zero=False, limit=_scuffing)),
         under=_UNDER,
     ),
     Chart(
         "surface_film_{name}", "Lubricant film between the flanks of pair {name}",
         "Pair {name}: thickness of the lubricant film and its ratio to the roughness Ra = {d.roughness:.3g!} um, from "
-        "A to E: by the computed load (teeth {d.computed.film_bulk:.4g}) and by ISO/TS 6336-22 (teeth "
-        "{d.data.film.bulk:.4g}). Below 1 the flanks touch through the film.",
+        "A to E: by the computed load (bulk temperature {d.computed.film_bulk:.4g}) and by ISO/TS 6336-22 "
+        "({d.data.film.bulk:.4g}). Below 1 the flanks are in contact through the film.",
         (_compared("film", _FILM), _compared("ratio", _FILM, limit=_permissible)),
         under=_UNDER,
     ),

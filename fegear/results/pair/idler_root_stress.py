@@ -160,7 +160,7 @@ def _fillets(seen: Seen) -> dict[str, Fillet]:
 def _bent(seen: Seen) -> str:
     ratios = " and ".join(f"{one.ratio:.3f}" for one in seen.data.found.values())
     return (
-        f"Gear {seen.name}: teeth are bent to either side, R = {ratios} below the driven and the driving flank "
+        f"Gear {seen.name}: alternating bending of the teeth, R = {ratios} below the driven and the driving flank "
         "(annex B of ISO 6336-3 takes -1.2 for idlers)."
     )
 

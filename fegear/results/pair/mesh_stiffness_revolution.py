@@ -366,7 +366,7 @@ _SHEET = Sheet(
         ),
         Chart(
             "root_stress_teeth_{name}_{one.gear}", "Root stress of every tooth of gear {one.gear} in pair {name}",
-            "Gear {one.gear}: maximum root stress (tension side) of every tooth on its way through the mesh.",
+            "Gear {one.gear}: maximum root stress (tension side) of every tooth over its engagement.",
             (Over("tooth", (Line("root_tension", kind="points"),)),),
             each="stress",
         ),

@@ -193,7 +193,7 @@ class StressedTooth:
     over_face: StressAlongFace | None
     across_off: float | None
     across: float | None = shown(
-        "MPa", "largest tension at right angles to the helix, as formulas for the normal section mean it",
+        "MPa", "maximum root stress, tension side, in the normal section (comparable with formulas)",
         name="largest_root_tension_across",
     )  # fmt: skip
 

@@ -218,8 +218,7 @@ _VALUES = Each(
     ),
     Number(
         "across", "across_off", owner=_OWNER,
-        meaning="gear {one.gear}: largest tension at right angles to the helix, as formulas for the normal section "
-        "mean it",
+        meaning="gear {one.gear}: maximum root stress, tension side, in the normal section (comparable with formulas)",
     ),
 )  # fmt: skip
 _FIGURES = (

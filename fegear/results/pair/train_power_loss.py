@@ -169,8 +169,8 @@ _SHEET = Sheet(
     figures=(
         Chart(
             "train_loss", "Gear mesh power loss of the train",
-            "What the teeth of every mesh lose of the {d.driving:.5g} that drive the train: {d.whole_loss:.4g} "
-            "together, an efficiency of {d.efficiency:.5f}. Bearings, churning, windage and seals are neglected.",
+            "Gear mesh power loss of every mesh at an input power of {d.driving:.5g}: {d.whole_loss:.4g} in total, "
+            "efficiency {d.efficiency:.5f}. Bearings, churning, windage and seals are neglected.",
             (
                 Over(
                     lambda seen: Axis("mesh", categories=seen.asked.meshes),

@@ -228,7 +228,7 @@ def _bent(seen: Seen) -> str:
     sides = list(_TEETH)[:2]
     ratios = ", ".join(f"{seen.data.found[key].ratio:.3f} at the {key.split('_')[1]}'s side" for key in sides)
     return (
-        f"Set {seen.name}: the planet's teeth are bent to either side, R = {ratios} (annex B of ISO 6336-3 takes -1.2 "
+        f"Set {seen.name}: alternating bending of the planet's teeth, R = {ratios} (annex B of ISO 6336-3 takes -1.2 "
         "for idlers)."
     )
 

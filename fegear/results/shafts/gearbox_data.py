@@ -165,7 +165,7 @@ class GearboxData:
         hours = one.duration / 3600.0
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
-            f"life {figures(hours)} h, required {figures(self.required_hours / 3600.0)} h: least reserve of bearings",
+            f"life {figures(hours)} h, required {figures(self.required_hours / 3600.0)} h: minimum reserve of bearings",
             f"{percent(_MORE - 1.0, whole=True)} more dynamic load rating C: {figures(hours * _MORE**one.exponent)} h",
             urgent=False,
         )  # fmt: skip
@@ -231,7 +231,7 @@ def _least_safe(one: MeshAtGlance, safety: Safety) -> Change:
         gain, remedy = _MORE, f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors"
     return Change(
         one.margin, f"pair {one.pair}",
-        f"{symbol} {value:.2f} of {figures(least)} ({what}), least safety: {percent(one.margin, whole=True)} of the "
+        f"{symbol} {value:.2f} of {figures(least)} ({what}), minimum safety: {percent(one.margin, whole=True)} of the "
         "load",
         f"{remedy}: {symbol} about {value * gain**power:.2f}", urgent=False,
     )  # fmt: skip

@@ -159,7 +159,7 @@ def _remarks(seen: Seen) -> Iterator[str]:
         )
     left = max((float(one.left.max()) for one in seen.data), default=0.0)
     if left > _SETTLED:
-        yield f"Lead correction: K_Hbeta still changes by {left:.2g} as the corrected flanks bend the shafts otherwise."
+        yield f"Lead correction: K_Hbeta still changes by {left:.2g} with the shaft deflection of the corrected flanks."
 
 
 #: K_Hbeta that changes by less from one round to the next has settled.

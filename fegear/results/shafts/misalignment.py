@@ -135,7 +135,7 @@ _SHEET = Sheet(
             stacked="under_all",
         ),
         Rows(
-            "shaft_gap_{one.pair}", "Gap that shafts open over the face of pair {one.pair}",
+            "shaft_gap_{one.pair}", "Gap due to shafts over the face of pair {one.pair}",
             (
                 "gap.z", "gap.gap", *(_gap_by(n, cause) for n, cause in enumerate(CAUSES)), "gap.line_load",
             ),
@@ -152,9 +152,9 @@ _SHEET = Sheet(
     ),
     figures=(
         Chart(
-            "shaft_gap_{one.pair}", "What shafts open over the face of pair {one.pair}",
-            "Pair {one.pair}: gap of the flanks in the plane of action by shafts, bearings and housing, in all and by "
-            "cause.",
+            "shaft_gap_{one.pair}", "Gap due to shafts over the face of pair {one.pair}",
+            "Pair {one.pair}: gap of the flanks in the plane of action due to shafts, bearings and housing: total, "
+            "and by cause.",
             (
                 Over(
                     "gap.z",

@@ -71,7 +71,7 @@ def _inputs(scene: Scene, _subject: str) -> SizingInputs:
     if BY_FE & set(part.criteria) and absent("motion") and _asks(space, duty.material.poisson_ratio):
         said = (neglecting("Sizing: atlas of solved gears not used (pip install 'fegear[motion]')."), *said)
     if len(part.tolerances.states) > 1 and not any(space.betas):
-        said = (neglecting("Sizing: tolerances count for helical variants only; all variants are spur."), *said)
+        said = (neglecting("Sizing: tolerances apply to helical variants only; all variants are spur."), *said)
     return SizingInputs(
         part, space, limits, duty, asked, _atlas_duty(part, space, duty), str(Path(scene.folder).absolute()), said
     )

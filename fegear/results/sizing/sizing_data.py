@@ -58,7 +58,7 @@ class SizedVariant:
     """
 
     number: int = shown("", "number of the variant", name="variant", table="sizing")
-    place: int = shown("", "place on the Pareto front, best first; 0: not on it", table="sizing")
+    place: int = shown("", "rank on the Pareto front, best first; 0: not on it", table="sizing")
     teeth_1: int = shown("", "number of teeth of the pinion", name="z_1", table="sizing")
     teeth_2: int = shown("", "number of teeth of the wheel", name="z_2", table="sizing")
     module: float = shown("mm", "normal module", name="normal_module", table="sizing")
@@ -270,7 +270,7 @@ class SizingData:
     Parameters
     ----------
     count, feasible : int
-        Variants enumerated, and those that keep all limits.
+        Variants enumerated, and those that meet all limits.
     on_front : int
         Of those whose criteria are all known, as estimated, on the front; without a transmission error of all feasible.
     known : int
@@ -288,7 +288,7 @@ class SizingData:
     """
 
     count: int = shown("", "variants enumerated")
-    feasible: int = shown("", "variants that keep all limits", name="variants_feasible")
+    feasible: int = shown("", "variants that meet all limits", name="variants_feasible")
     on_front: int = shown("", "variants on the Pareto front", name="variants_on_front")
     known: int = shown("", "variants with known transmission error", name="variants_te_known", default=0)
     by_atlas: bool = False

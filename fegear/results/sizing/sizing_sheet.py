@@ -78,7 +78,7 @@ def _chart(key: str, y: str, words: str) -> Chart:
     line = Line(y, kind="points", each=Family(_groups, most=None), look=_look)
     return Chart(
         key, f"Variants: {words} over mass",
-        "Variants that keep all limits and were compared. In the report, hover over a point for the variant.",
+        "Variants that meet all limits and were compared. In the report, hover over a point for the variant.",
         (Over("total_mass", (line,), of=lambda _: Drawn),),
         when=lambda seen: bool(seen.data.chosen) and _main(seen) == y,
     )  # fmt: skip
@@ -106,7 +106,7 @@ def _answers(seen: Seen) -> Iterator[str]:
     if data.best is None:
         ranked = sorted(data.reasons, key=lambda one: -one.variants)[:_NAMED]
         named = ", ".join(f"{one.reason} {one.variants:,}" for one in ranked)
-        yield f"None of {data.count:,} variants keeps all limits: {named}."
+        yield f"None of {data.count:,} variants meets all limits: {named}."
         return
     best = data.best
     margin = f" ({MARGIN})" if math.isfinite(best.margin) else ""
@@ -115,7 +115,7 @@ def _answers(seen: Seen) -> Iterator[str]:
         yield f"Variant {best.number} lies at the end of the range of {', '.join(best.on_bounds)}."
     known = f"; of {data.known:,} with known transmission error" if data.known < data.feasible and data.known else ","
     few = f", {len(data.front):,} of them shown" if len(data.chosen) < data.on_front else ""
-    yield f"{data.feasible:,} variants keep all limits{known} {data.on_front:,} are on the Pareto front{few}."
+    yield f"{data.feasible:,} variants meet all limits{known} {data.on_front:,} are on the Pareto front{few}."
     if data.present is not None:
         yield from _present(seen)
 
@@ -124,7 +124,7 @@ def _present(seen: Seen) -> Iterator[str]:
     """Where the present design is placed."""
     placed = seen.data.present
     own = placed.design
-    breaks = f"breaks {', '.join(placed.reasons)}" if placed.reasons else "keeps all limits"
+    breaks = f"breaks {', '.join(placed.reasons)}" if placed.reasons else "meets all limits"
     yield f"Present design ({own.words}) {breaks}; {_said_of(own)}."
     better = placed.better
     if better is not None:

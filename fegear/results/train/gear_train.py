@@ -240,8 +240,8 @@ def _whose_speeds(seen: Seen) -> list[str]:
 
 def _on_axial_force(seen: Seen) -> str:
     return neglecting(
-        f"Mesh {seen.key}: its axial force of {seen.one.axial_force:.5g} N is carried by bearings taken as rigid; the "
-        "train turns only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
+        f"Mesh {seen.key}: axial force of {seen.one.axial_force:.5g} N on bearings assumed rigid; the train includes "
+        "rotation only. Request transmissibility with mesh.pair for axial motion and tilting."
     )
 
 
@@ -281,7 +281,7 @@ _SHEET = Sheet(
             Remark(_on_axial_force, when="axial_force"),
             Remark(
                 neglecting(
-                    "Mesh {key}: double helical, two equal meshes side by side; axial mass and friction of the "
+                    "Mesh {key}: double helical, two equal meshes in parallel; axial mass and friction of the "
                     "floating member are neglected, tooth forces are those of both halves together."
                 ),
                 when=lambda seen: seen.one.teeth.halves > 1,

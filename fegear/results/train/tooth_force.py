@@ -267,7 +267,7 @@ _SHEET = Sheet(
         ),
         Chart(
             "mesh_force_of_teeth_{name}", "Force in mesh {name} over one base pitch",
-            "Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
+            "Mesh {name}: total force of the tooth pairs in contact, and force by the mean stiffness. "
             "Both use the same dynamic transmission error; the tooth forces use the instantaneous stiffness, the mesh "
             "force the mean stiffness. Horizontal line: mean force.",
             (
