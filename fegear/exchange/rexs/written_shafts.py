@@ -116,11 +116,11 @@ def _bearing(
     if life is not None:
         if "dynamic_rating" in life.given:
             made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
-        factors = rating if life.axial_factor or life.limit else None
-        made.say(
-            "number", radial_factor_x_2=factors and factors.radial_factor,
-            axial_factor_y_2=factors and factors.axial_factor, catalogue_value_e=factors and factors.limit,
-        )  # fmt: skip
+        if rating is not None and (life.axial_factor or life.limit):
+            made.say(
+                "number", radial_factor_x_2=rating.radial_factor, axial_factor_y_2=rating.axial_factor,
+                catalogue_value_e=rating.limit,
+            )  # fmt: skip
     if elements is not None:
         made.say("small length", operating_radial_bearing_clearance=elements.clearance or None)
         row, roller = written.part("rolling_bearing_row"), written.part("rolling_element")
