@@ -138,7 +138,7 @@ SPOKEN = {
 
 
 def helical_sentences() -> list[str]:
-    """A sentence for each formula: against even loads, and how far off it is against those that the flanks share."""
+    """A sentence for each formula: compared with uniform loads, and its deviation under computed load distributions."""
     rows = [r for r in helical.table() if float(r["tolerance"]) == helical.TOLERANCE]
     columns = {key: np.array([float(r[key]) for r in rows]) for key in SPOKEN}
     pair = np.array([int(r["pair"]) for r in rows])
@@ -148,8 +148,8 @@ def helical_sentences() -> list[str]:
         shared = reach(name, solved[key], columns, pair, np.zeros(pair.size, dtype=bool))
         ends = f"{off(shared.low)} to {off(shared.high)} (median {off(shared.median)})"
         near = f"{100.0 * shared.near:.0f} %"
-        said = sentence(one, SPOKEN)[:-1].replace("over all loads", "under even loads")
-        found.append(f"{said}, and {ends} under loads as the flanks share them, where {near} of gears are within 10 %.")
+        said = sentence(one, SPOKEN)[:-1].replace("over all loads", "under uniform loads")
+        found.append(f"{said}, and {ends} under the computed load distribution, where {near} of gears are within 10 %.")
     return found
 
 
