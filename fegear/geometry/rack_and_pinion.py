@@ -83,14 +83,14 @@ class RackAndPinion:
             if not clearance > 0.0:
                 raise GeometryError(
                     "distance", f"{self.distance * 1e3:.6g} mm",
-                    f"lets the tip of the {tip} reach {-clearance * 1e3:.4g} mm below the root of the {root}",
+                    f"places the tip of the {tip} {-clearance * 1e3:.4g} mm below the root of the {root}",
                     "increase distance, or reduce the addendum",
                 )  # fmt: skip
         low, high = self.interference
         if max(low, high) > 1e-9 * rack.module:
             at = "pinion below its root form circle" if low >= high else "rack below the start of its flank"
             raise GeometryError(
-                "distance", f"{self.distance * 1e3:.6g} mm", f"lets a tip touch the {at} (tip interference)",
+                "distance", f"{self.distance * 1e3:.6g} mm", f"results in tip interference with the {at}",
                 "increase distance or the profile shift of the pinion, or reduce the addendum",
             )  # fmt: skip
         if self.backlash < -1e-9 * rack.module:

@@ -160,7 +160,7 @@ def _said(one):
 
 def test_what_is_said_of_a_path():
     one = _path()
-    assert _said(one) == "breaks through the tooth, 1 to 2 mm; stiffness of the tooth falls by 25 %."
+    assert _said(one) == "breaks through the tooth, 1 to 2 mm; stiffness of the tooth decreases by 25 %."
     assert "heads through the rim, 1 to 2 mm, fracture at 1.5 mm;" in _said(
         _path(end="rim", stopped="steps", fracture=1.5e-3)
     )

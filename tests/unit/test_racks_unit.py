@@ -94,7 +94,7 @@ def test_outline_encloses_teeth_and_body():
         ({"backlash": "-10 um"}, "rack.r.backlash = -10 um: must not be negative"),
         ({"backlash": "1 um", "distance": "20 mm"}, "contradicts distance"),
         ({"mounting_distance": "30.6 mm", "distance": "20.6 mm"}, "contradicts mounting_distance"),
-        ({"mounting_distance": "30 mm"}, "rack.r.mounting_distance = 30 mm: lets the tip"),
+        ({"mounting_distance": "30 mm"}, "rack.r.mounting_distance = 30 mm: places the tip"),
         ({"mounting_distance": "30.5 mm"}, "set mounting_distance to at least 30.6 mm"),
         ({"mounting_distance": "34 mm"}, "rack.r.mounting_distance = 34 mm: gives a contact ratio of"),
         ({"distance": "1 m"}, "rack.r.distance = 1000 mm: gives a contact ratio of"),

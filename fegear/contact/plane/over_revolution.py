@@ -1,4 +1,4 @@
-"""A pair of whose gears some teeth differ, over all base pitches until the same teeth meet again.
+"""A pair of whose gears some teeth differ, over all base pitches until the same teeth mesh again.
 
 Base pitches in which the teeth answer alike are solved once: of a gear with one odd tooth those in which it or a tooth
 beside it can touch, and one for all the others. `revolution` has the lines of the same transmission error.
@@ -221,7 +221,7 @@ def over_revolution(
     shifted: Sequence[Engagement] = (),
     base_pitches: int = 1,
 ) -> OverRevolution:
-    """Follow a pair over all base pitches until the same teeth meet again.
+    """Follow a pair over all base pitches until the same teeth mesh again.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def _followed(engagement: Engagement, x: Array, number: Index, load: float, coun
 def _refuse_too_many(engagement: Engagement) -> None:
     if engagement.cycles > MOST_PITCHES:
         raise InputError(
-            "pair", f"{engagement.cycles} base pitches until the same teeth meet again",
+            "pair", f"{engagement.cycles} base pitches until the same teeth mesh again",
             f"must be at most {MOST_PITCHES} for a revolution", "specify odd teeth of one gear only",
         )  # fmt: skip
 
@@ -303,7 +303,7 @@ def _each_pitch(
 
 @dataclass(frozen=True)
 class StressOfTeeth:
-    """Root stress of every tooth of a gear over all base pitches until the same teeth meet again.
+    """Root stress of every tooth of a gear over all base pitches until the same teeth mesh again.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A pair with a width of whose gears some teeth differ, over all base pitches until the same teeth meet again.
+"""A pair with a width of whose gears some teeth differ, over all base pitches until the same teeth mesh again.
 
 As of plane teeth (`fegear.contact.plane.over_revolution`): base pitches in which the same teeth meet are solved once.
 What all teeth have in common is found once for all of them (`compliance`).
@@ -153,7 +153,7 @@ def wide_over_revolution(
 def follow_flanks(
     revolving: RevolvingFlanks, base_pitches: int = 1, progress: Callable[[float], None] | None = None
 ) -> FollowedFlanks:
-    """Follow a pair with a width over all base pitches until the same teeth meet again.
+    """Follow a pair with a width over all base pitches until the same teeth mesh again.
 
     Parameters
     ----------
@@ -171,8 +171,8 @@ def follow_flanks(
     cycles = revolving.cycles
     if cycles > MOST_PITCHES:
         raise InputError(
-            "pair", f"{cycles} base pitches until the same teeth meet again",
-            f"must be at most {MOST_PITCHES} for a revolution", "let the teeth of one gear only differ",
+            "pair", f"{cycles} base pitches until the same teeth mesh again",
+            f"must be at most {MOST_PITCHES} for a revolution", "specify different teeth on one gear only",
         )  # fmt: skip
     count, report = cycles if cycles > 1 else base_pitches, progress or (lambda _fraction: None)
     found = _with_peaks(revolving, _far_enough(revolving, count))

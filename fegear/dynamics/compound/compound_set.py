@@ -249,7 +249,7 @@ class CompoundSet:
         both = f'"{first.name}", "{second.name}"'
         if isinstance(first, Shaft) and isinstance(second, Shaft):
             raise InputError(key, both, "must include a planet (both members rotate about the axis of the set)",
-                             "let a planet mesh with each of them")  # fmt: skip
+                             "use a planet that meshes with each of them")  # fmt: skip
         if isinstance(first, Planets) and isinstance(second, Planets):
             if first.name == second.name:
                 raise InputError(key, both, "must be two members", "name another member")

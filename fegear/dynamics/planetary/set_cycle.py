@@ -151,7 +151,7 @@ def set_cycle(
     if cycles > MOST_PITCHES:
         raise InputError(
             "planetary", f"{cycles} base pitches until the same teeth mesh again", f"must be at most {MOST_PITCHES}",
-            "let the teeth of one gear only differ",
+            "specify different teeth on one gear only",
         )  # fmt: skip
     late = phases.delays if delays is None else delays
     parts = common_parts(model.found) if cycles == 1 else 1

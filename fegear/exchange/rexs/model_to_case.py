@@ -366,8 +366,8 @@ def _width(said: Said, stages: list[Stage]) -> str:
     if wide and not any(stage.internal for stage in stages):
         gears = ", ".join(dict.fromkeys(gear.said for gear in wide))
         said.notes.append(
-            f"{gears}: faces of more than {_WIDEST_SOLID:g} modules; external pairs are coupled slices, whose "
-            'K_Hbeta may be off by more than 5 %. Set width = "solid" for 3D gears, which take minutes each.'
+            f"{gears}: faces of more than {_WIDEST_SOLID:g} modules; external pairs are coupled slices; the "
+            'error of K_Hbeta may exceed 5 %. Set width = "solid" for 3D gears, which take minutes each.'
         )
         return "slices"
     return "solid"

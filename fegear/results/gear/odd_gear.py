@@ -91,7 +91,7 @@ def _closed(seen: Seen) -> Iterator[str]:
         shut = found.stress_intensity(number, number, radii)[0][0] < 0.0
         if shut.mean() > _MOSTLY:
             yield exceeding(
-                f"{who} press its crack together (K_I negative over {percent(float(shut.mean()))} of the flank). Open "
+                f"{who} close its crack (K_I negative over {percent(float(shut.mean()))} of the flank). Open "
                 "faces are assumed: its deflection, and the reduction of the mesh stiffness, are overestimated many "
                 'times; set crack_faces = "closing".'
             )

@@ -58,7 +58,7 @@ def _open(seen: Seen) -> Iterator[str]:
     for tooth, crack in asked.teeth.cracks:
         if crack.back:
             yield exceeding(
-                f"Gear {gear}: loads on tooth {tooth} press its crack together (fillet of the opposite flank). Open "
+                f"Gear {gear}: loads on tooth {tooth} close its crack (fillet of the opposite flank). Open "
                 "faces are assumed in 3D: its deflection is overestimated many times; use a plane (2D) pair with "
                 'crack_faces = "closing".'
             )

@@ -118,7 +118,7 @@ def _floats(seen: Seen) -> str:
     if shown.floating is None:
         return seen.said(
             "Both members are located: the apex offset of "
-            f"{figures(offset * 1e6, 3)} µm leaves an axial force of {{v[axial_force_mean]}}."
+            f"{figures(offset * 1e6, 3)} µm results in an axial force of {{v[axial_force_mean]}}."
         )
     taken = f" and takes up the apex offset of {figures(offset * 1e6, 3)} µm" if offset and not shown.at_stop else ""
     limit = ", limited by its axial play" if shown.at_stop else ""

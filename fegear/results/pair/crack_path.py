@@ -159,7 +159,7 @@ def _answer(seen: Seen) -> Iterator[str]:
             text += f", fracture at {grown.fracture * 1e3:.3g} mm"
         if one.cycles is not None:
             text += f", {one.cycles:.3g} load cycles" if math.isfinite(one.cycles) else ", stops below the threshold"
-        yield f"{text}; stiffness of the tooth falls by {percent(float(grown.stiffness_loss[-1]))}."
+        yield f"{text}; stiffness of the tooth decreases by {percent(float(grown.stiffness_loss[-1]))}."
 
 
 def _drawing(seen: Seen) -> Iterator[DeferredFigure]:

@@ -240,8 +240,8 @@ _SHEET = Sheet(
         ),
         Chart(
             "tooth_loss_loads_{name}", "Gear mesh power loss of pair {name} over load",
-            "Pair {name}: loss factor H_V by the computed load and of rigid gears, and share of the power that the "
-            "teeth lose by the law {asked.friction.law}. Under little load reliefs stay open, tips unloaded.",
+            "Pair {name}: loss factor H_V by the computed load and of rigid gears, and power loss as a share of "
+            "the power by the law {asked.friction.law}. At low load tips with relief are not in contact.",
             (
                 Over(
                     "load",

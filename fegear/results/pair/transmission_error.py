@@ -198,7 +198,7 @@ def _over_loads(seen: Seen) -> Iterator[str]:
         low, high, quiet = np.argmin(e.loads), np.argmax(e.loads), np.argmin(e.te_peak_to_peak)
         torque, size = drawn(e, "driver_torque"), drawn(e, "te_peak_to_peak")
         yield (
-            f"From {figures(torque[low])} to {figures(torque[high])} N m it goes from {figures(size[low])} to "
+            f"From {figures(torque[low])} to {figures(torque[high])} N m it changes from {figures(size[low])} to "
             f"{figures(size[high])} µm peak to peak; minimum {figures(size[quiet])} µm at {figures(torque[quiet])} N m."
         )
 
