@@ -24,10 +24,11 @@ class MeasuredStrainPart(Part):
     )
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     strain_column: str = Field(default="strain", description="Name of the strain column.")
-    fit: list[Literal["offset", "scale", "shift"]] = Field(
+    fit: list[Literal["offset", "scale", "shift", "drift"]] = Field(
         default_factory=list,
-        description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load) "
-        "and `shift` (zero of the angle). Default: nothing.",
+        description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load), "
+        "`shift` (zero of the angle) and `drift` (of the bridge, linear over the turns; needs `offset`). Default: "
+        "nothing.",
     )
     reverse: bool = Field(
         default=False, description="The measured angle is counted against the direction of rotation of the gear."
@@ -37,6 +38,8 @@ class MeasuredStrainPart(Part):
     def _sensible(self) -> Self:
         if len(set(self.fit)) < len(self.fit):
             raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
+        if "drift" in self.fit and "offset" not in self.fit:
+            raise refuse("contains drift without offset", "add offset", value=list(self.fit), key="fit")
         if self.angle_column == self.strain_column:
             raise refuse("is the column of the angle", "specify another column", key="strain_column")
         return self

@@ -1,9 +1,9 @@
-"""A measured curve laid over a computed one: offset, scale and shift by least squares, with their standard errors.
+"""A measured curve laid over a computed one: offset, scale, shift and drift by least squares, with standard errors.
 
-measured = offset + scale * computed(angle - shift) + residual, where only what is asked for is fitted; else offset and
-shift are zero and the scale is one. Angles count modulo one turn: a trace of many revolutions is one engagement many
-times. Where the computed curve ends there is nothing to compare with; while the shift is searched for the tooth counts
-as unstrained there.
+measured = offset + drift * turns + scale * computed(angle - shift) + residual, where only what is asked for is fitted;
+else offset, drift and shift are zero and the scale is one. Angles count modulo one turn: a trace of many revolutions is
+one engagement many times. Turns count along the trace, from the middle of its compared samples. Where the computed
+curve ends there is nothing to compare with; while the shift is searched for the tooth counts as unstrained there.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
 
-Fitted = Literal["offset", "scale", "shift"]
-FITTED: tuple[Fitted, ...] = ("offset", "scale", "shift")
+Fitted = Literal["offset", "scale", "shift", "drift"]
+FITTED: tuple[Fitted, ...] = ("offset", "scale", "shift", "drift")
+#: Fewest turns of a trace that tell a drift from the curve: each of its places is there twice.
+DRIFT_TURNS = 2.0
 #: Fewest samples within the computed curve, beside those that the fit takes.
 FEWEST = 8
 _TURN = 2.0 * math.pi
@@ -32,6 +34,10 @@ _STEPS = 400
 _SLOPE = 1.0 / 500.0
 #: A jump: points of the curve nearer than this share of its length, and values farther apart than this of its range.
 _JUMP_WITHIN, _JUMP_OF = 1e-5, 0.02
+#: A drift is named from this many standard errors on, and from this part of the computed range on over the whole trace.
+_DRIFT_ERRORS, _DRIFT_PART = 4.0, 0.01
+#: Turns from which on an angle is one that goes on, and is taken as it is.
+_GOES_ON = 1.1
 #: Largest correlation of neighbouring residuals with which standard errors are counted.
 _MOST_CORRELATED = 0.99
 
@@ -61,6 +67,13 @@ class FittedCurve:
         As measured, less offset and scale; and the curve there.
     outside : int
         Samples beyond the computed curve.
+    drift : float
+        Change of the measured curve per turn along the trace, where it was fitted; zero half-way through the samples.
+    trend, trend_error : float or None
+        Drift of the least squares with this shift whether or not it was asked for, and its standard error; None of a
+        trace that has no place of the curve twice.
+    turns : float
+        From the first to the last compared sample.
     """
 
     fit: tuple[Fitted, ...]
@@ -76,6 +89,27 @@ class FittedCurve:
     angle: Array = shown("deg", "rotation of the gear, measured angle less the shift", label="rotation of the gear")
     measured: Array = shown("um/m", "measured strain, less the offset and divided by the scale", label="strain")
     computed: Array = shown("um/m", "computed strain at this angle")
+
+    drift: float = shown(
+        "um/m", "drift of the measured strain per turn of the gear", name="measured_drift", default=0.0
+    )
+    trend: float | None = None
+    trend_error: float | None = None
+    turns: float = 0.0
+
+    @property
+    def unfitted_drift(self) -> float | None:
+        """Per turn, where the residual has one that is certain, and large beside the curve."""
+        if "drift" in self.fit or self.trend is None or self.trend_error is None:
+            return None
+        large = abs(self.trend) * self.turns > _DRIFT_PART * float(np.ptp(self.computed)) * abs(self.scale)
+        return self.trend if large and abs(self.trend) > _DRIFT_ERRORS * self.trend_error else None
+
+    @property
+    @shows("um/m", "standard error of measured_drift", name="measured_drift_standard_error")
+    def drift_error(self) -> float:
+        """Zero where it was not fitted."""
+        return self.errors["drift"]
 
     @property
     @shows("um/m", "measured strain less the computed one", label="residual")
@@ -122,6 +156,19 @@ class FittedCurve:
         return int(self.angle.size)
 
 
+@dataclass(frozen=True)
+class _Line:
+    """What is linear in a fit: measured = offset + drift * turn + scale * curve."""
+
+    offset: float
+    scale: float
+    drift: float
+
+    def less(self, measured: Array, turn: Array) -> Array:
+        """Measured without offset and drift."""
+        return np.asarray(measured - self.offset - (self.drift * turn if self.drift else 0.0))
+
+
 def fit_curve(
     angle: Array, measured: Array, curve_angle: Array, curve: Array, fit: Collection[Fitted] = ()
 ) -> FittedCurve:
@@ -133,7 +180,8 @@ def fit_curve(
         Samples in the order of the trace [rad, any unit].
     curve_angle, curve : ndarray, shape (Q,)
         Computed, ascending [rad, the same unit]; less than a turn.
-    fit : collection of {"offset", "scale", "shift"}
+    fit : collection of {"offset", "scale", "shift", "drift"}
+        A drift goes with an offset.
 
     Raises
     ------
@@ -150,31 +198,56 @@ def fit_curve(
         return np.interp(places, curve_angle, curve)
 
     asked: tuple[Fitted, ...] = tuple(one for one in FITTED if one in fit)
-    shift = _searched(angle, measured, computed, half, middle, asked) if "shift" in asked else 0.0
+    turns, shift = turns_along(angle), 0.0
+    if "shift" in asked:
+        steady = measured - _drift_by_places(angle, turns, measured) * turns if "drift" in asked else measured
+        shift = _searched(angle, steady, computed, half, middle, asked)
     inside = np.abs(within(shift) - middle) <= half
     if np.count_nonzero(inside) < FEWEST + len(asked):
         raise NothingToCompareError
-    a, y = angle[inside], measured[inside]
+    a, y, turn = angle[inside], measured[inside], turns[inside]
+    spanned, turn = float(np.ptp(turn)), turn - turn.mean()
     if "shift" in asked:
-        shift = _refined(lambda at: _squares(computed(within(at, a)), y, asked), shift, 2.0 * half / _STEPS)
+        shift = _refined(lambda at: _squares(computed(within(at, a)), y, turn, asked), shift, 2.0 * half / _STEPS)
     places = within(shift, a)
     found = computed(places)
-    offset, scale = _linear(found, y, asked)
-    residual = y - offset - scale * found
-    gain_with: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one == "scale")
-    gain = _linear(found, y, gain_with)[1]
+    line = _linear(found, y, turn, asked)
     reach = 2.0 * half * _SLOPE
     slope = (computed(places + reach) - computed(places - reach)) / (2.0 * reach)
-    errors = _standard_errors(found, slope, scale, residual, asked)
+
+    def with_errors(*more: Fitted) -> tuple[_Line, dict[Fitted, float]]:
+        these: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one in more)
+        fitted = _linear(found, y, turn, these)
+        residual = fitted.less(y, turn) - fitted.scale * found
+        return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn)
+
+    errors = with_errors()[1]
     if "shift" in asked and _jumps(curve_angle, curve):  # between two samples the jump may be anywhere
         spacing = float(np.median(np.diff(np.sort(places))))
         errors["shift"] = math.hypot(errors["shift"], spacing / math.sqrt(12.0))
-    of_gain = _standard_errors(found, slope, gain, y - _linear(found, y, gain_with)[0] - gain * found, gain_with)
+    gain, of_gain = with_errors("scale")
+    drifting = with_errors("offset", "drift") if spanned > 1.0 else None
     return FittedCurve(
-        asked, {one: errors.get(one, 0.0) for one in FITTED}, int(angle.size - a.size),
-        offset, scale, float(np.mod(shift + math.pi, _TURN) - math.pi), gain, of_gain["scale"], places,
-        (y - offset) / scale, found,
+        asked, {one: errors.get(one, 0.0) for one in FITTED}, int(angle.size - a.size), line.offset, line.scale,
+        float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
+        line.less(y, turn) / line.scale, found, line.drift, drifting and drifting[0].drift,
+        drifting and drifting[1]["drift"], spanned,
     )  # fmt: skip
+
+
+def turns_along(angle: Array) -> Array:
+    """Turns of each sample of a trace from its first one, ascending along it, also where each turn begins at zero."""
+    going = angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
+    return np.asarray((going - going[0]) / (_TURN if going[-1] >= going[0] else -_TURN))
+
+
+def _drift_by_places(angle: Array, turns: Array, measured: Array) -> float:
+    """Drift by how samples of one place differ from turn to turn, whatever curve and shift are; of short traces 0."""
+    cell = np.floor(np.mod(angle, _TURN) / _TURN * _STEPS).astype(int) % _STEPS
+    count = np.maximum(np.bincount(cell, minlength=_STEPS), 1)
+    own = turns - (np.bincount(cell, turns, _STEPS) / count)[cell]
+    many = float(np.ptp(turns)) > 1.0
+    return float(own @ (measured - measured.mean()) / (own @ own)) if many else 0.0
 
 
 def _jumps(angle: Array, curve: Array) -> bool:
@@ -223,27 +296,37 @@ def _refined(squares: Callable[[float], float], shift: float, step: float) -> fl
     return float(minimize_scalar(squares, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x)
 
 
-def _linear(curve: Array, measured: Array, asked: tuple[Fitted, ...]) -> tuple[float, float]:
-    """Offset and scale by least squares, those that are asked for."""
-    if "scale" not in asked:
-        return (float(np.mean(measured - curve)) if "offset" in asked else 0.0), 1.0
-    c, m = (curve.mean(), measured.mean()) if "offset" in asked else (0.0, 0.0)
-    size = float((curve - c) @ (curve - c))
-    scale = float((curve - c) @ (measured - m)) / size if size else 0.0
-    return float(m - scale * c), scale
+def _linear(curve: Array, measured: Array, turn: Array, asked: tuple[Fitted, ...]) -> _Line:
+    """Offset, scale and drift by least squares, those that are asked for; the mean of the turns is zero."""
+    scale, size = 1.0, float(turn @ turn) if "drift" in asked else 0.0
+
+    def free(of: Array) -> Array:  # of what offset and drift take up
+        one = of - of.mean() if "offset" in asked else of
+        return np.asarray(one - float(turn @ one) / size * turn if size else one)
+
+    if "scale" in asked:
+        c = free(curve)
+        power = float(c @ c)
+        scale = float(c @ free(measured)) / power if power else 0.0
+    rest = measured - scale * curve
+    return _Line(
+        float(rest.mean()) if "offset" in asked else 0.0, scale, float(turn @ rest) / size if size else 0.0
+    )  # fmt: skip
 
 
-def _squares(curve: Array, measured: Array, asked: tuple[Fitted, ...]) -> float:
-    offset, scale = _linear(curve, measured, asked)
-    residual = measured - offset - scale * curve
+def _squares(curve: Array, measured: Array, turn: Array, asked: tuple[Fitted, ...]) -> float:
+    line = _linear(curve, measured, turn, asked)
+    residual = line.less(measured, turn) - line.scale * curve
     return float(residual @ residual)
 
 
 def _standard_errors(
-    curve: Array, slope: Array, scale: float, residual: Array, asked: tuple[Fitted, ...]
+    curve: Array, slope: Array, scale: float, residual: Array, asked: tuple[Fitted, ...], turn: Array | None = None
 ) -> dict[Fitted, float]:
     """Of what is fitted; neighbouring residuals that go together count as fewer samples."""
     columns: dict[Fitted, Array] = {"offset": np.ones(curve.size), "scale": curve, "shift": -scale * slope}
+    if turn is not None:
+        columns["drift"] = turn
     if not asked:
         return {}
     matrix = np.stack([columns[one] for one in asked], axis=1)

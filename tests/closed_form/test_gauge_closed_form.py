@@ -132,24 +132,73 @@ def _curve():
     ) - 3e-5 * np.exp(-(((angle + 0.25) / 0.05) ** 2))
 
 
-@pytest.mark.parametrize("fit", [FITTED, ("scale", "shift"), ("offset", "shift"), ("shift",), ("offset", "scale"), ()])
+@pytest.mark.parametrize(
+    "fit", [FITTED, FITTED[:3], ("scale", "shift"), ("offset", "shift"), ("shift",), ("offset", "scale"), ()]
+)
 def test_a_trace_made_of_known_numbers_gives_these(fit):
     rng, (angle, curve), found = np.random.default_rng(7), _curve(), []
     for _ in range(40):
         known = {"offset": rng.normal(0, 1e-4), "scale": rng.uniform(0.8, 1.2), "shift": rng.uniform(-3.1, 3.1)}
+        known["drift"] = rng.normal(0, 2e-4)
         known |= {key: (1.0 if key == "scale" else 0.0) for key in FITTED if key not in fit}
         at = np.arange(0.0, 4.0 * math.pi, 0.005) + (rng.uniform(0, 9) if "shift" in fit else 0.0)
         place = np.mod(at - known["shift"] + math.pi, 2.0 * math.pi) - math.pi
         strain = known["offset"] + known["scale"] * np.interp(place, angle, curve, left=0, right=0)
+        strain += known["drift"] * (at - at[0]) / (2.0 * math.pi)
         made = fit_curve(at, strain + rng.normal(0.0, 1e-5, at.size), angle, curve, fit)
+        if "drift" in fit:  # offsets are those in the middle of the compared samples
+            inside = (place >= angle[0]) & (place <= angle[-1])
+            known["offset"] += known["drift"] * (at[inside].mean() - at[0]) / (2.0 * math.pi)
         off = {key: getattr(made, key) - known[key] for key in FITTED}
         off["shift"] = (off["shift"] + math.pi) % (2.0 * math.pi) - math.pi
         assert made.rms * made.scale == pytest.approx(1e-5, rel=0.2)
-        assert [off[key] for key in FITTED if key not in fit] == [0.0] * (3 - len(fit))
+        assert [off[key] for key in FITTED if key not in fit] == [0.0] * (len(FITTED) - len(fit))
         found.append([off[key] / made.errors[key] for key in fit])
     if fit:
         assert np.sqrt(np.mean(np.square(found), axis=0)) == pytest.approx(1.0, abs=0.35)  # of 40: 1 +- 0.11
         assert np.abs(found).max() < 4.0
+
+
+def _drifting(turns, drift, noise=1e-5):
+    """A trace that drifts by so much per turn, its angle from zero in each turn, and the curve."""
+    angle, curve = _curve()
+    at = np.arange(0.0, 2.0 * math.pi * turns, 0.004)
+    place = np.mod(at - 1.3 + math.pi, 2.0 * math.pi) - math.pi
+    strain = 5e-5 + drift * at / (2.0 * math.pi) + 1.1 * np.interp(place, angle, curve, left=0.0, right=0.0)
+    strain += np.random.default_rng(2).normal(0.0, noise, at.size)
+    return np.mod(at, 2.0 * math.pi), strain, angle, curve
+
+
+@pytest.mark.parametrize(("turns", "drift"), [(5, 2e-5), (3, -2e-4), (40, 5e-5)])
+def test_a_drift_is_named_and_fitted_whether_or_not_the_angle_begins_at_zero_in_each_turn(turns, drift):
+    """20 um/m per turn over 5 turns are 50 um/m of offset; the largest exceeds the strain of the tooth itself."""
+    at, strain, angle, curve = _drifting(turns, drift)
+    fitted = fit_curve(at, strain, angle, curve, FITTED)
+    assert fitted.drift == pytest.approx(drift, abs=4.0 * fitted.drift_error)
+    assert fitted.drift_error < 0.02 * abs(drift)
+    assert fitted.shift == pytest.approx(1.3, abs=1e-3)
+    assert fitted.scale == pytest.approx(1.1, abs=4.0 * fitted.scale_error)
+    assert fitted.rms * fitted.scale == pytest.approx(1e-5, rel=0.1)
+    assert fitted.unfitted_drift is None
+    assert fit_curve(np.unwrap(at), strain, angle, curve, FITTED).drift == pytest.approx(fitted.drift, rel=1e-9)
+    assert fit_curve(-at, strain, -angle[::-1], curve[::-1], FITTED).drift == pytest.approx(fitted.drift, rel=1e-6)
+    plain = fit_curve(at, strain, angle, curve, ("offset", "scale"))
+    assert plain.drift == plain.drift_error == 0.0
+    if abs(drift) < 1e-4:
+        shifted = fit_curve(at, strain, angle, curve, FITTED[:3])
+        assert shifted.unfitted_drift == pytest.approx(drift, rel=0.05)
+        assert shifted.rms > 1.5 * fitted.rms
+
+
+def test_no_drift_is_named_where_there_is_none_or_one_engagement():
+    for noise in (1e-6, 1e-5, 1e-4):
+        assert fit_curve(*_drifting(6, 0.0, noise), FITTED[:3]).unfitted_drift is None
+    at, strain, angle, curve = _drifting(1, 2e-5)
+    once = fit_curve(at, strain, angle, curve, FITTED[:3])
+    assert once.trend is once.unfitted_drift is None
+    follows = np.convolve(np.random.default_rng(4).normal(0.0, 1e-4, 9500), np.ones(60) / 60.0, "same")
+    at, strain, angle, curve = _drifting(6, 0.0)
+    assert fit_curve(at, strain + follows[: at.size], angle, curve, FITTED[:3]).unfitted_drift is None
 
 
 def test_noise_that_goes_together_widens_the_standard_errors():

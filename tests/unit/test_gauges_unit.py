@@ -113,7 +113,9 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({}, "angle [deg],strain [um/m]\n" + "".join(f"{a},7\n" for a in range(20)), "the same strain in every line"),
         ({"angle": "rad"}, TRACE, "the case has rad"), ({"strain": "mm/m"}, TRACE, "the case has mm/m"),
         ({"angle": "furlong"}, TRACE.replace(" [deg]", ""), "unknown unit"),
-        ({"fit": ["scale", "scale"]}, TRACE, "contains a quantity twice"), ({"fit": ["gain"]}, TRACE, "must be"),
+        ({"fit": ["scale", "scale"]}, TRACE, "contains a quantity twice"),
+        ({"fit": ["drift"]}, TRACE, "contains drift without offset; add offset"),
+        ({"fit": ["offset", "drift"]}, TRACE, "requires a trace of 2 turns"), ({"fit": ["gain"]}, TRACE, "must be"),
         ({"fit": "scale"}, TRACE, "must be a list"), ({"strain_column": "angle"}, TRACE, "is the column of the angle"),
         ({"reverse": 1}, TRACE, "true or false"), ({"strain_column": "SG1"}, TRACE, "requires a column SG1"),
         ({}, TRACE.replace("strain [um/m]\n", "angle [deg]\n"), "two columns"),
@@ -278,6 +280,28 @@ def test_a_trace_of_the_computed_curve_is_found_again(plain, tmp_path):
     (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + "".join(lines[300:600]))
     with pytest.raises(InputError, match=r"too few samples"):
         ran(changed({"measured": {"file": "t.csv"}}), tmp_path)
+
+
+def test_a_drift_of_the_bridge_is_named_and_found_again(plain, tmp_path):
+    angle, strain = plain.history.angle, plain.history.strain[:, 0]
+    at = np.arange(0.0, 4.0 * 360.0, 0.5)
+    place = np.mod(np.radians(at) + math.pi, 2.0 * math.pi) - math.pi
+    made = 20.0 * at / 360.0 + 1e6 * np.interp(place, angle, strain, left=0.0, right=0.0)
+    made += np.random.default_rng(5).normal(0.0, 2.0, at.size)
+    lines = [f"{a % 360.0:.2f},{s:.4f}\n" for a, s in zip(at, made, strict=True)]
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + "".join(lines))
+    named, fitted = (
+        ran(changed({"measured": {"file": "t.csv", "fit": fit}}), tmp_path)
+        for fit in (["offset", "scale"], ["offset", "scale", "drift"])
+    )
+    (note,) = (one for one in named.remarks if "drifts" in one)
+    assert note.startswith("Gauge g: the measured strain drifts by ")
+    assert note.endswith('falsifies offset and residual; add "drift" and "offset" to fit.')
+    assert not any("drifts" in one for one in fitted.remarks)
+    values = {one.name.removeprefix("g."): one.value for one in fitted.values}
+    assert values["measured_drift"] == pytest.approx(20.0, abs=4.0 * values["measured_drift_standard_error"])
+    assert values["residual_rms"] == pytest.approx(2.0, rel=0.25)
+    assert "g.measured_drift" not in [one.name for one in named.values]
 
 
 @pytest.mark.parametrize(("gain", "words"), [(1.3, "30 % above the computed one, beyond"), (-1.0, "opposite signs")])

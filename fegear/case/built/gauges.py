@@ -13,7 +13,7 @@ from fegear.base.errors import InputError
 from fegear.case.csv_file import read_columns
 from fegear.case.gauge import PLACES
 from fegear.case.nearest import nearest
-from fegear.contact.fitted_curve import FEWEST
+from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST, turns_along
 from fegear.fem.plane.gauge import ISO_TANGENT, ISO_TANGENT_INTERNAL, FilletProfile, Grid, PlaceKey
 from fegear.geometry.pair import MEMBERS
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _LARGEST_STRAIN = 0.05
 #: Part of the strain along the profile below which a direction measures nothing.
 _NOTHING = 1e-3
+#: Part of its turns that a trace may lack.
+_SLACK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -218,6 +220,15 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
             key, f'"{part.file}"', f"has {angle.size} samples, fewer than {FEWEST + len(part.fit)}",
             "specify a whole engagement",
         )  # fmt: skip
+    if "drift" in part.fit:
+        along = turns_along(angle)
+        turns = float(np.ptp(along)) * angle.size / (angle.size - 1.0)
+        if turns < DRIFT_TURNS * (1.0 - _SLACK):
+            raise InputError(
+                f"gauge.{name}.measured.fit", "drift",
+                f'requires a trace of {DRIFT_TURNS:g} turns ("{part.file}" has {turns:.3g}): fewer do not tell a drift '
+                "from the shape of the curve", "remove drift",
+            )  # fmt: skip
     largest = float(np.abs(strain - np.median(strain)).max())
     if largest > _LARGEST_STRAIN:
         raise InputError(

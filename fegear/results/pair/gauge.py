@@ -225,6 +225,7 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
+        Remark("Gauge {name}: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(
             lambda seen: f"Gauge {seen.name}: the contact comes within {seen.data.clearance:.2f} modules of the grid; "

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent, with_rough_error
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory
@@ -213,6 +213,11 @@ class GaugeData:
         """The same without what its limit is made of."""
         return self._verdict(brief=True)
 
+    @property
+    def drifts(self) -> str:
+        """What the measured strain drifts by where that is not fitted; empty where it does not."""
+        return drift_named(self.compared)
+
     def _verdict(self, *, brief: bool) -> str:
         if self.compared is None or not self.estimated:
             return ""
@@ -276,3 +281,14 @@ def verdict(
         judged += f", {'within' if within else 'beyond'} ±{percent(limits.together)}{limit}"
         judged += "" if within else "; check load, gauge factor and position of the grid"
     return judged if brief else f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"
+
+
+def drift_named(found: FittedCurve | None) -> str:
+    """What a trace drifts by where nobody asked for it, a sentence without a subject; empty where it does not."""
+    if found is None or found.trend_error is None or (drift := found.unfitted_drift) is None:
+        return ""
+    return (
+        f"the measured strain drifts by {with_rough_error(drift * 1e6, found.trend_error * 1e6)} µm/m per turn "
+        f"({figures(drift * found.turns * 1e6)} µm/m over {figures(found.turns)} turns), which falsifies offset and "
+        'residual; add "drift" and "offset" to fit'
+    )

@@ -146,7 +146,7 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
     """Values of a comparison, which stands there; their names begin with the prefix."""
     names = {
         "offset": "measured_offset", "scale": "measured_scale", "shift": "measured_shift", "gain": "measured_gain",
-        "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
+        "drift": "measured_drift", "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
     }  # fmt: skip
 
     def name(quantity: str) -> str:

@@ -21,7 +21,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
-from fegear.results.pair.gauge_data import thinned, verdict
+from fegear.results.pair.gauge_data import drift_named, thinned, verdict
 from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     MEASURED,
@@ -133,6 +133,11 @@ class DynamicStrain:
     def judged(self) -> str:
         """The same without what its limit is made of."""
         return self._verdict(brief=True)
+
+    @property
+    def drifts(self) -> str:
+        """What the measured strain drifts by where that is not fitted; empty where it does not."""
+        return drift_named(self.compared)
 
     def _verdict(self, *, brief: bool) -> str:
         found = self.found
@@ -278,6 +283,7 @@ _SHEET = Sheet(
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
         Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="verdict"),
+        Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
     ),
     sharper_by="",
 )  # fmt: skip
