@@ -226,8 +226,8 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
         if turns < DRIFT_TURNS * (1.0 - _SLACK):
             raise InputError(
                 f"gauge.{name}.measured.fit", "drift",
-                f'requires a trace of {DRIFT_TURNS:g} turns, "{part.file}" has {turns:.3g}: too few to separate a drift '
-                "from the shape of the curve", "remove drift",
+                f'requires a trace of {DRIFT_TURNS:g} turns, "{part.file}" has {turns:.3g}: too few to separate a '
+                "drift from the shape of the curve", "remove drift",
             )  # fmt: skip
     largest = float(np.abs(strain - np.median(strain)).max())
     if largest > _LARGEST_STRAIN:
