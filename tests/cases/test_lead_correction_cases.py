@@ -107,9 +107,10 @@ def test_present_crowning_is_searched_over_and_the_minimum_is_that_of_all_of_the
         ("lead correction, present crowning", "helix slope", rows[0][2]),
         ("lead correction, present crowning", "crowning", pytest.approx(6.0)),
     ]
-    assert said["Pair II"].endswith("with the present crowning of 6 µm (for manufacturing deviations).")
+    assert said["Pair II"].endswith("with the present crowning of 6 µm (for manufacturing deviations) K_Hβ 1.35.")
     assert not any("present crowning" in one for one in corrected.answer.sentences)
-    assert "present crowning is not kept" in " ".join(found.remarks)
+    assert "fall without crowning" in " ".join(found.remarks)
+    assert not any(one.name == "lead_safety" for one in found.tables)  # nothing is rated
 
 
 def test_without_misaligned_flanks_there_is_nothing_to_correct():

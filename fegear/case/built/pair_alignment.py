@@ -75,9 +75,16 @@ def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixM
             neglecting("Lead modification of the gears ignored in K_Hbeta of ISO 6336 because effects.relief is off.")
         )
         return "none"
-    crowned, sloped = any(lead.crowning for lead in leads), any(lead.slope for lead in leads)
+    return modification_of(
+        crowned=any(lead.crowning for lead in leads), sloped=any(lead.slope for lead in leads),
+        end_relief=any(lead.end_relief for lead in leads),
+    )  # fmt: skip
+
+
+def modification_of(*, crowned: bool, sloped: bool, end_relief: bool) -> HelixModification:
+    """The row of the table for flanks of which at least one is crowned, has a helix slope or relieved ends."""
     if sloped:
         return "helix corrected and crowned" if crowned else "helix corrected"
     if crowned:
         return "crowned for manufacture"
-    return "end relief" if any(lead.end_relief for lead in leads) else "none"
+    return "end relief" if end_relief else "none"

@@ -1,7 +1,8 @@
-"""Result ``lead-correction``: helix slope and crowning of each mesh on its shafts, K_Hbeta before and after."""
+"""Result ``lead-correction``: helix slope and crowning of each mesh on its shafts, K_Hbeta and safety factors."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
-from fegear.engine.sheet.rows import Rows
+from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
@@ -27,6 +28,7 @@ from fegear.results.shafts.loaded_shafts import (
     needs_gears_of_meshes,
     shafts_of,
 )
+from fegear.results.shafts.rated_lead import SafetyOfLead, rated_lead, rated_with
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,11 +38,14 @@ if TYPE_CHECKING:
     from fegear.design.flanks.lead_correction import LeadCorrection
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
+    from fegear.results.shafts.rated_lead import RatedLead
 
 #: The design with the corrected slope and the present crowning, where the correction has less.
 _KEPT = "lead correction, present crowning"
 #: Seconds of one search on computed flanks under one load.
 _SEARCH = 5.0
+#: The present lead and the correction; a third one keeps the present crowning.
+_LEADS = 2
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,7 @@ class LeadInputs:
     drivers: tuple[str, ...]
     slopes: tuple[float, ...]
     crownings: tuple[float, ...]
+    rated: tuple[RatedLead | None, ...]
 
 
 @dataclass(frozen=True)
@@ -70,26 +76,31 @@ class GroundLead:
     before: Array = shown("", "K_Hbeta with the present lead", name="K_Hbeta_before", label="K_Hβ")
     after: Array = shown("", "K_Hbeta with the corrected lead", name="K_Hbeta_after", label="K_Hβ")
     left: Array | None = None
-    kept: Array | None = None
     present: float = 0.0
     pair: str = shown("", "gear pair", default="")
     gear: str = shown("", "gear that is corrected", default="")
     slope: float = shown(
         "um", "helix slope modification C_Hbeta: zero at end I, this at end II", name="slope", default=0.0
     )
-    crowning: float = shown("um", "lead crowning C_beta", name="crowning", default=0.0)
+    crowning: float = shown(
+        "um", "lead crowning C_beta of minimum K_Hbeta of the loaded flanks", name="crowning", default=0.0
+    )
+
+    leads: tuple[SafetyOfLead, ...] = ()
 
     @property
     def grinding(self) -> tuple[Grinding, ...]:
         """The whole lead as rows of the grinding table; zero, too, where the present lead is to go."""
-        crownings = {"lead correction": self.crowning}
-        if self.present > self.crowning:
-            crownings[_KEPT] = self.present
         return tuple(
-            Grinding(self.gear, "driver", design, kind, shape, amount)
-            for design, crowning in crownings.items()
-            for kind, shape, amount in ((SLOPE, "linear", self.slope), (CROWNING, "parabolic", crowning))
+            Grinding(self.gear, "driver", lead.design, kind, shape, amount)
+            for lead in self.leads[1:]
+            for kind, shape, amount in ((SLOPE, "linear", lead.slope), (CROWNING, "parabolic", lead.crowning))
         )
+
+    @property
+    def best(self) -> SafetyOfLead:
+        """The lead to grind."""
+        return self.leads[1]
 
 
 def _inputs(scene: Scene, name: str) -> LeadInputs:
@@ -100,7 +111,8 @@ def _inputs(scene: Scene, name: str) -> LeadInputs:
     slopes, crownings = (
         tuple(0.0 if lead is None else float(getattr(lead, key)) for lead in leads) for key in ("slope", "crowning")
     )
-    return LeadInputs(shafts, drivers, slopes, crownings)
+    rows = tuple(rated_lead(scene, mesh.pair) for mesh in shafts.gearbox.meshes)
+    return LeadInputs(shafts, drivers, slopes, crownings, rows)
 
 
 def _compute(inputs: LeadInputs, upstream: Upstream, work: Work) -> LeadData:
@@ -116,46 +128,80 @@ def _compute(inputs: LeadInputs, upstream: Upstream, work: Work) -> LeadData:
 
 def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
     """Of every corrected mesh, the one that gains most first."""
-    rows = zip(data.pairs, data.radii, data.found, asked.drivers, asked.crownings, strict=True)
+    rows = zip(
+        data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, asked.rated, strict=True
+    )
     made = [
         GroundLead(
-            one.loads * radius, one.before, one.after, one.left, one.kept, crowning, pair, gear, one.slope, one.crowning
+            one.loads * radius, one.before, one.after, one.left, crowning, pair, gear, one.slope, one.crowning,
+            _leads(pair, one, (slope, crowning), lead),
         )
-        for pair, radius, one, gear, crowning in rows
+        for pair, radius, one, gear, slope, crowning, lead in rows
         if one is not None
-    ]
+    ]  # fmt: skip
     return sorted(made, key=lambda one: float(one.after[-1] - one.before[-1]))
+
+
+def _leads(
+    pair: str, found: LeadCorrection, present: tuple[float, float], rated: RatedLead | None
+) -> tuple[SafetyOfLead, ...]:
+    """The present lead and those that can be ground, the one with the higher safety factor for pitting first."""
+    rows = [
+        SafetyOfLead(pair, "present", *present, float(found.before[-1])),
+        SafetyOfLead(pair, "lead correction", found.slope, found.crowning, float(found.after[-1])),
+    ]
+    if present[1] > found.crowning:
+        rows.append(SafetyOfLead(pair, _KEPT, found.slope, present[1], float(found.kept[-1])))
+    if rated is not None:
+        rows = [rated_with(rated, row) for row in rows]
+    if len(rows) > _LEADS and rows[2].contact > rows[1].contact:
+        rows[1:] = rows[2], rows[1]
+    return tuple(rows)
 
 
 def _sentences(seen: Seen) -> Iterator[str]:
     for one in seen.data:
-        slope, crowning = figures(one.slope * 1e6), figures(one.crowning * 1e6)
-        kept = ""
-        if one.kept is not None and one.present != one.crowning:
-            kept = f", {one.kept[-1]:.2f} with the present crowning of {figures(one.present * 1e6)} µm"
-            kept += " (for manufacturing deviations)" if one.present > one.crowning else ""
+        slope, best, other = figures(one.slope * 1e6), one.best, ""
+        kept = " (the present one)" if best.crowning and best.crowning == one.present else ""
+        if len(one.leads) > _LEADS:
+            rest = one.leads[2]
+            crowned = f"a crowning of {figures(rest.crowning * 1e6)} µm"
+            if rest.design == _KEPT:
+                crowned = f"the present crowning of {figures(one.present * 1e6)} µm (for manufacturing deviations)"
+            other = f"; with {crowned} K_Hβ {rest.flanks:.2f}{_safeties(rest)}"
         yield (
-            f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of {crowning} µm on gear "
-            f"{one.gear}: K_Hβ {one.before[-1]:.2f} -> {one.after[-1]:.2f} at {figures(one.torque[-1])} N m{kept}."
+            f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of "
+            f"{figures(best.crowning * 1e6)} µm{kept} on gear {one.gear}: K_Hβ {one.before[-1]:.2f} -> "
+            f"{best.flanks:.2f} at {figures(one.torque[-1])} N m{_safeties(best, one.leads[0])}{other}."
         )
+
+
+def _safeties(after: SafetyOfLead, before: SafetyOfLead | None = None) -> str:
+    """S_H and S_F, those before first where they are given; empty where the mesh is not rated."""
+    said = ""
+    for symbol, key in (("S_H", "contact"), ("S_F", "bending")):
+        value = getattr(after, key)
+        if math.isfinite(value):
+            said += f", {symbol} {'' if before is None else f'{getattr(before, key):.2f} -> '}{value:.2f}"
+    return said
 
 
 def _remarks(seen: Seen) -> Iterator[str]:
     yield (
-        "Lead correction: for the deflections of shafts, bearings and housing only; the crowning is the total one, "
-        "present crowning is not kept: add the crowning that manufacturing deviations require. S_H and S_F include "
-        "these deviations (f_ma, ISO 6336-1) and may fall with less crowning; "
-        f'fegear apply --relief "{_KEPT}" keeps the present one.'
+        "Lead correction: slope and crowning are the total ones, for the deflections of shafts, bearings and housing "
+        "only. S_H and S_F include manufacturing deviations (f_ma, ISO 6336-1) and fall without crowning. "
+        'fegear apply writes the first design of the grinding table, that with the higher S_H; --relief "NAME" another.'
     )
     yield (
         "Lead correction: K_Hbeta before and after is that of the loaded flanks at nominal load. Not that of S_H and "
         "S_F (K_Hbeta_rated, ISO 6336-1 with manufacturing deviations) nor K_Hbeta_iso (linear part of the gap only)."
     )
     if seen.data:
+        best = seen.data[0].best
         yield (
             "Lead correction: amounts are multiples of 0.5 um, over the face of the driver; to check them use "
-            f'fegear apply, or set gear.{seen.data[0].gear}.lead slope = "{seen.data[0].slope * 1e6:.3g} um" and '
-            f'crowning = "{seen.data[0].crowning * 1e6:.3g} um", and effects.relief = true.'
+            f'fegear apply, or set gear.{seen.data[0].gear}.lead slope = "{best.slope * 1e6:.3g} um" and '
+            f'crowning = "{best.crowning * 1e6:.3g} um", and effects.relief = true.'
         )
     left = max((float(one.left.max()) for one in seen.data), default=0.0)
     if left > _SETTLED:
@@ -165,6 +211,17 @@ def _remarks(seen: Seen) -> Iterator[str]:
 #: K_Hbeta that changes by less from one round to the next has settled.
 _SETTLED = 0.02
 
+
+def _known(key: str) -> Cell:
+    """A column that is there where one of its numbers is known."""
+
+    def numbers(seen: Seen) -> list[float] | None:
+        found = [float(getattr(lead, key)) for one in seen.data for lead in one.leads]
+        return found if any(map(math.isfinite, found)) else None
+
+    return Cell(key, numbers)
+
+
 _SHEET = Sheet(
     answer=Answer(_sentences, figure=lambda seen: f"lead_correction_{seen.data[0].pair}" if seen.data else ""),
     of=_ground,
@@ -173,6 +230,12 @@ _SHEET = Sheet(
         Rows(
             "lead_correction", "Lead correction for grinding",
             ("pair", "gear", "slope", "crowning", "torque", "before", "after"), stacked="",
+        ),
+        Rows(
+            "lead_safety", "Safety factors before and after lead correction",
+            ("pair", "design", "slope", "crowning", "flanks", *map(_known, ("factor", "contact", "bending"))),
+            of=lambda seen: [lead for one in seen.data for lead in one.leads],
+            when=lambda seen: any(math.isfinite(lead.contact) for one in seen.data for lead in one.leads),
         ),
         grinding_table(OF_LEADS + "{one.pair}", "Lead to grind on gear {one.gear} in pair {one.pair}", "grinding", ""),
     ),

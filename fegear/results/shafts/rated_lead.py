@@ -1,0 +1,118 @@
+"""Safety factors of a mesh by ISO 6336 with another lead of its driver: K_Hbeta by method C follows its modification.
+
+What a lead does to S_H and S_F is twofold in ISO 6336-1: a helix slope takes most of the shafts' misalignment off, and
+crowning half of that from manufacture. A correction without the present crowning may thus lower both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.base.shown import shown
+from fegear.case.built.pair_alignment import modification_of
+from fegear.case.halves import halves_share
+from fegear.case.set_pairs import set_that_shares
+from fegear.results.rating.rating import RATING, given, rated
+
+if TYPE_CHECKING:
+    from fegear.case.built.rated_pair import PairToRate
+    from fegear.case.operation import HelixModification
+    from fegear.case.reading import Scene
+
+
+@dataclass(frozen=True)
+class RatedLead:
+    """A mesh to be rated with another lead of its driver.
+
+    Parameters
+    ----------
+    asked : PairToRate
+        With the present lead.
+    crowned, sloped : bool
+        Whether the lead of the driven gear is.
+    end_relief : bool
+        Whether either gear has one.
+    stated : HelixModification or None
+        What the case says of the flanks in place of their lead.
+    """
+
+    asked: PairToRate
+    crowned: bool
+    sloped: bool
+    end_relief: bool
+    stated: HelixModification | None
+
+    def modification(self, slope: float, crowning: float) -> HelixModification:
+        """What this lead of the driver makes of the flanks [m]."""
+        if self.stated is not None:
+            return self.stated
+        return modification_of(
+            crowned=self.crowned or bool(crowning), sloped=self.sloped or bool(slope), end_relief=self.end_relief
+        )
+
+
+@dataclass(frozen=True)
+class SafetyOfLead:
+    """A mesh with one lead of its driver; NaN where it is not rated."""
+
+    pair: str = shown("", "gear pair")
+    design: str = shown("", "lead of the driver: present, or as a design of the grinding table")
+    slope: float = shown("um", "helix slope modification C_Hbeta: zero at end I, this at end II")
+    crowning: float = shown("um", "lead crowning C_beta")
+    flanks: float = shown("", "K_Hbeta of the loaded flanks at nominal load", name="K_Hbeta")
+    factor: float = shown("", "K_Hbeta of the rating (ISO 6336-1, with manufacturing deviations)",
+                          name="K_Hbeta_rated", default=math.nan)  # fmt: skip
+    contact: float = shown("", "lower safety factor for pitting of both gears, ISO 6336-2", name="S_H",
+                           default=math.nan)  # fmt: skip
+    bending: float = shown("", "lower safety factor for tooth breakage of both gears, ISO 6336-3", name="S_F",
+                           default=math.nan)  # fmt: skip
+
+
+def rated_lead(scene: Scene, pair: str) -> RatedLead | None:
+    """What the rating of a mesh takes; None where it is not rated, or its load is shared with other meshes."""
+    from fegear.case.built.rated_pair import pair_to_rate
+
+    if set_that_shares(scene.case, pair) or halves_share(scene.case, pair):
+        return None
+    try:
+        if RATING.check is not None:
+            RATING.check(scene, pair)
+        asked = pair_to_rate(scene, pair)
+    except InputError:
+        return None
+    part, counts = scene.case.pair[pair], scene.case.effects.relief
+    leads = [scene.case.gear[gear].lead if counts else None for gear in (part.driver, part.driven)]
+    ends = any(lead is not None and lead.end_relief for lead in leads)
+    driven, stated = leads[1], part.shafts.modification if part.shafts else None
+    return RatedLead(
+        asked, driven is not None and bool(driven.crowning), driven is not None and bool(driven.slope), ends, stated
+    )
+
+
+def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
+    """The row with the lower safety factors of both gears, under the load spectrum where there is one."""
+    from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
+
+    asked = lead.asked
+    alignment = replace(asked.conditions.alignment, modification=lead.modification(row.slope, row.crowning))
+    asked = replace(asked, conditions=replace(asked.conditions, alignment=alignment))
+    try:
+        conditions, own = rated(asked), given(asked)
+        found = rate_pair(conditions, own)
+        contact, bending = found.contact_safety, found.bending_safety
+        if asked.levels:
+            levels = [
+                (
+                    replace(conditions.duty, tangential=level.tangential, speed=level.speed)
+                    if level.tangential else None, level.cycles,
+                )
+                for level in asked.levels
+            ]  # fmt: skip
+            spectrum = rate_spectrum(conditions, levels, own)
+            contact, bending = spectrum.contact_safety, spectrum.bending_safety
+    except InputError:
+        return row
+    return replace(row, factor=found["K_Hbeta"].value, contact=min(contact), bending=min(bending))

@@ -1,0 +1,89 @@
+"""Safety factors of meshes with another lead: those of a fresh case; the design with the higher one is first."""
+
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.built.rated_pair import pair_to_rate
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.text import draft
+from fegear.case.reading import build_scene
+from fegear.design.flanks.lead_correction import LeadCorrection
+from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
+from fegear.results.rating.rating import given, rated
+from fegear.results.shafts.lead_correction import _leads
+from fegear.results.shafts.rated_lead import SafetyOfLead, rated_lead, rated_with
+
+LEADS = ((0.0, 3e-6), (-4e-6, 0.0), (-4e-6, 3e-6), (0.0, 0.0))
+
+
+def drafted(*, driven=None, spectrum=False):
+    case = tomllib.loads(draft(Answers("gearbox", {"teeth": "21 53"}), "box"))
+    if driven is not None:
+        case["gear"]["wheel"]["lead"] = driven
+    if spectrum:
+        levels = [{"torque": "190 N*m", "time": "100 h"}, {"torque": "0 N*m", "time": "20 h"}]
+        case["pair"]["I"]["operation"].pop("life")
+        case["pair"]["I"]["operation"]["spectrum"] = levels
+    return case
+
+
+def scene_of(case):
+    return build_scene(case, "box", Path())
+
+
+def row(slope, crowning):
+    return SafetyOfLead("I", "lead correction", slope, crowning, 1.1)
+
+
+@pytest.mark.parametrize("driven", [None, {"crowning": "4 um"}, {"end_relief": {"amount": "5 um", "length": "3 mm"}}])
+def test_safety_factors_are_those_of_a_fresh_case_with_the_lead(driven):
+    case = drafted(driven=driven)
+    lead = rated_lead(scene_of(case), "I")
+    for slope, crowning in LEADS:
+        case["gear"]["pinion"]["lead"] = {"slope": f"{slope * 1e6} um", "crowning": f"{crowning * 1e6} um"}
+        asked = pair_to_rate(scene_of(case), "I")
+        fresh, found = rate_pair(rated(asked), given(asked)), rated_with(lead, row(slope, crowning))
+        assert found.factor == pytest.approx(fresh["K_Hbeta"].value, rel=1e-12)
+        assert found.contact == pytest.approx(min(fresh.contact_safety), rel=1e-12)
+        assert found.bending == pytest.approx(min(fresh.bending_safety), rel=1e-12)
+
+
+def test_what_the_case_says_of_the_flanks_stays_and_what_is_not_rated_has_no_safety_factors():
+    case = drafted()
+    case["pair"]["I"]["operation"]["face_load_factor"] = 1.3
+    lead = rated_lead(scene_of(case), "I")
+    assert {rated_with(lead, row(*one)).factor for one in LEADS} == {1.3}
+    case["gear"]["wheel"].pop("strength")
+    assert rated_lead(scene_of(case), "I") is None
+
+
+def test_under_a_spectrum_the_safety_factors_are_those_of_the_spectrum():
+    scene = scene_of(drafted(spectrum=True))
+    lead, found = rated_lead(scene, "I"), []
+    asked = pair_to_rate(scene, "I")
+    conditions = rated(asked)
+    for one in LEADS[:2]:
+        found.append(rated_with(lead, row(*one)))
+    duty = conditions.duty
+    levels = [(None if not one.tangential else duty, one.cycles) for one in asked.levels]
+    whole = rate_spectrum(conditions, levels, given(asked))
+    assert found[0].contact == pytest.approx(min(whole.contact_safety), rel=1e-9)
+    assert found[1].contact < found[0].contact
+
+
+def test_the_design_with_the_higher_safety_factor_is_first():
+    one = np.ones(1)
+    found = LeadCorrection(-4e-6, 0.0, one, 1.2 * one, 1.05 * one, 0.0 * one, 1.15 * one)
+    lead = rated_lead(scene_of(drafted()), "I")
+    kept = "lead correction, present crowning"
+    designs = [row.design for row in _leads("I", found, (0.0, 3e-6), lead)]
+    assert designs == ["present", kept, "lead correction"]  # f_ma counts for half with crowning
+    unrated = _leads("I", found, (0.0, 3e-6), None)
+    assert [row.design for row in unrated] == ["present", "lead correction", kept]
+    assert [row.flanks for row in unrated] == [1.2, 1.05, 1.15]
+    assert all(math.isnan(row.contact) for row in unrated)
+    assert len(_leads("I", found, (0.0, 0.0), lead)) == 2
