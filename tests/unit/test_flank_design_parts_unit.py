@@ -61,6 +61,7 @@ class Best:
     relief: GroundRelief
     valleys: tuple
     made: tuple
+    grid: str = ""
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def steps(monkeypatch):
         number = 1e-6 * (1 + list(FAMILIES).index(family))
         tips, leads = (number, 1e-3) if "profile" in family else (0.0, 0.0), number if "profile" not in family else 0.0
         valleys = tuple(GroundRelief(*(k * v for v in tips), crowning=k * leads) for k in (1, 2))
-        return Best(family, valleys[0], valleys, ("best", family, trials.scatter.over_face.size))
+        return Best(family, valleys[0], valleys, ("best", family, trials.scatter.over_face.size), grid)
 
     def led_on(trials, one, grid, start, most):
         calls["led_on"].append((trials, one, grid, start, most))

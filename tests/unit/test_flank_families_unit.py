@@ -14,7 +14,8 @@ from fegear.design.flanks.families import best_of_family, led_on
 from fegear.design.flanks.forms import GroundRelief
 
 LOW, HIGH = np.zeros(9), np.arange(1000.0, 1009.0)
-GRID = SimpleNamespace(limits=lambda family: (LOW, HIGH))
+GRID = SimpleNamespace(limits=lambda family: (LOW, HIGH), at_ends=lambda family, at: {})
+GRID.widened = lambda family, at: GRID
 
 
 def numbered(i):
@@ -166,3 +167,31 @@ def test_a_start_whose_factor_is_too_large_is_left_out(search):
     assert led_on(trials, found, GRID, GroundRelief.of(numbered(2)), 1.2) is found
     assert len(calls.descents) == before
     assert led_on(trials, found, GRID, GroundRelief.of(numbered(2)), 1.3).value == 1.0
+
+
+def test_the_search_goes_on_in_a_wider_box_as_long_as_that_gains(monkeypatch):
+    """A relief that leaves 10 - amount + the amount beyond 4.5: its least is past the second widening."""
+    boxes, least = [], [0.0]
+
+    def box(most):
+        grid = SimpleNamespace(reach={"driver_tip": (0.0, most)})
+        grid.limits = lambda family: (np.zeros(9), np.full(9, most))
+        grid.at_ends = lambda family, at: {"driver_tip": True} if at[0] >= most else {}
+        grid.widened = lambda family, at: box(2.0 * most) if at[0] >= most else grid
+        return grid
+
+    def valleys(few, more, places, limits, most_factor):
+        boxes.append(limits[1][0])
+        at = np.full(9, min(limits[1][0], least[0]))
+        return [(10.0 - at[0], at)]
+
+    monkeypatch.setattr(families, "quick_flanks", lambda *given: "quick")
+    monkeypatch.setattr(families, "quick_values", lambda *given: (np.zeros((1, 9)), np.array([10.0]), np.ones(1)))
+    monkeypatch.setattr(families, "deepest_valleys", valleys)
+    for least[0], widest, value, ends in (
+        (4.5, 8.0, 5.5, {}), (2.0, 2.0, 8.0, {}), (2.01, 2.0, 8.0, {}), (100.0, 8.0, 2.0, {"driver_tip": True})
+    ):  # fmt: skip
+        boxes.clear()
+        found = best_of_family(Trials([10.0]), "lead", box(1.0), "force")
+        assert (found.value, found.at_ends, found.grid.reach["driver_tip"][1]) == (value, ends, widest)
+    assert boxes == [1.0, 2.0, 4.0, 8.0]

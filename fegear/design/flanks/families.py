@@ -3,13 +3,14 @@
 Every combination is loaded with `QuickFlanks`; the best are loaded exactly, in the order of what the quick way found,
 until the next is so much above the least found that no error of the quick way seen so far could make up for it. The
 least of the grid is thereby known, not guessed. From the best of them that lie apart, and from further starts, valleys
-within the box of the grid are searched (`fegear.design.flanks.valleys`).
+within the box of the grid are searched (`fegear.design.flanks.valleys`). Where the best lies at an end of the box that
+may be moved, the box is widened and the search goes on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,6 +30,9 @@ _LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 60, 5
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05
 
+#: How often a box is widened at most, and the gain, over the value, below which a wider one is not worth it.
+_WIDENINGS, _WORTH_WIDENING = 3, 2e-3
+
 
 @dataclass(frozen=True, slots=True)
 class FamilyBest:
@@ -45,6 +49,10 @@ class FamilyBest:
         What this one leaves, see `FlankTrials.value` [m].
     valleys : tuple of GroundRelief
         It and the next best that were found, in other valleys or in the same.
+    grid : ReliefGrid
+        In whose box it was found, which may be wider than that of the grid that was tried.
+    at_ends : mapping of str to bool, optional
+        Which of its numbers lie at an end of the box, past which there may be better ones, and whether at the upper.
     """
 
     family: Family
@@ -52,6 +60,7 @@ class FamilyBest:
     relief: GroundRelief
     value: float
     valleys: tuple[GroundRelief, ...]
+    grid: ReliefGrid
     candidates: int = shown("", "number of combinations evaluated", name="combinations")
     exact: int = shown("", "computed exactly", name="loaded_exactly")
     value_on_grid: float = shown(
@@ -61,6 +70,7 @@ class FamilyBest:
         "um", "largest observed overestimate of the approximate method used to screen the combinations"
     )
     proven: bool = shown("", "1: optimum on the grid proven")
+    at_ends: Mapping[str, bool] = field(default_factory=dict)
 
 
 def quick_values(
@@ -150,10 +160,21 @@ def best_of_family(
     valleys = deepest_valleys(few, trials, places, box, most_factor)
     if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
         valleys = [(trials.value(trials.of_numbers(on_grid).peak_to_peak), on_grid)]
+    at_ends = grid.at_ends(family, valleys[0][1])
+    for _ in range(_WIDENINGS):
+        wider = grid.widened(family, valleys[0][1])
+        if wider is grid:
+            break
+        further = deepest_valleys(few, trials, [at for _, at in valleys], wider.limits(family), most_factor)
+        if not further or further[0][0] > (1.0 - _WORTH_WIDENING) * valleys[0][0]:  # nothing better past these ends
+            at_ends = {name: at_ends[name] for name in at_ends if wider.reach.get(name) == grid.reach.get(name)}
+            break
+        grid, valleys = wider, further
+        at_ends = grid.at_ends(family, valleys[0][1])
     reliefs = tuple(trials.relief(at) for _, at in valleys)
     return FamilyBest(
-        family, trials.relief(on_grid), reliefs[0], valleys[0][0], reliefs, found.candidates, found.exact,
-        left_on_grid, found.error, found.proven,
+        family, trials.relief(on_grid), reliefs[0], valleys[0][0], reliefs, grid, found.candidates, found.exact,
+        left_on_grid, found.error, found.proven, at_ends,
     )  # fmt: skip
 
 
@@ -216,4 +237,6 @@ def led_on(
     if not keeps(tried, most_factor):
         return best
     value, at = descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
-    return replace(best, relief=trials.relief(at), value=value) if value < best.value else best
+    if value >= best.value:
+        return best
+    return replace(best, relief=trials.relief(at), value=value, at_ends=grid.at_ends(best.family, at))

@@ -320,11 +320,13 @@ def design_flanks(
     for number, family in enumerate(wanted):
         starts = _starts([found[held] for held in held_by(family) if held in found])
         found[family] = best_of_family(more, family, grid, force, task.most_factor, starts, few)
+        grid = found[family].grid  # what a family needs, those that hold it need, too
         report(0.3 + 0.4 * (number + 1) / len(wanted))
     if wanted and task.scatter.over_face.size > 1:
         starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
         scattered, scan = (replace(one, scatter=task.scatter) for one in (more, few))
         found[ROBUST] = best_of_family(scattered, wanted[-1], grid, force, task.most_factor, starts, scan)
+        grid = found[ROBUST].grid
         # One start more: where scattered misalignment leads may be the better valley without it, too.
         found[wanted[-1]] = led_on(more, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
     report(0.8)

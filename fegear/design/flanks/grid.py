@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from fegear.base.arrays import Array, Index
-from fegear.design.flanks.forms import NUMBERS
+from fegear.design.flanks.forms import LENGTHS, NUMBERS
 
 Family = Literal["profile", "lead", "crowning-and-end-relief", "profile-and-lead", "profile-lead-and-bias"]
 
@@ -31,6 +32,9 @@ GROUPS: Mapping[str, tuple[int, ...]] = {
 
 #: Amounts that tell the valleys of tip reliefs apart, over the mean transmission error; so many lengths do.
 TIP_AMOUNTS, _TIP_LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), 7
+
+#: Where a number is as good as at an end of the box, over the extent of the box.
+_AT_END = 1e-3
 
 
 def held_by(family: Family) -> tuple[Family, ...]:
@@ -53,8 +57,10 @@ class ReliefGrid:
         Of the end relief [m].
     slopes, biases : tuple of float
         [m].
-    tip_reach : tuple of float, optional
-        Shortest and longest tip relief that a descent may lead to where these are beyond the lists [m].
+    reach : mapping of str to (float, float), optional
+        Least and largest of some of the nine numbers that a descent may lead to where these are beyond the lists [m].
+    utmost : mapping of str to (float, float), optional
+        How far `reach` may be widened where the best lies at an end of it [m]; not at all by default.
     """
 
     tip_amounts: tuple[float, ...]
@@ -64,7 +70,8 @@ class ReliefGrid:
     end_lengths: tuple[float, ...]
     slopes: tuple[float, ...]
     biases: tuple[float, ...]
-    tip_reach: tuple[float, ...] = ()
+    reach: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    utmost: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def choices(self, group: str) -> Array:
         """What a group of numbers may be, the first of them nothing, shape (n, numbers of the group)."""
@@ -84,11 +91,40 @@ class ReliefGrid:
             values = self.choices(group)
             for column, number in enumerate(GROUPS[group]):
                 seen = values[1:, column] if column else values[:, column]
-                if column and seen.size and group in ("driver_tip", "driven_tip"):
-                    seen = np.append(seen, self.tip_reach)
+                if values.shape[0] > 1:
+                    seen = np.append(seen, self.reach.get(NUMBERS[number], ()))
                 if seen.size:
                     low[number], high[number] = seen.min(), seen.max()
         return low, high
+
+    def at_ends(self, family: Family, numbers: Array) -> dict[str, bool]:
+        """Which numbers of a modification lie at an end of the box, and whether at its upper one.
+
+        What is not ground lies at none, and neither do lengths of it.
+        """
+        low, high = self.limits(family)
+        slack = _AT_END * (high - low)
+        ground = np.abs(numbers) > slack
+        for amount, length in LENGTHS.items():
+            ground[NUMBERS.index(length)] &= ground[NUMBERS.index(amount)]
+        upper = numbers >= high - slack
+        at = np.flatnonzero((high > low) & ground & (upper | (numbers <= low + slack)))
+        return {NUMBERS[k]: bool(upper[k]) for k in at}
+
+    def widened(self, family: Family, numbers: Array) -> ReliefGrid:
+        """The grid with a box twice as wide past every end at which a modification lies; itself where none may be."""
+        low, high = self.limits(family)
+        reach = dict(self.reach)
+        for name, upper in self.at_ends(family, numbers).items():
+            k = NUMBERS.index(name)
+            least, most = self.utmost.get(name, (low[k], high[k]))
+            span = float(high[k] - low[k])
+            wide = (float(low[k]), min(most, float(high[k]) + span)) if upper else (
+                max(least, float(low[k]) - span), float(high[k])
+            )  # fmt: skip
+            if wide[1] - wide[0] > (1.0 + _AT_END) * span:
+                reach[name] = wide
+        return self if reach == self.reach else replace(self, reach=reach)
 
     def finer_tips(self) -> ReliefGrid:
         """Tip reliefs only, over the same box, with more amounts and lengths where there are few."""
@@ -132,5 +168,10 @@ def usual_grid(depth: float, path: float, face: float, base_pitch: float) -> Rel
         end_lengths=tuple(face * f for f in (0.15, 0.35)),
         slopes=tuple(depth * f for f in (-0.1, 0.1)),
         biases=tuple(depth * f for f in (-1.0, -0.4, 0.4, 1.0)),
-        tip_reach=(0.1 * path, path),
+        reach=dict.fromkeys(("driver_tip_length", "driven_tip_length"), (0.1 * path, path)),
+        utmost={
+            **dict.fromkeys(("driver_tip", "driven_tip", "crowning", "end_relief"), (0.0, math.inf)),
+            **dict.fromkeys(("slope", "bias"), (-math.inf, math.inf)),
+            "end_relief_length": (0.05 * face, 0.5 * face),
+        },
     )  # fmt: skip

@@ -74,8 +74,10 @@ def _grid(part: FlankDesignPart) -> ReliefGrid | None:
     if part.grid is None:
         return None
     g = part.grid
-    lists = (g.tip_amounts, g.tip_lengths, g.crownings, g.end_amounts, g.end_lengths, g.slopes, g.biases)
-    return ReliefGrid(*(tuple(values) for values in lists))
+    return ReliefGrid(
+        tuple(g.tip_amounts), tuple(g.tip_lengths), tuple(g.crownings), tuple(g.end_amounts), tuple(g.end_lengths),
+        tuple(g.slopes), tuple(g.biases),
+    )  # fmt: skip
 
 
 def _task(

@@ -19,6 +19,7 @@ from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.flank_design_data import FlanksShown
+from fegear.results.relief.flank_design_ends import end_notes
 from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.lead_charts import lead_k_chart
@@ -27,6 +28,7 @@ from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
+    from fegear.base.notes import Note
     from fegear.design.flanks.flank_design import FlankState
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.grinding import Grinding
@@ -253,6 +255,13 @@ def _scattered(seen: Seen) -> Iterator[str]:
     yield f"{said}."
 
 
+def _ends(seen: Seen) -> Iterator[Note]:
+    """Ends of what was searched at which that to be ground lies, and what leaves the least."""
+    design = seen.data.design
+    for label in dict.fromkeys(state.label for state in (*design.chosen, design.least)):
+        yield from end_notes(f"Pair {seen.name}, {label}", design.found[label], seen.data.data.pair, seen.asked.gears)
+
+
 _UNDER = "{d.load:said}"
 
 FLANK_DESIGN_SHEET = Sheet(
@@ -367,6 +376,7 @@ FLANK_DESIGN_SHEET = Sheet(
     ),
     remarks=(
         Remark(_keys, each="design.chosen"),
+        _ends,
         Remark(
             lambda seen: assuming(
                 f"Pair {seen.name}: designed for {seen.asked.misaligned} with its sign; with the opposite sign or none "
