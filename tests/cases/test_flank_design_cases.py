@@ -74,6 +74,9 @@ def test_what_is_left_is_told(outcome):
     assert value(outcome, "no_relief.te_peak_to_peak").value == left["no relief"]
     assert (rows["combinations"][2:] > 0).all()
     assert rows["proven"].min() == 1.0
+    error = rows["quick_error [um]"]  # nothing was searched for where nothing is ground, or exactly that
+    assert np.isnan(error[:2]).all()
+    assert (error[2:] >= 0.0).all()
     assert (rows["te_mean_over_scatter [um]"] >= 0.9 * rows["te_peak_to_peak [um]"]).all()
     assert (rows["te_p95_over_scatter [um]"] >= rows["te_mean_over_scatter [um]"]).all()
     for head in ("te_peak_to_peak", "K_Hbeta", "hertz_pressure"):

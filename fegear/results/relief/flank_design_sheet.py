@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -275,7 +276,7 @@ FLANK_DESIGN_SHEET = Sheet(
             (
                 "relief", *(column for key in _JUDGED for column in _judged(key)), *map(_ground, _GROUND),
                 _searched("candidates"), _searched("exact"), _searched("value_on_grid", 0.0),
-                _searched("quick_error", 0.0),
+                _searched("quick_error", math.nan),
                 Cell("proven", lambda seen: [float(way.best is None or way.best.proven) for way in seen.data.ways],
                      lambda seen: next(iter(seen.data.design.found.values()))),
             ),
