@@ -191,7 +191,7 @@ class ErrorOverPitch(Brief):
         """Under each load, shape (L,) [N m]."""
         return self.total_load * self.pair.driver.base_radius
 
-    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False, under: int | None = None) -> Array:
         """Mesh stiffness at rotations of the driver under the nominal load, for equations of motion.
 
         Parameters
@@ -200,22 +200,24 @@ class ErrorOverPitch(Brief):
             As `driver_angle`: zero where the tooth pair is at the pitch point [rad]; any number of turns.
         secant : bool
             Load over transmission error in place of the slope dF/dTE.
+        under : int, optional
+            Number of another load.
 
         Returns
         -------
         ndarray
             Periodic over a tooth of the driver, straight between the rows of the curve [N/m].
         """
-        return self._over_rotation(self.mesh_stiffness if secant else self.local_stiffness, driver_angle)
+        return self._over_rotation(self.mesh_stiffness if secant else self.local_stiffness, driver_angle, under)
 
-    def error(self, driver_angle: ArrayLike) -> Array:
+    def error(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:
         """Transmission error at rotations of the driver under the nominal load [m], as `stiffness`."""
-        return self._over_rotation(self.te, driver_angle)
+        return self._over_rotation(self.te, driver_angle, under)
 
-    def _over_rotation(self, values: Array, driver_angle: ArrayLike) -> Array:
+    def _over_rotation(self, values: Array, driver_angle: ArrayLike, under: int | None) -> Array:
         x = np.asarray(driver_angle, dtype=float) * self.pair.driver.base_radius
         part = (x - self.x[0]) / self.pair.base_pitch % 1.0
-        return over_pitch(self.x, values[:, self.at], self.pair.base_pitch, part)
+        return over_pitch(self.x, values[:, self.at if under is None else under], self.pair.base_pitch, part)
 
     @property
     def harmonics(self) -> Harmonics:

@@ -1,8 +1,8 @@
-"""Mesh stiffness and transmission error of a run as functions of the rotation of the driver."""
+"""Mesh stiffness and transmission error of a run as functions of the rotation of the driver, under one of its loads."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
 
 import numpy as np
 
@@ -16,33 +16,46 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.engine.run import Results
+    from fegear.workbench.quantities import Quantity
 
 #: Stages whose data hold such curves; over a revolution before over a tooth, as it has the odd teeth.
 _STAGES = ("mesh-stiffness-revolution", "transmission-error")
+#: Torques nearer than this, over one of them, are the same.
+_SAME = 1e-6
+Kind = Literal["tangent", "secant"]
 
 
 class MeshCurve(Protocol):
     """Periodic in the rotation of the driver [rad]."""
 
-    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False, under: int | None = None) -> Array:
         """[N/m]."""
 
-    def error(self, driver_angle: ArrayLike) -> Array:
+    def error(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:
         """[m]."""
+
+    @property
+    def driver_torque(self) -> Array:
+        """Of the loads, shape (L,) [N m]."""
 
 
 class _OverRevolution:
-    """The same of a curve over a revolution."""
+    """The same of a curve over a revolution, which is that under the nominal load."""
 
     def __init__(self, found: Any) -> None:
         self._found = found
 
-    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False) -> Array:
+    @property
+    def driver_torque(self) -> Array:
+        """Of its one load, shape (1,) [N m]."""
+        return np.array([self._found.load * self._found.driver_base_radius])
+
+    def stiffness(self, driver_angle: ArrayLike, *, secant: bool = False, under: int | None = None) -> Array:  # noqa: ARG002  (it has one load)
         """[N/m]."""
         found: Array = self._found.stiffness_at(driver_angle, secant=secant)
         return found
 
-    def error(self, driver_angle: ArrayLike) -> Array:
+    def error(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:  # noqa: ARG002  (it has one load)
         """[m]."""
         found: Array = self._found.error_at(driver_angle)
         return found
@@ -80,6 +93,43 @@ def curve_of(results: Results, pair: str) -> MeshCurve:
     if name not in known:
         raise InputError("pair", shown(name), "has no mesh stiffness in these results", nearest(name, known))
     return known[name]
+
+
+def load_number(curve: MeshCurve, torque: object) -> int | None:
+    """Number of the load of a curve with this torque on the driver; None for the nominal one.
+
+    Raises
+    ------
+    InputError
+        If it was not computed.
+    """
+    if torque is None:
+        return None
+    wanted, known = in_si(cast("Quantity", torque), "torque", "torque"), curve.driver_torque
+    near = int(np.argmin(np.abs(known - wanted)))
+    if abs(known[near] - wanted) > _SAME * known[near]:
+        raise InputError(
+            "torque", f"{wanted:.6g} N*m", "is not a torque on the driver that was computed",
+            f"use one of {', '.join(f'{one:.6g}' for one in known)} N*m",
+        )  # fmt: skip
+    return near
+
+
+def is_secant(kind: object, *, secant: bool) -> bool:
+    """Whether the secant stiffness is meant.
+
+    Raises
+    ------
+    InputError
+        If the kind is unknown, or contradicts `secant`.
+    """
+    if kind is None:
+        return secant
+    if kind not in ("tangent", "secant"):
+        raise InputError("kind", shown(kind), 'must be "tangent" (slope dF/dTE) or "secant" (load over deflection)')
+    if secant and kind == "tangent":
+        raise InputError("kind", '"tangent"', "contradicts secant = True", "remove secant")
+    return kind == "secant"
 
 
 def angles_of(value: object) -> Array:

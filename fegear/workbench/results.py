@@ -22,7 +22,7 @@ from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
 from fegear.workbench.given import folder_of, texts
-from fegear.workbench.mesh_curve import angles_of, curve_of
+from fegear.workbench.mesh_curve import angles_of, curve_of, is_secant, load_number
 from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.workbench.mesh_curve import Kind
+    from fegear.workbench.quantities import Torque
 
 
 #: Sentences and values that the short form shows, values at least, and characters of a remark.
@@ -193,8 +195,15 @@ class Results(Found):
         """
         return Plots(tuple(self.figures[name] for name in names) if names else tuple(self.figures))
 
-    def mesh_stiffness(self, driver_angle: ArrayLike, pair: str = "", *, secant: bool = False) -> Array:
-        """Mesh stiffness at rotations of the driver under the nominal load, for equations of motion.
+    def mesh_stiffness(
+        self, driver_angle: ArrayLike, pair: str = "", *, kind: Kind | None = None, torque: Torque | None = None,
+        secant: bool = False,
+    ) -> Array:  # fmt: skip
+        """Mesh stiffness at rotations of the driver, for equations of motion: by default the tangent dF/dTE.
+
+        The tangent is the column ``local_stiffness`` of the tables, for vibration about the loaded state. The column
+        ``mesh_stiffness`` is the secant, for coordinates from the unloaded position and flanks without modifications;
+        ``kind="secant"`` gives it.
 
         Parameters
         ----------
@@ -204,8 +213,12 @@ class Results(Found):
             teeth where the first teeth are.
         pair : str
             By default the only pair with a curve.
+        kind : {"tangent", "secant"}, optional
+            Slope dF/dTE (the default), or load over deflection.
+        torque : torque, optional
+            On the driver, one of several for which the run was made; the nominal one by default.
         secant : bool
-            Load over transmission error in place of the slope dF/dTE.
+            The same as ``kind="secant"``.
 
         Returns
         -------
@@ -215,14 +228,16 @@ class Results(Found):
         Raises
         ------
         InputError
-            If an angle cannot be read, or the results have neither "transmission-error" nor
-            "mesh-stiffness-revolution" of that pair.
+            If an angle cannot be read, the torque was not computed, or the results have neither "transmission-error"
+            nor "mesh-stiffness-revolution" of that pair.
         """
-        return curve_of(self, pair).stiffness(angles_of(driver_angle), secant=secant)
+        of_secant, curve = is_secant(kind, secant=secant), curve_of(self, pair)
+        return curve.stiffness(angles_of(driver_angle), secant=of_secant, under=load_number(curve, torque))
 
-    def transmission_error(self, driver_angle: ArrayLike, pair: str = "") -> Array:
-        """Transmission error at rotations of the driver under the nominal load [m], as `mesh_stiffness`."""
-        return curve_of(self, pair).error(angles_of(driver_angle))
+    def transmission_error(self, driver_angle: ArrayLike, pair: str = "", *, torque: Torque | None = None) -> Array:
+        """Transmission error at rotations of the driver [m], as `mesh_stiffness`."""
+        curve = curve_of(self, pair)
+        return curve.error(angles_of(driver_angle), under=load_number(curve, torque))
 
     def save(self, folder: str | os.PathLike[str], *, plots: bool = True) -> Path:
         """Write everything into a folder, as ``fegear run`` does: tables, dataset, pictures, report, summary.

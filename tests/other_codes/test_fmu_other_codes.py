@@ -181,3 +181,41 @@ def test_without_a_compiler_it_is_refused_before_anything_is_solved(monkeypatch,
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(InputError, match="requires a C compiler; cc, gcc and clang not found; install one"):
         made[0].export(tmp_path / "none", "fmu")
+
+
+@pytest.mark.dear
+def test_a_helical_pair_has_the_stiffness_and_error_of_python_under_every_load(tmp_path):
+    """At the rows of the curve; force over approach is linear about the load."""
+    gears = {
+        name: {"teeth": teeth, "normal_module": "3 mm", "helix_angle": "15 deg", "hand": hand, "face_width": "10 mm"}
+        for name, teeth, hand in (("a", 23, "right"), ("b", 41, "left"))
+    }
+    results = fegear.run(
+        {
+            "results": ["transmission-error"],
+            "gear": gears,
+            "pair": {"I": {"driver": "a", "driven": "b", "width": "slices", "loads": ["700 N", "2 kN", "4 kN"]}},
+            "load_distribution": {"positions": 13, "panels": 6},
+            "accuracy": {"tolerance": 0.1},
+        },
+        progress=False,
+    )
+    with pytest.warns(UserWarning, match="no damping specified"):
+        (path,) = results.export(tmp_path, "fmu")
+    curve = results.outcomes[Task("transmission-error", "I")].data.found
+    r1, r2 = curve.pair.driver.base_radius, curve.pair.driven.base_radius
+    wanted = ["mesh_stiffness", "static_transmission_error", "mesh_force"]
+    with opened(path) as ask:
+        for load, torque in zip(curve.loads, curve.driver_torque.tolist(), strict=True):
+            angle = curve.driver_angle[1:-1]
+            stiffness, te = (
+                results.mesh_stiffness(angle, torque=torque),
+                results.transmission_error(angle, torque=torque),
+            )
+            found = np.array([
+                ask(wanted, load=load, driver_angle=a, driven_angle=(a * r1 - z - 0.3e-6) / r2)
+                for a, z in zip(angle.tolist(), te.tolist(), strict=True)
+            ])  # fmt: skip
+            np.testing.assert_allclose(found[:, 0], stiffness, rtol=1e-6)
+            np.testing.assert_allclose(found[:, 1], te, rtol=1e-6)
+            np.testing.assert_allclose(found[:, 2], load + 0.3e-6 * stiffness, rtol=1e-6)

@@ -98,3 +98,66 @@ def test_a_curve_with_a_jump_is_followed_and_closes():
     smooth = np.linspace(0.0, 1.0, 400, endpoint=False)
     again = over_pitch(smooth, np.cos(2.0 * math.pi * smooth), 1.0, np.arange(64) / 64)
     np.testing.assert_allclose(again, np.cos(2.0 * math.pi * np.arange(64) / 64), atol=1e-4)
+
+
+@pytest.fixture(scope="module")
+def helical():
+    """A helical pair by coupled slices under several torques, and its case."""
+    gears = {
+        name: {"teeth": teeth, "normal_module": "3 mm", "helix_angle": "15 deg", "hand": hand, "face_width": "10 mm"}
+        for name, teeth, hand in (("a", 23, "right"), ("b", 41, "left"))
+    }
+    case = CASE | {
+        "gear": gears,
+        "pair": {"I": {"driver": "a", "driven": "b", "width": "slices", "loads": ["700 N", "1990 N", "2 kN", "4 kN"]}},
+        "load_distribution": {"positions": 13, "panels": 6},
+        "accuracy": {"tolerance": 0.1},
+    }
+    return fegear.run(case, progress=False)
+
+
+@pytest.mark.dear
+def test_a_helical_pair_has_its_curves_under_every_torque(helical, tmp_path):
+    """As its table, and the tangent as what the transmission error changes from 1990 to 2000 N."""
+    (e,) = (one.data.found for task, one in helical.outcomes.items() if task.stage == "transmission-error")
+    torques, tooth = [f"{one!r} N*m" for one in e.driver_torque.tolist()], 2.0 * math.pi / 23
+    for turns in (0, 7):
+        for i, torque in enumerate(torques):
+            angle = e.driver_angle[1:-1] + turns * tooth
+            for kind, column in (("tangent", e.local_stiffness), ("secant", e.mesh_stiffness)):
+                found = helical.mesh_stiffness(angle, kind=kind, torque=torque)
+                np.testing.assert_allclose(found, column[1:-1, i], rtol=1e-7)
+            np.testing.assert_allclose(helical.transmission_error(angle, torque=torque), e.te[1:-1, i], rtol=1e-7)
+    at = e.driver_angle[1:-1]
+    one, two = (helical.transmission_error(at, torque=torques[i]) for i in (1, 2))
+    slopes = [helical.mesh_stiffness(at, torque=torques[i]) for i in (1, 2)]
+    np.testing.assert_allclose(10.0 / (two - one), 0.5 * (slopes[0] + slopes[1]), rtol=1e-4)
+    np.testing.assert_array_equal(helical.mesh_stiffness(at), helical.mesh_stiffness(at, torque=torques[e.at]))
+    write_table(tmp_path, table := helical.tables["mesh_table_I"])
+    read = loadmat(tmp_path / "mesh_table_I.mat", simplify_cells=True)
+    for column in table.columns:
+        np.testing.assert_array_equal(read[column.name], column.values)
+    angle = np.radians(read["driver_angle_from_pitch_point"])
+    np.testing.assert_allclose(helical.mesh_stiffness(angle), 1e6 * read["local_stiffness"], rtol=1e-6)
+    np.testing.assert_allclose(helical.mesh_stiffness(angle, kind="secant"), 1e6 * read["mesh_stiffness"], rtol=1e-6)
+    np.testing.assert_allclose(1e6 * helical.transmission_error(angle), read["te"], rtol=1e-6)
+
+
+def test_the_kind_of_a_stiffness_and_its_torque_are_said_plainly(results):
+    at = np.array([0.0, 0.1])
+    np.testing.assert_array_equal(results.mesh_stiffness(at, kind="tangent"), results.mesh_stiffness(at))
+    np.testing.assert_array_equal(results.mesh_stiffness(at, kind="secant"), results.mesh_stiffness(at, secant=True))
+    (e,) = (one.data.found for task, one in results.outcomes.items() if task.stage == "transmission-error")
+    torque = float(e.driver_torque[0])
+    np.testing.assert_array_equal(results.mesh_stiffness(at, torque=torque), results.mesh_stiffness(at))
+    for wrong, rule in (
+        ({"kind": "chord"}, 'kind = "chord": must be "tangent" (slope dF/dTE) or "secant"'),
+        ({"kind": "tangent", "secant": True}, "contradicts secant = True"),
+        ({"torque": "70 N*m"}, f"is not a torque on the driver that was computed; use one of {torque:.6g} N*m"),
+        ({"torque": "2 kN"}, "is not a torque"),
+    ):
+        with pytest.raises(fegear.InputError) as refused:
+            results.mesh_stiffness(at, **wrong)
+        assert rule in str(refused.value)
+    with pytest.raises(fegear.InputError, match="was computed"):
+        results.transmission_error(at, torque=-torque)
