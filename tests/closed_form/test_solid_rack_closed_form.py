@@ -1,6 +1,7 @@
 """A rack with its width: plane racks and gears of many teeth as its limits, hands, reciprocity, its loads."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from fegear.fem.plane.rack.solved_rack import solve_rack_teeth
 from fegear.fem.solid.bands import bands
 from fegear.fem.solid.rack.rack_flank import SolidRackSpec
 from fegear.fem.solid.rack.solid_rack import solve_solid_rack
+from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
@@ -122,12 +124,14 @@ def _meshing(helix, teeth, hand="right"):
     return RackAndPinion(pinion, rack, distance_of_backlash(pinion, rack, 40e-6))
 
 
-def _ready(pair):
+def _ready(pair, positions=8):
+    """On coarse elements."""
     pinion, rack = pair.pinion, pair.rack
     m = pinion.module
-    solved = solve_solid(pinion.tooth, pinion.twist * m, WIDTH, NU, pinion.bore_radius / m)
-    spec = SolidRackSpec(rack.tooth, rack.slide, WIDTH, rack.body / m, rack.teeth, NU)
-    return WideRackFlanks(RackInMesh(pair), solved, solve_solid_rack(spec), positions=4)
+    settings = SolidSettings().scaled(2.0)
+    solved = solve_solid(pinion.tooth, pinion.twist * m, WIDTH, NU, pinion.bore_radius / m, settings)
+    spec = SolidRackSpec(rack.tooth, rack.slide, WIDTH, rack.body / m, rack.teeth, NU, settings)
+    return WideRackFlanks(RackInMesh(pair), solved, solve_solid_rack(spec), positions=positions)
 
 
 @pytest.mark.dear
@@ -141,3 +145,17 @@ def test_a_helical_rack_over_its_stroke():
     assert np.nanmax(found.stroke.travel) <= pair.stroke * (1.0 + 1e-6)
     assert np.nanmax(found.stroke.error[0]) > 1.5 * np.nanmean(found.stroke.error[found.stroke.middle])
     assert (found.stroke.pairs[there] >= 1).all()
+    assert np.nanmin(found.stroke.travel) == pytest.approx(0.0, abs=1e-6 * pair.rack.pitch)
+    assert np.nanmax(found.stroke.travel) == pytest.approx(pair.stroke, rel=1e-6)
+
+
+@pytest.mark.dear
+def test_numbers_of_a_stroke_hardly_depend_on_its_positions():
+    """What more positions change is within what is stated; extremes at the ends of the stroke are there with few."""
+    ready = _ready(_meshing(20.0, 3))
+    few, many = (wide_over_stroke(replace(ready, positions=n), 500.0).stroke for n in (8, 48))
+    assert np.nanmax(few.error) == pytest.approx(np.nanmax(many.error), rel=1e-6)
+    assert few.peak_to_peak_in_middle == pytest.approx(many.peak_to_peak_in_middle, rel=2e-3)
+    assert abs(few.mean_in_middle - many.mean_in_middle) < few.beyond.mean + many.beyond.mean
+    left = few.beyond.middle + many.beyond.middle
+    assert abs(few.rack_tension[1] - many.rack_tension[1]) < left < 6e-3 * many.rack_tension[1]

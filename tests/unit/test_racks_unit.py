@@ -341,9 +341,10 @@ def test_3d_racks_want_a_face_width_that_is_solved():
 
 @pytest.mark.dear
 def test_results_of_a_helical_rack():
-    """A narrow rack of three teeth: tables over the face, and what the standard does not say left out."""
+    """A narrow rack of two teeth, coarse: tables over the face, and what the standard does not say left out."""
     asked = ["rack-transmission-error", "rack-stiffness"]
-    scene = build_scene(helical_case(asked, teeth=3, face_width="5 mm", force="500 N", reference_height="6 mm"))
+    given = helical_case(asked, teeth=2, face_width="3 mm", force="500 N", reference_height="6 mm", positions=8)
+    scene = build_scene(given | {"accuracy": {"tolerance": 0.05}})
     results = run_plan(scene, make_plan(scene, STAGES))
     tables, values = {one.name: one for one in results.tables}, {one.name: one for one in results.values}
     assert "r.sigma_F0" not in values
@@ -351,4 +352,4 @@ def test_results_of_a_helical_rack():
     assert values["r.te_max"].si > values["r.te_mean"].si
     lines = tables["rack_line_load_r"]
     assert {column.name for column in lines.columns} >= {"face_position", "line_load", "height", "tooth"}
-    assert {"rack_stiffness_over_face_r_1", "rack_stiffness_over_face_r_3"} <= set(tables)
+    assert {"rack_stiffness_over_face_r_1", "rack_stiffness_over_face_r_2"} <= set(tables)

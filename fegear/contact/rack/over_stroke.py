@@ -3,8 +3,8 @@
 In base pitch c of the stroke pair 0 is on tooth c of the rack and pair j, which came into contact before, on tooth
 c - j; near the ends there are fewer pairs. Base pitches whose teeth stand alike are solved once.
 
-A second solution with elements one order lower on the same meshes shows the error of every number; what positions that
-are twice as far apart change is added.
+A second solution with elements one order lower on the same meshes, at the same positions, shows the error of every
+number; what extremes between positions leave open is added.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ import numpy as np
 
 from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.contact.rack.rack_flanks import RackFlanks
+from fegear.contact.rack.stroke import BasePitches, OnPitch, Stroke
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from numpy.typing import ArrayLike
 
-    from fegear.base.arrays import Array, Index, Mask
+    from fegear.base.arrays import Array, Mask
     from fegear.contact.plane.compliance import Side
     from fegear.contact.plane.meshing import Contacts
     from fegear.contact.rack.rack_contacts import RackContacts
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Roll positions to either side of a place where a pair enters or leaves [base pitches].
 _BESIDE = 1e-6
+#: Of root fillets.
+SIDES: tuple[Side, ...] = ("tension", "compression")
 #: No relief.
 AS_GENERATED = RackFlanks()
 
@@ -54,45 +57,6 @@ class BasePitch:
     contacts: Contacts
     loads: Array
     error: Array
-
-
-@dataclass(frozen=True)
-class Stroke:
-    """A loaded rack and pinion over the stroke, C base pitches of P positions at most; arrays of shape (C, P).
-
-    Parameters
-    ----------
-    travel : ndarray
-        Of the rack from the first contact of its first tooth [m]; NaN where no tooth touches any more.
-    error : ndarray
-        Transmission error: travel of the rack that the load costs [m].
-    pairs : ndarray of int
-        In contact.
-    largest_share : ndarray
-        Of the load on one pair.
-    pinion_tension, pinion_compression : ndarray
-        Largest root tension and most negative compression of the pinion [Pa].
-    rack_tension, rack_compression : ndarray, shape (teeth,)
-        The same of each tooth of the rack over the stroke [Pa].
-    tooth : ndarray, shape (C,)
-        Tooth of pair 0.
-    """
-
-    travel: Array
-    error: Array
-    pairs: Index
-    largest_share: Array
-    pinion_tension: Array
-    pinion_compression: Array
-    rack_tension: Array
-    rack_compression: Array
-    tooth: Index
-
-    @property
-    def middle(self) -> int:
-        """The base pitch farthest from both ends of the rack, in contact throughout."""
-        first, last = int(self.tooth[0]), int(self.tooth[-1])
-        return min((first + last + 1) // 2, self.rack_tension.size - 1) - first
 
 
 def positions(found: RackContacts, count: int, flanks: RackFlanks = AS_GENERATED) -> Array:
@@ -198,8 +162,9 @@ def root_stresses(unit: UnitStress, found: BasePitch, tooth: int, here: Mask) ->
 
 
 def over_stroke(
-    compliance: RackCompliance, found: RackContacts, force: float, count: int, flanks: RackFlanks = AS_GENERATED
-) -> Stroke:
+    compliance: RackCompliance, found: RackContacts, force: float, count: int, flanks: RackFlanks = AS_GENERATED,
+    added: Mapping[int, Array] | None = None,
+) -> Stroke:  # fmt: skip
     """Roll the pinion along the rack.
 
     Parameters
@@ -212,45 +177,30 @@ def over_stroke(
         Even positions in a base pitch.
     flanks : RackFlanks
         Reliefs of both.
+    added : mapping of int to ndarray, optional
+        Positions besides, as in `BasePitches.stroke`.
     """
     pair = compliance.pair
     cos = math.cos(pair.rack.pressure_angle)
     x, pitch = positions(found, count, flanks), pair.rack.base_pitch
-    tooth = np.arange(pair.rack.teeth + math.ceil(pair.contact_ratio) - 1)
-    shape = (tooth.size, x.size)
-    travel, error, share = (np.full(shape, np.nan) for _ in range(3))
-    pairs = np.zeros(shape, dtype=np.int64)
-    pinion: dict[Side, Array] = {"tension": np.full(shape, np.nan), "compression": np.full(shape, np.nan)}
-    rack: dict[Side, Array] = {"tension": np.zeros(pair.rack.teeth), "compression": np.zeros(pair.rack.teeth)}
-    every = found.contacts(x, 0)
-    units: dict[Side, UnitStress] = {side: UnitStress(compliance, every, side) for side in pinion}
-    known: dict[tuple[int, ...], tuple[BasePitch, dict[Side, tuple[Array, dict[int, Array]]]]] = {}
-    for c in tooth:
-        key = tuple(_standing(compliance, found, int(c)))
-        if key not in known:
-            at = base_pitch(compliance, found, force / cos, int(c), x, flanks)
-            sides: dict[Side, tuple[Array, dict[int, Array]]] = {}
-            for side in pinion:
-                worst, teeth = root_stresses(units[side], at, int(c), np.isin(x, at.x))
-                sides[side] = worst, {t - int(c): values for t, values in teeth.items()}
-            known[key] = at, sides
-        at, sides = known[key]
-        here = np.isin(x, at.x)
-        travel[c, here] = (c * pitch + at.x - x[0]) / cos
-        error[c, here] = at.error / cos
-        share[c, here] = at.loads.max(axis=0) / at.loads.sum(axis=0)
-        pairs[c, here] = (at.loads > 0.0).sum(axis=0)
-        for side, (worst, teeth) in sides.items():
-            pinion[side][c, here] = worst
-            for t, values in teeth.items():
-                if values.size:
-                    rack[side][c + t] = (max if side == "tension" else min)(
-                        rack[side][c + t], float(values.max() if side == "tension" else values.min())
-                    )
-    return Stroke(
-        travel, error, pairs, share, pinion["tension"], pinion["compression"], rack["tension"], rack["compression"],
-        tooth,
-    )  # fmt: skip
+    units: dict[bytes, dict[Side, UnitStress]] = {}
+
+    def solve(c: int, roll: Array) -> OnPitch:
+        if roll.tobytes() not in units:
+            every = found.contacts(roll, 0)
+            units[roll.tobytes()] = {side: UnitStress(compliance, every, side) for side in SIDES}
+        at = base_pitch(compliance, found, force / cos, c, roll, flanks)
+        pinion: dict[Side, Array] = {}
+        teeth: dict[Side, dict[int, Array]] = {}
+        for side, unit in units[roll.tobytes()].items():
+            pinion[side], of_rack = root_stresses(unit, at, c, np.isin(roll, at.x))
+            teeth[side] = {t - c: values for t, values in of_rack.items()}
+        share = at.loads.max(axis=0) / at.loads.sum(axis=0)
+        return OnPitch(at.x, at.error / cos, (at.loads > 0.0).sum(axis=0), share, pinion, teeth)
+
+    count_of = pair.rack.teeth + math.ceil(pair.contact_ratio) - 1
+    kinds = tuple(tuple(_standing(compliance, found, c)) for c in range(count_of))
+    return BasePitches(kinds, solve, x, pair.rack.teeth, pair.x_start, pitch, cos).stroke(added)
 
 
 def _standing(compliance: RackCompliance, found: RackContacts, tooth: int) -> Iterator[int]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from fegear.contact.rack.over_stroke import AS_GENERATED, Stroke
+from fegear.contact.rack.over_stroke import AS_GENERATED
+from fegear.contact.rack.stroke import BasePitches, OnPitch, Stroke
 from fegear.contact.wide.compliance import flank_compliance, places_of
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines, contact_lines
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair, Member
     from fegear.geometry.relief import Relief
 
+#: How far within the stroke its outermost positions stand [base pitches].
+_BESIDE = 1e-7
 #: Panels of contact lines along the face [modules].
 _PANEL = 0.5
 
@@ -89,16 +92,25 @@ class WideRackFlanks:
         slack = 1e-6 * pitch
         return np.asarray((way >= -slack) & (way <= (self.rack.teeth - 1) * pitch + end - start + slack))
 
-    def base_pitch(self, load: float, cycle: int) -> LoadedFlanks | None:
+    def roll(self, load: float) -> Array:
+        """Roll positions of a base pitch from the start of the path at mid-face on, both ends of the stroke among them.
+
+        The load is along the transverse line of action [N].
+        """
+        pitch, start = self.pair.base_pitch, self.pair.x_start
+        ends = np.array([_BESIDE * pitch, math.fmod(self.pair.x_end - start, pitch) - _BESIDE * pitch])
+        usual = np.mod(self.loaded_by(load).points.x - start, pitch)
+        apart = np.abs(np.subtract.outer(ends, usual)).min(axis=1) > 2.0 * _BESIDE * pitch
+        return np.asarray(start + np.unique(np.concatenate([usual, np.mod(ends[apart], pitch)])))
+
+    def base_pitch(self, load: float, cycle: int, roll: Array) -> LoadedFlanks | None:
         """Share a load [N, along the transverse line of action] with pair 0 on a tooth of the rack.
 
-        Positions beyond the stroke are left out; None where all are.
+        Roll positions [m] beyond the stroke are left out; None where all are.
         """
         whole = self.loaded_by(load)
-        points, pair = whole.points, whole.pair
-        lines = contact_lines(
-            pair, points.x, _PANEL * pair.driver.module, points.weights / points.period, whole.most_gap
-        )
+        pair = whole.pair
+        lines = contact_lines(pair, roll, _PANEL * pair.driver.module, most_gap=whole.most_gap)
         lines = on_rack(lines, cycle, self.rack.teeth, self._of_stroke(lines.roll, cycle))
         if not lines.roll.size:
             return None
@@ -140,10 +152,9 @@ def on_rack(lines: ContactLines, cycle: int, teeth: int, at: Mask) -> ContactLin
     edges = lines.edges
     if edges is not None:
         edges = TipEdges(*(some(getattr(edges, name)) for name in TipEdges.__dataclass_fields__))
-    weight = lines.weight[rows] / lines.weight[rows].sum() if rows.size else lines.weight[rows]
     return ContactLines(
         lines.roll[rows], np.where(some(there), some(lines.pair), 0), some(there), some(lines.x), some(lines.z),
-        lines.low, lines.high, some(lines.at_edge), weight, edges,
+        lines.low, lines.high, some(lines.at_edge), edges=edges,
     )  # fmt: skip
 
 
@@ -205,20 +216,18 @@ class WideStroke:
         Tooth of pair 0 there.
     travel : ndarray, shape (P,)
         Of the rack there [m].
-    sampling : float
-        What fewer positions change of the peak-to-peak transmission error there, along the rack [m].
     """
 
     stroke: Stroke
     middle: LoadedFlanks
     cycle: int
     travel: Array
-    sampling: float
 
 
 def wide_over_stroke(
-    ready: WideRackFlanks, force: float, progress: Callable[[float], None] | None = None
-) -> WideStroke:
+    ready: WideRackFlanks, force: float, progress: Callable[[float], None] | None = None,
+    added: Mapping[int, Array] | None = None,
+) -> WideStroke:  # fmt: skip
     """Roll the pinion along the rack.
 
     Parameters
@@ -228,72 +237,55 @@ def wide_over_stroke(
         Along the rack [N].
     progress : callable, optional
         Receives the fraction that is done.
+    added : mapping of int to ndarray, optional
+        Positions besides those of a base pitch, as in `BasePitches.stroke`.
     """
     meshing, rack = ready.pair.meshing, ready.rack
-    cos, count = math.cos(meshing.rack.pressure_angle), rack.teeth
-    every = ready.loaded_by(force / cos).points.x
-    pitch, start = meshing.rack.base_pitch, float(every[0])
-    last = count - 1 + math.ceil(meshing.contact_ratio)
-    cycles = np.arange(last + 1)
-    shape = (cycles.size, every.size)
-    travel, error, share, worst = (np.full(shape, np.nan) for _ in range(4))
-    pressed, pairs = np.full(shape, np.nan), np.zeros(shape, dtype=np.int64)
-    of_rack: dict[Side, Array] = {"tension": np.zeros(count), "compression": np.zeros(count)}
-    known: dict[tuple[int, ...], LoadedFlanks | None] = {}
-    of_cycle: dict[int, LoadedFlanks | None] = {}
-    roots: dict[tuple[int, ...], tuple[dict[Side, Array], dict[Side, dict[int, float]]]] = {}
-    around = math.ceil(meshing.total_contact_ratio) + rack.reach + 1
-    for n, c in enumerate(cycles.tolist()):
-        key = tuple(rack.alike[t] if rack.exists(t) else -1 for t in range(c - around, c + around + 1))
-        if key not in known:
-            known[key] = found = ready.base_pitch(force / cos, c)
-            if found is not None:
-                roots[key] = _roots(ready, found, c)
-        found = of_cycle[c] = known[key]
-        if progress is not None:
-            progress((n + 1) / cycles.size)
+    cos, load = math.cos(meshing.rack.pressure_angle), force / math.cos(meshing.rack.pressure_angle)
+    pitch, start = meshing.rack.base_pitch, ready.pair.x_start
+    solved: dict[int, LoadedFlanks] = {}  # at the usual positions, which come first
+
+    def solve(c: int, roll: Array) -> OnPitch:
+        found = ready.base_pitch(load, c, roll)
         if found is None:
-            continue
-        here = np.isin(every, found.lines.roll)
-        travel[n, here] = (c * pitch + every[here] - start) / cos
-        error[n, here] = found.transmission_error[:, 0] / cos
-        share[n, here] = found.share[:, :, 0].max(axis=0)
-        pairs[n, here] = (found.pair_load[:, :, 0] > 0.0).sum(axis=0)
-        pinion, teeth = roots[key]
-        worst[n, here], pressed[n, here] = pinion["tension"], pinion["compression"]
-        for side, values in teeth.items():
-            for t, value in values.items():
-                if rack.exists(c + t):
-                    more = max if side == "tension" else min
-                    of_rack[side][c + t] = more(of_rack[side][c + t], value)
-    stroke = Stroke(travel, error, pairs, share, worst, pressed, of_rack["tension"], of_rack["compression"], cycles)
-    cycle = int(cycles[stroke.middle])
-    middle = cast("LoadedFlanks", of_cycle[cycle])
-    fewer = cast(
-        "LoadedFlanks", replace(ready, positions=max(4, 2 * ready.positions // 3)).base_pitch(force / cos, cycle)
+            none = np.empty(0)
+            sides: dict[Side, Array] = dict.fromkeys(SIGN, none)
+            return OnPitch(none, none, none.astype(np.int64), none, sides, {side: {} for side in SIGN})
+        solved.setdefault(c, found)
+        pairs, share = (found.pair_load[:, :, 0] > 0.0).sum(axis=0), found.share[:, :, 0].max(axis=0)
+        return OnPitch(found.lines.roll, found.transmission_error[:, 0] / cos, pairs, share, *_roots(ready, found, c))
+
+    around = math.ceil(meshing.total_contact_ratio) + rack.reach + 1
+    kinds = tuple(
+        tuple(rack.alike[t] if rack.exists(t) else -1 for t in range(c - around, c + around + 1))
+        for c in range(rack.teeth + math.ceil(meshing.contact_ratio))
     )
-    apart = float(np.ptp(middle.transmission_error) - np.ptp(fewer.transmission_error))
-    way = travel[stroke.middle][np.isin(every, middle.lines.roll)]
-    return WideStroke(stroke, middle, cycle, way, abs(apart) / cos)
+    every = BasePitches(kinds, solve, ready.roll(load), rack.teeth, start, pitch, cos)
+    stroke = every.stroke(added, progress)
+    cycle = int(stroke.tooth[stroke.middle])
+    middle = solved[kinds.index(kinds[cycle])]
+    return WideStroke(stroke, middle, cycle, (cycle * pitch + middle.lines.roll - start) / cos)
 
 
 def _roots(
     ready: WideRackFlanks, found: LoadedFlanks, cycle: int
-) -> tuple[dict[Side, Array], dict[Side, dict[int, float]]]:
-    """Largest root stress of the pinion at each position, and of the rack's teeth by their number less `cycle` [Pa]."""
+) -> tuple[dict[Side, Array], dict[Side, dict[int, Array]]]:
+    """Largest root stress of the pinion, and of the rack's teeth by their number less `cycle`, each of (P,) [Pa]."""
     force, places = found.contact.force[:, :, 0], places_along(found.lines, found.pair.driver.module)
     of_pinion = rooted_lines(found.pair, "driver", found.lines, ready.pinion, coupling=True)
     of_rack = rack_roots(found, ready.rack, cycle)
     pinion: dict[Side, Array] = {}
-    teeth: dict[Side, dict[int, float]] = {}
+    teeth: dict[Side, dict[int, Array]] = {}
     for side, sign in SIGN.items():
         highest = (sign * of_pinion.stress(side, force, places).value).max(axis=1)
         pinion[side] = np.full(found.lines.roll.size, -np.inf)
         np.maximum.at(pinion[side], of_pinion.teeth[:, 0], highest)
         pinion[side] *= sign
         highest = (sign * of_rack.stress(side, force, places).value).max(axis=1)
-        teeth[side] = {
-            t - cycle: sign * float(highest[of_rack.numbers == t].max())
-            for t in np.unique(of_rack.numbers).tolist() if ready.rack.exists(t)
-        }  # fmt: skip
+        teeth[side] = {}
+        for t in np.unique(of_rack.numbers).tolist():
+            if ready.rack.exists(t):
+                rows = of_rack.numbers == t
+                teeth[side][t - cycle] = np.zeros(found.lines.roll.size)
+                teeth[side][t - cycle][of_rack.teeth[rows, 0]] = sign * highest[rows]
     return pinion, teeth

@@ -134,25 +134,15 @@ class RackStroke:
 
 
 def _numbers(stroke: Stroke, force: float) -> StrokeNumbers:
-    middle = stroke.error[stroke.middle]
-    x = stroke.travel[stroke.middle]
-    mean = float(np.trapezoid(middle, x) / (x[-1] - x[0]))
-    teeth = stroke.rack_tension
+    mean, teeth = stroke.mean_in_middle, stroke.rack_tension
     return StrokeNumbers(
-        mean, float(np.nanmax(middle) - np.nanmin(middle)), float(np.nanmax(stroke.error)), force / mean,
+        mean, stroke.peak_to_peak_in_middle, float(np.nanmax(stroke.error)), force / mean,
         float(np.nanmax(stroke.pinion_tension)), float(teeth[(teeth.size - 1) // 2]), float(teeth.max()),
     )  # fmt: skip
 
 
-def _sampling(stroke: Stroke) -> float:
-    """By how much every second position changes the peak to peak in the middle [m]."""
-    middle = stroke.error[stroke.middle]
-    fewer = [middle[first::2] for first in (0, 1)]
-    return float(np.ptp(middle) - max(np.ptp(one) for one in fewer))
-
-
-def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None, float]:
-    """The stroke, that by the coarser elements, and what fewer positions change of the peak to peak."""
+def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None]:
+    """The stroke, and that by the coarser elements."""
     from fegear.contact.rack.over_stroke import over_stroke
     from fegear.contact.rack.rack_contacts import RackContacts
 
@@ -164,11 +154,13 @@ def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, S
     except InputError as error:  # of the load on one pair of teeth
         raise InputError(f"rack.{asked.name}.force", f"{force:.6g} N", error.rule, error.remedy) from None
     work.progress(0.6)
-    other = None if coarse is None else over_stroke(coarse, found, force, asked.positions, asked.flanks)
-    return stroke, other, None, _sampling(stroke)
+    other = None
+    if coarse is not None:
+        other = over_stroke(coarse, found, force, asked.positions, asked.flanks, stroke.added)
+    return stroke, other, None
 
 
-def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, LinesOverFace, float]:
+def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, LinesOverFace]:
     """The same of teeth with their width, and their contact lines."""
     from fegear.contact.rack.rack_in_mesh import RackInMesh
     from fegear.contact.rack.wide_stroke import WideRackFlanks, wide_over_stroke
@@ -180,7 +172,9 @@ def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, St
     other = None
     if pinion.coarse is not None:
         coarse = WideRackFlanks(pair, pinion.coarse, rack.coarse, asked.flanks, asked.positions)
-        other = wide_over_stroke(coarse, force, lambda part: work.progress(0.6 + 0.4 * part)).stroke
+        other = wide_over_stroke(
+            coarse, force, lambda part: work.progress(0.6 + 0.4 * part), found.stroke.added
+        ).stroke  # fmt: skip
     at, lines = found.middle, found.middle.lines
     on = lines.present
     row = np.broadcast_to(np.arange(lines.roll.size)[:, None], on.shape)[on]
@@ -188,22 +182,23 @@ def _wide(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, St
         found.travel[row], (found.cycle - lines.pair + 1)[on], lines.z[on], lines.roll_length(at.pair, "driven")[on],
         at.line_load[on][:, 0], at.pressure[on][:, 0],
     )  # fmt: skip
-    return found.stroke, other, over, found.sampling
+    return found.stroke, other, over
 
 
 def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     from fegear.formulas.iso6336.rack_limit import nominal_contact_stress_on_rack, nominal_root_stress_of_rack
 
     pair, force = asked.pair, asked.force
-    stroke, coarse, over_face, sampling = (_wide if asked.wide else _plane)(asked, upstream, work)
+    stroke, coarse, over_face = (_wide if asked.wide else _plane)(asked, upstream, work)
     numbers = _numbers(stroke, force)
     names = StrokeNumbers.__dataclass_fields__
     errors = StrokeNumbers(*(math.nan for _ in names))
     if coarse is not None:
         other = _numbers(coarse, force)
-        off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
-        off["peak_to_peak"] += sampling
-        errors = StrokeNumbers(**off)
+        left = stroke.beyond._asdict() | {"stiffness": numbers.stiffness * stroke.beyond.mean / numbers.mean}
+        errors = StrokeNumbers(
+            *(abs(getattr(numbers, name) - getattr(other, name)) + left.get(name, 0.0) for name in names)
+        )
     there, tangential = ~np.isnan(stroke.error), asked.force
     tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
     by_standard = (math.nan, math.nan)
