@@ -123,8 +123,8 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
     assert steps == [(FOUND, more), (more, softer)]
     assert (result.longer, result.coarse) == (more, softer)
     # Coarser gears change means and shapes by more than they err.
-    np.testing.assert_allclose(result.mean, 1.0 + 0.35 * 10.0 + 0.001)
-    np.testing.assert_allclose(result.peak_to_peak, 2.0 + 0.4 * 20.0 + 0.002)
+    np.testing.assert_allclose(result.mean, 1.0 + 0.5 * 10.0 + 0.001)
+    np.testing.assert_allclose(result.peak_to_peak, 2.0 + 0.6 * 20.0 + 0.002)
     np.testing.assert_allclose(result.face_load_factor, 3.0 + 0.6 * 30.0 + 0.003)
     # Spots miss a hundredth of each largest number; a pressure read between stations six tenths of what it adds.
     by_panels, left = (np.array([4.0, 4.0]), 0.004) if not finer else (0.0, 1.5 * again["largest_line_load"])
