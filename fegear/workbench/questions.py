@@ -330,7 +330,7 @@ def mesh_stiffness_revolution(
     -------
     Results
         Tables ``mesh_stiffness_revolution_<pair>``, ``tooth_loads_revolution_<pair>``,
-        ``root_stress_teeth_<pair>_<gear>`` (2D), ``mesh_stiffness_orders_<pair>``. Values
+        ``root_stress_teeth_<pair>_<gear>``, ``mesh_stiffness_orders_<pair>``. Values
         ``<pair>.mesh_stiffness_min``, ``<pair>.te_residual_max``, ...
     """
     return ask_of_pair(

@@ -12,12 +12,14 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.contact.load import load
 from fegear.contact.pair_spec import PairSpec
+from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.crack_in_mesh import crack_in_mesh
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance, odd_neighbours_shifted_by_error, odd_shifted_by_error
-from fegear.contact.plane.over_revolution import over_revolution, stress_over_revolution
+from fegear.contact.plane.over_revolution import over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.stress_over_revolution import stress_over_revolution
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.odd_gear import OddGearInfluence
@@ -260,6 +262,32 @@ def test_root_stress_of_every_tooth_over_a_revolution(member):
     assert max(largest[2], largest[4]) > 1.002 * ordinary_one
 
 
+@pytest.mark.parametrize("member", MEMBERS)
+def test_root_stress_of_teeth_that_are_alike_is_the_ordinary_one_and_states_its_error(member):
+    loaded = load(PairSpec(PAIR, loads=(LOAD,), corner_contact=True), [ordinary("driver"), ordinary("driven")])
+    found = stress_over_revolution(loaded.engagement, LOAD, member, positions=24, shifted=loaded.shifted)
+    usual = loaded.root_stress({m: {"fe": loaded.engagement.compliance.source(m)} for m in MEMBERS}).stress[member][
+        "fe"
+    ]
+    assert found.largest.shape == found.largest_error.shape == (1,)
+    assert abs(found.largest[0] - usual.largest_tension[0]) <= found.largest_error[0]
+    assert found.off[0] == pytest.approx(usual.error(0), rel=0.05)
+    assert found.beyond[0] < 2e-3 * found.largest[0]
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_root_stress_between_roll_positions_is_looked_for_and_what_is_left_is_stated(side):
+    """Few positions find what many do, of a cracked tooth and of those beside it, too."""
+    e = engagement(cracked("driver", 0.5, 3))
+    few, many = (stress_over_revolution(e, LOAD, "driver", side, positions=count) for count in (16, 160))
+    missed = few.sign * (many.largest - few.largest)
+    assert (missed <= few.beyond + many.beyond + 1e-9 * np.abs(many.largest)).all()
+    assert np.abs(missed / many.largest).max() < 5e-3
+    at_first = few.only(roll_positions(e, 16)).largest
+    assert (few.sign * (many.largest - at_first) / np.abs(many.largest)).max() > 5e-3
+    assert few.off is few.largest_error is None  # nothing states the errors of gears
+
+
 def test_the_loaded_pair_takes_a_cracked_gear_and_states_its_errors():
     spec = PairSpec(PAIR, loads=(LOAD,), corner_contact=True)
     loaded = load(spec, [cracked("driver", 0.5), ordinary("driven")])
@@ -269,6 +297,11 @@ def test_the_loaded_pair_takes_a_cracked_gear_and_states_its_errors():
     assert (found.transmission_error_error > 0.0).all()
     assert (found.transmission_error_error < 5e-3 * found.transmission_error).all()
     assert loaded.transmission_error().rotational is not None
+    stress = stress_over_revolution(loaded.engagement, LOAD, "driver", positions=16, shifted=loaded.shifted)
+    off = stress.largest_error / stress.largest
+    assert (off > 0.0).all()
+    assert off[1:].max() < 0.02
+    assert off[0] < 0.1
 
 
 def test_solved_gears_are_kept_on_disk(tmp_path):

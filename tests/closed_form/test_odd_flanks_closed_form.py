@@ -17,8 +17,9 @@ from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance, odd_neighbours_shifted_by_error
-from fegear.contact.plane.over_revolution import over_revolution, stress_over_revolution
+from fegear.contact.plane.over_revolution import over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.stress_over_revolution import stress_over_revolution
 from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
 from fegear.fem.plane.odd.other_outline import Missing, OtherTip
 from fegear.fem.plane.settings import settings_at

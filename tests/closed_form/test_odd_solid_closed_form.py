@@ -14,8 +14,8 @@ from fegear.contact.pair_spec import FlankSpec, PairSpec
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance
-from fegear.contact.plane.over_revolution import stress_over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.stress_over_revolution import stress_over_revolution
 from fegear.contact.wide.over_revolution import follow_flanks, revolving_flanks, wide_over_revolution
 from fegear.contact.wide.root_stress import places_along, rooted_lines
 from fegear.contact.wide.stress_over_revolution import wide_stress_over_revolution
@@ -386,8 +386,9 @@ def test_root_stress_without_motion_along_the_axis_is_that_of_plane_teeth(spur):
     """What a crack changes of each tooth's largest stress, by the plane ring and its own contact."""
     number, driver = 6, spur.gears["driver"]
     odd = made(driver, {number: spur.crack["driver"]}, plane_strain=True)
-    found = spur.roots("driver", {"driver": odd, "driven": made(spur.gears["driven"], plane_strain=True)}).largest
-    found = found / np.median(found)
+    found = spur.roots("driver", {"driver": odd, "driven": made(spur.gears["driven"], plane_strain=True)})
+    usual = float(np.median(found.largest))
+    found, left = found.largest / usual, float(found.beyond.max()) / usual
     plane = {m: solve_gear(one, settings_at(-3), reach=2, estimate_error=False) for m, one in spur.gears.items()}
     cracked = solve_cracked_gear(plane["driver"], {number: spur.crack["driver"]})
     driven = finite_element_compliance(plane["driven"])
@@ -397,5 +398,6 @@ def test_root_stress_without_motion_along_the_axis_is_that_of_plane_teeth(spur):
     )
     off = np.abs(found - after / before)
     assert off[number] < 0.01  # the largest stress is beside the crack's mouth
-    assert np.delete(off, number).max() < 2e-4
+    assert np.delete(off, number).max() < 2e-4 + left  # the largest of both are looked for between their own positions
+    assert left < 3e-4
     assert np.abs(after / before - 1.0)[[number - 1, number + 1]].min() > 2e-3

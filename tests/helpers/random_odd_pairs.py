@@ -1,10 +1,10 @@
-"""Random 3D pairs with an odd tooth over a revolution, and how the errors that they state compare with the true ones.
+"""Random pairs with an odd tooth, 3D or plane, over a revolution: how stated errors compare with true ones.
 
 The truth is the same pair by finer sections, more functions along the face, narrower bands, panels of half the length
 (`true_errors.fine_solid`) and three times as many roll positions: at the crack's tip and mouth, too, where edges are
-half as long and rays twice as many.
+half as long and rays twice as many. That of plane pairs is of level 2 of the ladder and finer (`true_errors.TRUTH`).
 
-python tests/helpers/random_odd_pairs.py SEED COUNT [--first N] [--tolerance T]
+python tests/helpers/random_odd_pairs.py SEED COUNT [--plane] [--first N] [--tolerance T]
 """
 
 import argparse
@@ -26,8 +26,9 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.fem.plane.odd import cracked_sector
 from fegear.results.catalogue import STAGES
+from fegear.results.pair import mesh_stiffness_revolution
 from tests.helpers.random_cracks import FINER
-from tests.helpers.true_errors import FINEST, PANELS, fine_solid
+from tests.helpers.true_errors import FINEST, PANELS, TRUTH, fine_solid
 from tests.helpers.true_errors import drawn as drawn_pair
 
 #: Part of a value that the truth itself may be off.
@@ -35,9 +36,9 @@ ROUGH = 5e-5
 VALUES = ("mesh_stiffness_min", "mesh_stiffness_min_ordinary", "mesh_stiffness_loss", "te_max", "te_residual_max")
 
 
-def drawn(rng):
+def drawn(rng, *, plane=False):
     """A case, which may prove impossible."""
-    case = drawn_pair("wide pair", rng) | {"results": ["mesh-stiffness-revolution"]}
+    case = drawn_pair("pair" if plane else "wide pair", rng) | {"results": ["mesh-stiffness-revolution"]}
     kind = rng.choice(["crack", "crack", "crack", "missing", "pit"])
     if kind == "crack":
         odd = {"crack": {
@@ -49,7 +50,8 @@ def drawn(rng):
     else:
         low = round(float(rng.uniform(0.45, 0.6)), 3)
         odd = {"pits": [{"roll": low, "face_share": round(float(rng.uniform(0.2, 0.6)), 3)}]}
-    case["pair"]["I"]["width"] = "solid"
+    if not plane:
+        case["pair"]["I"]["width"] = "solid"
     gear = case["gear"][str(rng.choice(["a", "b"]))]
     gear["odd_tooth"] = [{"tooth": int(rng.integers(0, 12)), **odd}]
     case["effects"] |= {"odd_teeth": True, "corner_contact": bool(rng.random() < 0.5 or kind == "missing")}
@@ -75,11 +77,11 @@ def plan_of(case, accuracy, estimates=True):
     return scene, make_plan(scene, STAGES)
 
 
-def case_of(seed, number):
+def case_of(seed, number, *, plane=False):
     """One of a seed's; drawn again until fegear plans it."""
     rng = np.random.default_rng([seed, number])
     for _ in range(200):
-        case = drawn(rng)
+        case = drawn(rng, plane=plane)
         try:
             bare = {
                 **case,
@@ -105,26 +107,37 @@ def answers(case, accuracy, estimates=True):
         for name in ("te",)
     }  # fmt: skip
     found |= {name: (np.array([known[name].si]), np.array([known[name].si_error or np.nan])) for name in VALUES}
-    roots = {gear: tables[f"root_stress_teeth_I_{gear}"].column("root_tension").si for gear in ("a", "b")}
+    roots = {gear: tables[f"root_stress_teeth_I_{gear}"] for gear in ("a", "b")}
+    roots = {
+        gear: (table.column("root_tension").si, table.column("root_tension_error").si if estimates else None)
+        for gear, table in roots.items()
+    }
     return curves.column("driver_angle").si, found, roots
 
 
 def judged(case, tolerance):
     """True and stated errors, largest over the revolution, and the largest value, by what they are of."""
     at, found, roots = answers(case, {"tolerance": tolerance})
+    solid = case["pair"]["I"].get("width") == "solid"
     with ExitStack() as finer:
-        finer.enter_context(patch.object(solid_influence, "settings_of_case", fine_solid))
         finer.enter_context(patch.multiple(cracked_sector, **FINER))
-        finer.enter_context(patch.object(over_revolution.revolving_flanks, "__defaults__", (None, 96)))
-        there, truth, true_roots = answers(case | {"load_distribution": {"panels": PANELS}}, FINEST, estimates=False)
+        if solid:
+            finer.enter_context(patch.object(solid_influence, "settings_of_case", fine_solid))
+            finer.enter_context(patch.object(over_revolution.revolving_flanks, "__defaults__", (None, 96)))
+            there, truth, true_roots = answers(case | {"load_distribution": {"panels": PANELS}}, FINEST, False)
+        else:
+            finer.enter_context(patch.object(mesh_stiffness_revolution, "POSITIONS", 300))
+            there, truth, true_roots = answers(case, {"tolerance": 1e-6, **TRUTH}, False)
     each = {}
     for name, (value, stated) in found.items():
         true = truth[name][0] if value.size == 1 else np.interp(at, there, truth[name][0])
         size = float(np.abs(true).max())
         each[name] = max(float(np.abs(value - true).max()) - ROUGH * size, 0.0), float(stated.max()), size
-    for gear, value in roots.items():
-        off = np.abs(value - true_roots[gear]).max()
-        each[f"root_{gear}"] = float(off), np.nan, float(true_roots[gear].max())
+    for gear, (value, stated) in roots.items():
+        true, size = true_roots[gear][0], float(true_roots[gear][0].max())
+        off = np.maximum(np.abs(value - true) - ROUGH * size, 0.0)
+        worst = int(np.argmax(off / np.maximum(stated, 1e-9 * size)))  # every tooth has an error of its own
+        each[f"root_{gear}"] = float(off[worst]), float(stated[worst]), size
     return each
 
 
@@ -133,11 +146,12 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("seed", type=int)
     options.add_argument("count", type=int)
+    options.add_argument("--plane", action="store_true")
     options.add_argument("--first", type=int, default=0)
     options.add_argument("--tolerance", type=float, default=1e-2)
     given = options.parse_args()
     for number in range(given.first, given.first + given.count):
-        started, case = time.process_time(), case_of(given.seed, number)
+        started, case = time.process_time(), case_of(given.seed, number, plane=given.plane)
         try:
             each = judged(case, given.tolerance)
         except FegearError as why:

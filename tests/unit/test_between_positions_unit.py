@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.contact.wide.between_positions import between_positions
+from fegear.contact.between_positions import between_positions
 
 PERIOD, COUNT = 4.0, 24
 

@@ -9,12 +9,12 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache, cache_on_disk
+from fegear.contact.between_positions import worth_a_look
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.contact.wide import compliance, load_sharing
-from fegear.contact.wide import over_pitch as over_pitch_module
 from fegear.contact.wide.averages import GAUSS, averages
 from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
 from fegear.contact.wide.error import flank_error
@@ -617,7 +617,7 @@ def test_peaks_of_many_loads_are_looked_for_at_a_bounded_number_of_places():
     period, loads = 1e-2, 400
     x = np.linspace(0.0, period, 48, endpoint=False)
     places = np.random.default_rng(0).uniform(0.0, period, (48, loads, 2))
-    new = over_pitch_module._worth_a_look(x, [(places, np.ones((48, loads)))] * 2, period)
+    new = worth_a_look(x, [(places, np.ones((48, loads)))] * 2, period)
     assert 10 <= new.size <= 64
-    few = over_pitch_module._worth_a_look(x, [(places[:, :3], np.ones((48, 3)))] * 2, period)
+    few = worth_a_look(x, [(places[:, :3], np.ones((48, 3)))] * 2, period)
     assert few.size == 12  # two places of two ends each of three loads

@@ -12,12 +12,13 @@ from scipy.special import ellipe, ellipk
 
 from fegear.base.errors import ConvergenceError
 from fegear.base.solution_cache import SolutionCache
+from fegear.contact.between_positions import likely_peaks
 from fegear.contact.wide.error import flank_error
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.load_sharing import solve_contact
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.loaded_pair import LoadedWidePair
-from fegear.contact.wide.over_pitch import likely_peaks, over_pitch
+from fegear.contact.wide.over_pitch import over_pitch
 from fegear.contact.wide.spots import missed_of_spots
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.fem.solid.settings import SolidSettings

@@ -14,6 +14,7 @@ from fegear.base.arrays import Array, Index
 from fegear.base.brief import Brief
 from fegear.base.tally import note
 from fegear.contact.odd_flank import OddFlank
+from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
 from fegear.contact.plane.odd_contacts import OddContacts, on_less_face, refuse_no_contact
@@ -266,12 +267,19 @@ class Engagement(Brief):
         if odd is None or not odd.on(grid.contacts.number, cycle):
             return self.grids.turned(grid, cycle)
         contacts = odd.changed(grid.contacts, cycle)
-        if contacts is grid.contacts:
-            matrices = self.grids.turned(grid, cycle).matrices
-        else:
-            matrices = self.compliance.matrices(contacts, cycle)
-        matrices = on_less_face(matrices, odd.bearing_share(contacts, cycle), contacts, self.compliance)
+        known = self.grids.turned(grid, cycle).matrices if contacts is grid.contacts else None
+        matrices = self.matrices(contacts, cycle, known)
         return RollGrid(grid.x, contacts, matrices, self.compliance.pattern(contacts.number, cycle))
+
+    def matrices(self, contacts: Contacts, cycle: int, known: PairMatrices | None = None) -> PairMatrices:
+        """Compliances at contacts in a base pitch, those on pitted flanks with less of the face.
+
+        `known` are the same without pits, where they are at hand.
+        """
+        matrices = known or self.compliance.matrices(contacts, cycle)
+        if self.odd is None or not self.odd.on(contacts.number, cycle):
+            return matrices
+        return on_less_face(matrices, self.odd.bearing_share(contacts, cycle), contacts, self.compliance)
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -301,7 +309,7 @@ class Engagement(Brief):
 def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
     """Solve with another engagement's compliances at the same contacts, loads and separations."""
     grid = loaded.grid
-    matrices = other.compliance.matrices(grid.contacts, loaded.cycle)
+    matrices = other.matrices(grid.contacts, loaded.cycle)
     shared = matrices.share(loaded.separation, loaded.load)
     again = RollGrid(grid.x, grid.contacts, matrices, grid.teeth)
     return Loaded(again, loaded.load, shared, loaded.separation, loaded.cycle)

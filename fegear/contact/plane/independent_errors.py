@@ -63,7 +63,7 @@ def independent_errors(loaded: Loaded, shifted: Sequence[Engagement], path: tupl
     here = matrices.at_load(w)
     squares, changes = np.zeros_like(w), []
     for other in shifted:
-        there = other.compliance.matrices(contacts, loaded.cycle).at_load(w)
+        there = other.matrices(contacts, loaded.cycle).at_load(w)
         deflection = np.einsum("ijpl,jpl->ipl", there - here, w)
         squares += ((by_pair * deflection[None]) ** 2).sum(axis=1)
         changes.append(_ALONG_PART * (approach * along * deflection).sum(axis=0) / stiffness)

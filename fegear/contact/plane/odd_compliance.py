@@ -180,6 +180,8 @@ class OddCompliance:
 
     def root_stress_error(self, i: int, j: int, radius_q: ArrayLike, side: Side = "tension") -> Array:
         """Estimated error of the largest stress of a fillet of tooth i under a load on tooth j [1/m]."""
+        if {self._from_middle(i), self._from_middle(j)} & set(self.influence.fine.missing):
+            return np.zeros(np.shape(radius_q))  # no fillet, or no load
         if self._odd(i, j) is None or abs(i - j) > self.reach:
             return self.ordinary.root_stress_error(i, j, radius_q, side)
         known = self.influence.ordinary

@@ -16,12 +16,9 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
 from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
-from fegear.contact.plane.compliance import RootStressInfluence, Side
 from fegear.contact.plane.engagement import Engagement, Loaded
-from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.transmission_error import contact_changes
 from fegear.fem.teeth import together
-from fegear.geometry.pair import Member
 
 #: Base pitches that are looked at at most: hunting teeth of two odd gears meet after the product of their numbers.
 MOST_PITCHES = 20_000
@@ -240,7 +237,7 @@ def over_revolution(
     InputError
         If the same teeth meet again after more than `MOST_PITCHES` base pitches only.
     """
-    _refuse_too_many(engagement)
+    refuse_too_many(engagement)
     count = engagement.cycles if engagement.cycles > 1 else base_pitches
     x = _with_changes(engagement, load, roll_positions(engagement, positions), count)
     number = engagement.grid(x).contacts.number
@@ -272,7 +269,8 @@ def _followed(engagement: Engagement, x: Array, number: Index, load: float, coun
     )
 
 
-def _refuse_too_many(engagement: Engagement) -> None:
+def refuse_too_many(engagement: Engagement) -> None:
+    """Refuse a pair whose same teeth meet again after more than `MOST_PITCHES` base pitches only."""
     if engagement.cycles > MOST_PITCHES:
         raise InputError(
             "pair", f"{engagement.cycles} base pitches until the same teeth mesh again",
@@ -299,87 +297,3 @@ def _each_pitch(
         for whole, one in zip(found, each, strict=True):
             whole[pitches] = one
     return found, len(alike)
-
-
-@dataclass(frozen=True)
-class StressOfTeeth:
-    """Root stress of every tooth of a gear over all base pitches until the same teeth mesh again.
-
-    Parameters
-    ----------
-    member : {"driver", "driven"}
-    side : {"tension", "compression"}
-    x : ndarray, shape (P,)
-        Roll positions in a base pitch [m].
-    tooth : ndarray of int, shape (C, n + 2)
-        Number of the tooth, 0 to min(z, C) - 1: where fewer base pitches pass than the gear has teeth, these are all
-        alike, and tooth C finds what tooth 0 found.
-    stress : ndarray, shape (C, n + 2, P)
-        Largest tension, or most negative compression, of its fillet [Pa].
-    teeth : int
-        min(z, C).
-    """
-
-    member: Member
-    side: Side
-    x: Array
-    tooth: Index
-    stress: Array
-    teeth: int
-
-    @property
-    def largest(self) -> Array:
-        """Of each tooth on its way through the mesh, shape (min(z, C),) [Pa]."""
-        sign = 1.0 if self.side == "tension" else -1.0
-        found = np.full(self.teeth, -np.inf)
-        np.maximum.at(found, self.tooth, (sign * self.stress).max(axis=2))
-        return sign * found
-
-
-def stress_over_revolution(
-    engagement: Engagement,
-    load: float,
-    member: Member,
-    side: Side = "tension",
-    positions: int = 200,
-    source: RootStressInfluence | None = None,
-) -> StressOfTeeth:
-    """Root stress of every tooth of a gear by its own load and its neighbours', tooth after tooth.
-
-    Parameters
-    ----------
-    engagement : Engagement
-    load : float
-        [N].
-    member : {"driver", "driven"}
-    side : {"tension", "compression"}
-    positions : int
-        Even steps over a base pitch; more stand on either side of every jump.
-    source : RootStressInfluence, optional
-        Where this gear's root stress comes from; by default where its compliance does.
-
-    Raises
-    ------
-    InputError
-        If the source knows no root stress, or there are too many base pitches.
-    """
-    _refuse_too_many(engagement)
-    compliance, x = engagement.compliance, roll_positions(engagement, positions)
-    known, grid = source or compliance.source(member), engagement.grid(x)
-    number = grid.contacts.number
-    count = engagement.cycles
-    numbered = min(compliance.pair.gear(member).teeth, count)
-    rows = np.arange(int(number[0]) - 1, int(number[-1]) + 2)
-    reach = known.reach if compliance.coupling else 0
-
-    def teeth_and_fillets(cycle: int) -> tuple[object, ...]:
-        ends = [compliance.tooth(member, int(row), cycle) for row in (rows[0], rows[-1])]
-        fillets = known.same_as(min(ends) - reach, rows.size + 2 * reach)
-        return (*engagement.teeth_in(number, cycle), fillets)
-
-    stress = np.empty((count, rows.size, x.size))
-    for pitches in together(teeth_and_fillets(cycle) for cycle in range(count)):
-        state = engagement.solve(grid, [load], int(pitches[0]))
-        stress[pitches] = root_stress_history(engagement, state, member, side, 1, known).stress[:, :, 0]
-    tooth = np.array([[compliance.tooth(member, int(row), cycle) for row in rows] for cycle in range(count)])
-    return StressOfTeeth(member, side, x, tooth % numbered, stress, numbered)

@@ -288,7 +288,8 @@ def tooth_stress(
     for row, (state, shifted, apart) in enumerate(zip(*states, strict=True)):
         if id(state) not in known:
             histories = [
-                _with_error(e, state, shifted, apart, member, side, source, estimates=estimates) for side in sides
+                stress_with_error(e, state, shifted, apart, member, side, source, _within(e), estimates=estimates)
+                for side in sides
             ]
             known[id(state)] = [histories[0][0].x, *(a for one, off in histories for a in (one.stress, off))]
         parts.append([values[row] for values in known[id(state)]])
@@ -309,19 +310,33 @@ def _within(e: Engagement) -> tuple[float, float]:
     return e.pair.x_start - pitch, e.pair.x_end + pitch
 
 
-def _with_error(
+def stress_with_error(
     e: Engagement,
     state: Loaded,
     shifted: Sequence[Loaded],
     apart: Array,
     member: Member,
     side: Side,
-    source: RootStressInfluence | None,
+    source: RootStressInfluence | None = None,
+    within: tuple[float, float] | None = None,
     *,
-    estimates: bool,
+    estimates: bool = True,
 ) -> tuple[RootStressHistory, Array]:
-    """Stress of one fillet in every row of a state, and its estimated error, shape (n, P, L) [Pa]; NaN out of reach."""
-    within = _within(e)
+    """Stress of one fillet in every row of a state, and its estimated error, shape (n + 2, P, L) [Pa].
+
+    Parameters
+    ----------
+    e : Engagement
+    state : Loaded
+    shifted : sequence of Loaded
+        The same with one compliance each off by its error.
+    apart : ndarray, shape (n, P, L)
+        What the errors of single tooth pairs change in the loads of the state [N] (`independent_errors`).
+    member, side, source, within
+        See `root_stress_history`; NaN where x is outside.
+    estimates : bool
+        Whether the error is estimated; else it is not known.
+    """
     found = root_stress_history(e, state, member, side, 1, source, within)
     if not estimates:
         return found, np.full_like(found.stress, np.nan)

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.contact.wide.between_positions import between_positions
-from fegear.contact.wide.over_pitch import JUMP
+from fegear.contact.between_positions import JUMP, between_positions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Mapping

@@ -16,10 +16,11 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError
 from fegear.base.shown import shown
+from fegear.contact.between_positions import JUMP
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import long_line
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-from fegear.contact.wide.over_pitch import JUMP, OverPitch, Stated
+from fegear.contact.wide.over_pitch import OverPitch, Stated
 from fegear.contact.wide.spots import missed_of_spots
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.pair import Member

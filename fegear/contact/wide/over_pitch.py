@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fegear.base.arrays import Array, Mask, ReadOnlyArrays
+from fegear.contact.between_positions import likely_peaks, worth_a_look
 from fegear.contact.fourier import Panels
 from fegear.contact.wide.along_lines import swept_mean
 from fegear.contact.wide.gaps import FlankGaps
@@ -21,14 +22,8 @@ from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 
 #: Roll positions of which means are taken, at least.
 POSITIONS = 48
-#: Rounds of looking for peaks between positions, and places in each for one load's largest or smallest value.
-_ROUNDS, _PLACES = 3, 2
-#: Positions nearer to each other than this share of a base pitch stand on both sides of a jump.
-JUMP = 1e-5
-#: Positions that peaks are looked for at stand this share of a base pitch from others, at least.
-_APART = 1e-4
-#: Positions of a round, at most about: those of many loads stand close together.
-_MOST_PLACES = 64
+#: Rounds of looking for peaks between positions.
+_ROUNDS = 3
 #: What is taken for an error of what half of the positions change: of a mean over them, and of the load over the face.
 _OF_MEAN, _OF_FACE = 0.5, 0.5
 
@@ -140,65 +135,6 @@ def _straight_mean(x: Array, values: Array, period: float) -> float:
     """Mean over a period of what is straight between places of it."""
     step = np.diff(x, append=x[0] + period)
     return float(step @ (values + np.roll(values, -1)) / (2.0 * period))
-
-
-def likely_peaks(x: Array, te: Array, period: float, jump_below: float | None = None) -> tuple[Array, Array]:
-    """Where largest values may stand between positions, and by how much above all that are known.
-
-    From either side of an interval the curve is taken to go on as straight as it came there. Where both meet stands a
-    kink of straight pieces; but where a tip edge comes into contact the curve is the steeper the nearer, and the kink
-    stands farther on its way to that end. Half of the way from the flatter side counts as possible.
-
-    Parameters
-    ----------
-    x : ndarray, shape (P,)
-        Ascending within a period [m].
-    te : ndarray, shape (P, L)
-        [m].
-    period : float
-        [m].
-    jump_below : float, optional
-        Positions nearer to each other stand on both sides of a jump [m]. Default: `JUMP` of the period.
-
-    Returns
-    -------
-    places : ndarray, shape (P, L, 2)
-        Where to look, within the interval that begins at each position [m].
-    height : ndarray, shape (P, L)
-        [m]; negative where nothing is expected.
-    """
-    step = np.diff(x, append=x[0] + period)[:, None]
-    rise = (np.roll(te, -1, axis=0) - te) / step
-    ahead, behind = np.roll(rise, 1, axis=0), np.roll(rise, -1, axis=0)
-    # Slopes across a jump tell nothing, and nothing stands within one.
-    jump = step < (JUMP * period if jump_below is None else jump_below)
-    known = ~(jump | np.roll(jump, 1, axis=0) | np.roll(jump, -1, axis=0))
-    peaked = known & (ahead > rise) & (behind < rise)
-    way = np.where(peaked, (rise - behind) * step / np.where(peaked, ahead - behind, 1.0), 0.0)
-    half = 0.5 * step * np.where(ahead < -behind, ahead, -behind) + np.where(ahead < -behind, te, te + rise * step)
-    height = np.where(peaked, np.maximum(te + ahead * way, half), -np.inf) - te.max(axis=0)
-    farther = 0.5 * (way + np.where(ahead < -behind, step, 0.0))
-    return x[:, None, None] + np.stack([way, farther], axis=2), height
-
-
-def worth_a_look(x: Array, peaks: list[tuple[Array, Array]], period: float) -> Array:
-    """Roll positions at which the likeliest peaks are looked for, ascending [m]."""
-    wanted: list[float] = []
-    for places, height in peaks:
-        for case in range(height.shape[1]):
-            likeliest = np.argsort(-height[:, case], kind="stable")[:_PLACES]
-            wanted += places[likeliest, case][height[likeliest, case] > 0.0].ravel().tolist()
-    # Peaks of many loads stand close together; what is left between places is stated.
-    apart = _APART if len(wanted) <= _MOST_PLACES else 1.0 / _MOST_PLACES
-    new: list[float] = []
-    for one in sorted(wanted):
-        known, found = (
-            np.abs(np.mod(np.array(others) - one + 0.5 * period, period) - 0.5 * period).min(initial=period)
-            for others in (x, new)
-        )
-        if known > _APART * period and found > apart * period:
-            new.append(one)
-    return np.array(new)
 
 
 def face_left_by_positions(points: Panels, found: LoadedFlanks) -> Array:

@@ -15,13 +15,12 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
+from fegear.contact.between_positions import between_positions, folded, worth_a_look
 from fegear.contact.plane.over_revolution import MOST_PITCHES, Beyond, OverRevolution
-from fegear.contact.wide.between_positions import between_positions, folded
 from fegear.contact.wide.compliance import like_cycle
 from fegear.contact.wide.flanks import as_specified, open_gaps
 from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair
-from fegear.contact.wide.over_pitch import worth_a_look
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.contact.wide.transmission_error import secant_stiffness
 from fegear.fem.teeth import together
@@ -123,10 +122,10 @@ class FollowedFlanks:
     Parameters
     ----------
     over : OverRevolution
+    revolving : RevolvingFlanks
+        What was followed.
     flanks : FlankPair
         As they were loaded.
-    cycles : int
-        Base pitches until the same teeth meet again; 1 where all teeth are alike.
     pitches : tuple of ndarray of int
         Numbers of the base pitches in which the same teeth meet.
     parts : tuple of (ContactLines, tuple of ndarray, shape (P, M))
@@ -136,11 +135,30 @@ class FollowedFlanks:
     """
 
     over: OverRevolution
+    revolving: RevolvingFlanks
     flanks: FlankPair
-    cycles: int
     pitches: tuple[Index, ...]
     parts: tuple[tuple[ContactLines, tuple[Array, ...]], ...]
     reaches_the_last_edges: bool = False
+
+    @property
+    def cycles(self) -> int:
+        """Base pitches until the same teeth meet again; 1 where all teeth are alike."""
+        return self.revolving.cycles
+
+    def at(self, roll: Array) -> FollowedFlanks:
+        """The same at other roll positions, shape (P,) [m]."""
+        return self._again(self.flanks, roll)
+
+    def less_exactly(self, roll: Array) -> tuple[FollowedFlanks, ...]:
+        """On longer panels, and with coarser gears, at some roll positions [m]; none where gears state no errors."""
+        if self.revolving.coarse is None:
+            return ()
+        longer = replace(self.flanks, panel=_LONGER * self.flanks.panel)
+        return self._again(longer, roll), self._again(replace(self.flanks, gears=self.revolving.coarse), roll)
+
+    def _again(self, flanks: FlankPair, roll: Array) -> FollowedFlanks:
+        return _followed(self.revolving, flanks, self.over.transmission_error.shape[0], roll, self)
 
 
 def wide_over_revolution(
@@ -175,19 +193,16 @@ def follow_flanks(
             f"must be at most {MOST_PITCHES} for a revolution", "specify different teeth on one gear only",
         )  # fmt: skip
     count, report = cycles if cycles > 1 else base_pitches, progress or (lambda _fraction: None)
-    found = _with_peaks(revolving, _far_enough(revolving, count))
+    found = _with_peaks(_far_enough(revolving, count))
     report(0.5)
     if revolving.coarse is None:
         return found
-    flanks, roll = found.flanks, found.over.x
-    longer = _followed(revolving, replace(flanks, panel=_LONGER * flanks.panel), count, roll)
-    report(0.75)
-    coarser = _followed(revolving, replace(flanks, gears=revolving.coarse), count, roll)
-    over = replace(found.over, others=(longer.over, coarser.over), of_changes=_OF_CHANGES)
+    others = tuple(one.over for one in found.less_exactly(found.over.x))
+    over = replace(found.over, others=others, of_changes=_OF_CHANGES)
     return replace(found, over=over)
 
 
-def _with_peaks(revolving: RevolvingFlanks, found: FollowedFlanks) -> FollowedFlanks:
+def _with_peaks(found: FollowedFlanks) -> FollowedFlanks:
     """The same with the roll positions between them at which extreme values are likely, and what is left of these."""
     count, pitch = found.over.transmission_error.shape[0], found.over.pitch
     for turn in range(_ROUNDS + 1):
@@ -202,7 +217,7 @@ def _with_peaks(revolving: RevolvingFlanks, found: FollowedFlanks) -> FollowedFl
         new = np.unique(np.round(worth_a_look(over.x, likely, pitch) / (_SNAP * pitch))) * _SNAP * pitch
         if turn == _ROUNDS or not new.size:
             break
-        found = _joined(found, _followed(revolving, found.flanks, count, new, found))
+        found = _joined(found, found.at(new))
     stiffness, error, residual, ordinary = (max(float(height.max()), 0.0) for _, height in likely)
     return replace(found, over=replace(found.over, beyond=Beyond(stiffness, ordinary, error, residual)))
 
@@ -265,7 +280,7 @@ def _followed(
     found = OverRevolution(
         roll, pair.base_pitch, load, pair.driver.base_radius, number, error, stiffness, loads, len(pitches), tangent
     )
-    return FollowedFlanks(found, flanks, revolving.cycles, pitches, ((lines, tuple(forces)),), reached)
+    return FollowedFlanks(found, revolving, flanks, pitches, ((lines, tuple(forces)),), reached)
 
 
 def _of_teeth(gaps: FlankGaps) -> tuple[tuple[Array, Array], tuple[tuple[tuple[int, OddFlank], ...], ...]]:

@@ -24,7 +24,7 @@ from fegear.case.built.pair_checks import check_odd_teeth
 from fegear.case.built.pair_spec import pair_spec
 from fegear.contact.plane.faces_in_mesh import FacesInMesh, faces_in_mesh
 from fegear.contact.plane.odd_compliance import OddCompliance
-from fegear.contact.plane.over_revolution import OverRevolution, StressOfTeeth, over_revolution, stress_over_revolution
+from fegear.contact.plane.over_revolution import OverRevolution, over_revolution
 from fegear.contact.plane.sidebands import (
     AlongRevolution,
     ConditionIndicators,
@@ -33,6 +33,7 @@ from fegear.contact.plane.sidebands import (
     condition_indicators,
     revolution_orders,
 )
+from fegear.contact.plane.stress_over_revolution import StressOfTeeth, stress_over_revolution
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
@@ -105,6 +106,7 @@ class StressByTooth:
     tooth: Index = shown("", "number of the tooth in meshing order", table="teeth")
     root_tension: Array = shown("MPa", "maximum root stress, tension side", table="teeth")
     root_tension_change: Array = shown("%", "change from the median of all teeth", table="teeth")
+    root_tension_error: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -213,8 +215,9 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
     pair = loaded.pair
     over = over_revolution(loaded.engagement, loaded.nominal, POSITIONS, loaded.shifted, pair.driver.teeth)
     work.progress(0.6)
+    engagement, load, shifted = loaded.engagement, loaded.nominal, loaded.shifted
     stress = tuple(
-        _by_tooth(stress_over_revolution(loaded.engagement, loaded.nominal, member, positions=POSITIONS), gear)
+        _by_tooth(stress_over_revolution(engagement, load, member, positions=POSITIONS, shifted=shifted), gear)
         for member, gear in zip(MEMBERS, asked.gears, strict=True)
         if loaded.spec.compliance == "fe" and loaded.spec.table is None
     )
@@ -223,13 +226,11 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
 
 def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) -> RevolutionData:
     from fegear.contact.wide.over_revolution import follow_flanks
-    from fegear.contact.wide.stress_over_revolution import wide_stress_over_revolution
+    from fegear.contact.wide.stress_over_revolution import usual_errors, wide_stress_over_revolution
 
     followed = follow_flanks(revolving, revolving.pair.driver.teeth, lambda part: work.progress(0.8 * part))
-    stress = tuple(
-        _by_tooth(wide_stress_over_revolution(followed, member), gear)
-        for member, gear in zip(MEMBERS, asked.gears, strict=True)
-    )
+    stresses = usual_errors(*(wide_stress_over_revolution(followed, member) for member in MEMBERS))
+    stress = tuple(_by_tooth(one, gear) for one, gear in zip(stresses, asked.gears, strict=True))
     return replace(_data(asked, revolving.pair, followed.over, stress), positions=followed.over.x.size)
 
 
@@ -263,7 +264,8 @@ def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
     order = np.array([meshing_order(tooth, found.teeth, found.member) for tooth in range(found.teeth)])
     at = np.argsort(order)
     largest = found.largest[at]
-    return StressByTooth(gear, order[at], largest, largest / np.median(largest) - 1.0)
+    error = None if found.largest_error is None else found.largest_error[at]
+    return StressByTooth(gear, order[at], largest, largest / np.median(largest) - 1.0, error)
 
 
 def _not_listed(seen: Seen) -> Iterator[str]:
@@ -331,7 +333,7 @@ _SHEET = Sheet(
         ),
         Rows(
             "root_stress_teeth_{name}_{one.gear}", "Maximum root stress of every tooth of gear {one.gear} in {name}",
-            (Every("teeth"),), each="stress",
+            (Every("teeth"), Off("root_tension", "root_tension_error")), each="stress",
         ),
         Rows(
             "mesh_stiffness_orders_{name}", "Orders of transmission error and mesh stiffness of {name}",
@@ -367,7 +369,7 @@ _SHEET = Sheet(
         Chart(
             "root_stress_teeth_{name}_{one.gear}", "Root stress of every tooth of gear {one.gear} in pair {name}",
             "Gear {one.gear}: maximum root stress (tension side) of every tooth over its engagement.",
-            (Over("tooth", (Line("root_tension", kind="points"),)),),
+            (Over("tooth", (Line("root_tension", kind="points", error="root_tension_error"),)),),
             each="stress",
         ),
     ),
