@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,20 +17,30 @@ from fegear.atlas.shipped import shipped_atlas
 from fegear.atlas.tables import row_of
 from fegear.fem.plane.solution import solve_gear
 
+if TYPE_CHECKING:
+    from fegear.atlas.atlas import Atlas
+    from fegear.geometry.gear import Gear
+
 SHARES, ON_AN_END, WANTED = (0.4, 0.25, 0.15, 0.2), 0.15, 2e-4
 
 
-def errors(rack: str, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """True and estimated errors of random gears, shapes (count, quantities)."""
-    atlas, rng, found = shipped_atlas(rack), np.random.default_rng(seed), []
-    while len(found) < count:
+def random_gear(atlas: Atlas, rng: np.random.Generator) -> Gear:
+    """Of pure numbers, that an atlas holds."""
+    while True:
         domain = atlas.domains[int(rng.choice(len(atlas.domains), p=SHARES))]
         at = rng.uniform(-1.0, 1.0, 4)
         if rng.random() < ON_AN_END:
             at[rng.integers(4)] = rng.choice([-1.0, 1.0])
         gear = atlas.family.gear(domain.place(atlas.family, at))
-        if not atlas.holds(gear):
-            continue
+        if atlas.holds(gear):
+            return gear
+
+
+def errors(rack: str, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """True and estimated errors of random gears, shapes (count, quantities)."""
+    atlas, rng, found = shipped_atlas(rack), np.random.default_rng(seed), []
+    for _ in range(count):
+        gear = random_gear(atlas, rng)
         row = row_of(solve_gear(gear, atlas.settings, reach=atlas.reach, estimate_error=False))
         known = atlas.gear(gear)
         estimated = [known.errors[name] for name in atlas.layout.quantities]
