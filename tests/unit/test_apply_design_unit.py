@@ -216,6 +216,32 @@ def test_rows_of_ground_flanks_become_the_keys_that_a_design_names(offset):
     assert [row.amount_tolerance for row in rows] == [4e-6, 4e-6, 2e-6, 2e-6, 3e-6, 5e-6]
 
 
+@pytest.mark.parametrize("offset", [0.0, 3e-3])
+def test_a_root_relief_over_the_same_part_of_the_path_stands_for_the_tip_relief_of_the_mate(offset):
+    gears = [
+        Gear(Tooth(z, BasicRack(), helix_angle=math.radians(15.0)), 3e-3, 15e-3, face, hand=hand)
+        for z, hand, face in ((20, "right", 20e-3 + 2.0 * offset), (31, "left", 20e-3))
+    ]
+    pair, names = GearPair(*gears), {"driver": "p", "driven": "w"}
+    relief = GroundRelief(18e-6, 3e-3, 12e-6, 2e-3, crowning=3e-6)
+    both = tomllib.loads("\n".join(keys_of(relief, pair, names)))["gear"]
+    own, mate = ("driver", "driven") if offset == 0.0 else ("driven", "driver")
+    found = tomllib.loads("\n".join(keys_of(relief, pair, names, on_one=True)))["gear"]
+    assert list(found) == [names[own]]
+    keys, others = found[names[own]], both[names[mate]]["relief"]["tip"]
+    assert keys["lead"] == both[names[own]]["lead"]
+    assert keys["relief"]["tip"] == both[names[own]]["relief"]["tip"]
+    root = keys["relief"]["root"]
+    assert root["amount"] == others["amount"]
+
+    def on_path(member, radius):
+        base = pair.gear(member).base_radius
+        return float(pair.x_of_roll(math.sqrt((float(radius.split()[0]) * 1e-3 / base) ** 2 - 1.0), member))
+
+    for one, other in (("start_radius", "start_radius"), ("end_radius", "at_radius")):
+        assert on_path(own, root[one]) == pytest.approx(on_path(mate, others[other]), abs=1e-7)
+
+
 @pytest.mark.parametrize(
     ("amount", "error", "written"),
     [

@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.notes import assuming
 from fegear.base.printed import figures, percent
 from fegear.contact.wide.lines import ContactLines
+from fegear.design.flanks.forms import lead_bearer
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Map, Over
@@ -141,8 +142,12 @@ def _tiles(quantity: str, label: str, title: str, floor: float) -> Over:
 
 def _keys(seen: Seen) -> str:
     data, asked = seen.data.data, seen.asked
-    keys = "; ".join(keys_of(data.design.found[seen.one.label].relief, data.pair, asked.gears))
-    return f"Pair {asked.name}, {seen.one.label}: keys of the gears: {keys or 'none'}."
+    relief = data.design.found[seen.one.label].relief
+    keys, on_one = ("; ".join(keys_of(relief, data.pair, asked.gears, on_one=on_one)) for on_one in (False, True))
+    said = f"Pair {asked.name}, {seen.one.label}: keys of the gears: {keys or 'none'}."
+    if on_one == keys:
+        return said
+    return f"{said} With the same gaps, ground on {asked.gears[lead_bearer(data.pair)]} only: {on_one}."
 
 
 def _left(seen: Seen, label: str) -> tuple[Array, Array]:

@@ -18,11 +18,21 @@ if TYPE_CHECKING:
     from fegear.design.flanks.forms import GroundRelief
 
 
-def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -> list[str]:
+def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str], *, on_one: bool = False) -> list[str]:
     """The relief as keys of both gears; lead and bias are those of the first whose face is the common one.
 
     Where both faces reach beyond the common one, lead and bias are given for the driver all the same, and count over
     the common face.
+
+    Parameters
+    ----------
+    relief : GroundRelief
+    pair : GearPair
+    gears : mapping of str to str
+        Names of driver and driven.
+    on_one : bool
+        All on the gear that has the lead: a root relief of it, over the same part of the path, in place of the tip
+        relief of its mate. Gaps, and so transmission errors and loads, are the same.
     """
     lines = []
     tips: tuple[tuple[Member, float, float, float], ...] = (
@@ -31,20 +41,26 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -
     )
     by_gear: dict[str, list[str]] = {gear: [] for gear in gears.values()}
     shape = "" if relief.tip_power == 1.0 else ', shape = "parabolic"'
+    bearer = lead_bearer(pair)
+    flanks: dict[Member, list[str]] = {member: [] for member in MEMBERS}
     for member, amount, end, start in tips:
         if amount:
-            radii = [float(pair.radius(at, member)) for at in (start, end)]
-            by_gear[gears[member]].append(
-                f'relief = {{ tip = {{ amount = "{_um(amount)}", start_radius = "{_mm(radii[0])}", '
-                f'at_radius = "{_mm(radii[1])}"{shape} }} }}'
+            on = bearer if on_one else member
+            place, at = ("tip", "at_radius") if on == member else ("root", "end_radius")
+            radii = [float(pair.radius(x, on)) for x in (start, end)]
+            flanks[on].append(
+                f'{place} = {{ amount = "{_um(amount)}", start_radius = "{_mm(radii[0])}", '
+                f'{at} = "{_mm(radii[1])}"{shape} }}'
             )
+    for member, ends in flanks.items():
+        if ends:
+            by_gear[gears[member]].append(f"relief = {{ {', '.join(ends)} }}")
     lead = [
         f'{key} = "{_um(value)}"' for key, value in (("crowning", relief.crowning), ("slope", relief.slope)) if value
     ]
     if relief.end_relief:
-        ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
-        lead.append(f"end_relief = {{ {ends} }}")
-    bearer = lead_bearer(pair)
+        face_ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
+        lead.append(f"end_relief = {{ {face_ends} }}")
     if lead:
         by_gear[gears[bearer]].append(f"lead = {{ {', '.join(lead)} }}")
     if relief.bias:
