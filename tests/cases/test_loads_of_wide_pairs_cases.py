@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -29,6 +30,7 @@ from fegear.engine.stage import Task
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.iso_mesh_stiffness import said_beside_iso
 from fegear.results.pair.transmission_error import TRANSMISSION_ERROR
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
@@ -296,3 +298,27 @@ def test_a_spur_pair_takes_its_width_from_its_key():
     assert {"transmission-error of I", "load-sharing of I", "loaded-flanks of I"} <= wide
     assert not any("flank" in task for task in plane)
     assert "loaded-pair of I" not in wide
+
+
+def test_the_mean_stiffness_stands_beside_c_gamma_of_iso(results):
+    """c' (0.75 eps_alpha + 0.25) with q' of ISO 6336-1, Eq. 86, virtual teeth z / cos^3 beta."""
+    values = {one.name: one for one in results.values}
+    e = results.outcomes[Task("transmission-error", "I")].data.found
+    fe, iso, ratio = (values[f"I.c_gamma_{key}"] for key in ("fe", "iso", "iso_to_fe"))
+    assert fe.value * 8.0 == pytest.approx(values["I.mesh_stiffness_mean"].value, rel=1e-9)
+    assert fe.error / fe.value == pytest.approx(values["I.mesh_stiffness_mean"].error * 8.0 / fe.value / 64.0, rel=1e-9)
+    assert ratio.value == pytest.approx(iso.value / fe.value, rel=1e-12)
+    assert ratio.error / ratio.value == pytest.approx(fe.error / fe.value, rel=1e-9)
+    beta, (one, two) = e.pair.driver.helix_angle, (e.pair.driver, e.pair.driven)
+    z1, z2 = (gear.teeth / np.cos(beta) ** 3 for gear in (one, two))
+    x1, x2 = one.tooth.profile_shift, two.tooth.profile_shift
+    q = (
+        0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2 - 0.24188 * x2 / z2
+        + 0.00529 * x1**2 + 0.00182 * x2**2
+    )  # fmt: skip
+    rack = np.mean([1.0 + 0.5 * (1.2 - gear.symmetric_tooth.dedendum) for gear in (one, two)])
+    elastic = 2.0 / (206e9 / one.material.young_modulus + 206e9 / two.material.young_modulus)
+    single = 0.8 / q * rack * np.cos(beta) * elastic * min(e.pair.specific_load(e.load) / 1e5, 1.0) ** 0.25
+    assert iso.value == pytest.approx(single * (0.75 * e.pair.contact_ratio + 0.25), rel=1e-2)
+    seen = SimpleNamespace(name="I", data=results.outcomes[Task("transmission-error", "I")].data)
+    assert said_beside_iso(seen)[0].endswith(f"(secant): ratio {ratio.value:.2f}.")

@@ -23,6 +23,13 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
 from fegear.results import forecasts
+from fegear.results.pair.iso_mesh_stiffness import (
+    ISO_REMARK,
+    ISO_VALUES,
+    IsoMeshStiffness,
+    iso_mesh_stiffness,
+    said_beside_iso,
+)
 from fegear.results.pair.loaded_teeth import (
     BASE_PITCH,
     OVER_LOADS,
@@ -50,11 +57,15 @@ _BARS = 16
 
 @dataclass(frozen=True)
 class TransmissionErrorData:
-    """Transmission error of loaded teeth; evenly spaced and by Mark's series where the case asks for these."""
+    """Transmission error of loaded teeth; evenly spaced and by Mark's series where the case asks for these.
+
+    Its mean stiffness stands beside that of ISO 6336-1 where the pair is loaded in 3D.
+    """
 
     found: ErrorOverPitch
     by_mark: MarkData | None
     even: EvenMesh | None = None
+    iso: IsoMeshStiffness | None = None
 
 
 def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work) -> TransmissionErrorData:
@@ -65,7 +76,8 @@ def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work
 
         by_mark = mark_data(cast("LoadedPair", teeth), asked.part.terms, found.rotational)
     even = None if asked.part.even_positions is None else even_mesh(found, asked.part.even_positions)
-    return TransmissionErrorData(found, by_mark, even)
+    iso = iso_mesh_stiffness(found) if hasattr(teeth, "flanks") else None
+    return TransmissionErrorData(found, by_mark, even, iso)
 
 
 def _marks(seen: Seen) -> Iterable[Mark]:
@@ -208,6 +220,7 @@ _ANSWER = Answer(
     "{v[te_mean]}.",
     _over_loads,
     "Pair {name}: mean mesh stiffness {v[mesh_stiffness_mean]} (secant), {v[local_stiffness_mean]} (tangent).",
+    said_beside_iso,
     "Pair {name}: first harmonic of the mesh frequency {v[te_first_harmonic]} (amplitude).",
     figure="transmission_error_{name}", rank=lambda seen: -seen.data.found.te_peak_to_peak[seen.nominal],
     among="the largest of {count} pairs",
@@ -216,9 +229,9 @@ _SHEET = Sheet(
     loads="found.loads",
     nominal="found.at",
     tables=(*_TABLES, *MARK_TABLES),
-    values=(*_VALUES, *MARK_VALUES),
+    values=(*_VALUES, *ISO_VALUES, *MARK_VALUES),
     figures=(*_FIGURES, *MARK_FIGURES),
-    remarks=(*_REMARKS, *MARK_REMARKS),
+    remarks=(*_REMARKS, ISO_REMARK, *MARK_REMARKS),
     answer=_ANSWER,
     settings={
         "harmonics": lambda seen: seen.data.found.series[seen.data.found.at].amplitude.size,
