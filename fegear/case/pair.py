@@ -112,8 +112,9 @@ class IsoPart(Part):
     )
     tip_relief_factor: Annotated[Number, Field(ge=1.0, le=1.2)] | None = Field(
         default=None,
-        description="User-defined f_ZCa of helical gears (edition 2019), 1 to 1.2. Default: 1.2 without, 1.07 with "
-        "tip relief (not verified against a printed source).",
+        description="User-defined f_ZCa of helical gears (edition 2019), 1 to 1.2. Default: 1.07 with tip "
+        "relief of both gears above that of running in (C_ay of ISO 6336-1, 2 um of case-hardened flanks), otherwise "
+        "1.2 (not verified against a printed source).",
     )
     micropitting_material_factor: Annotated[Number, Field(ge=0.3, le=2.0)] | None = Field(
         default=None,

@@ -8,6 +8,7 @@ from fegear.engine.run_answer import in_order
 
 if TYPE_CHECKING:
     from fegear.engine.run import Results
+    from fegear.engine.stage import Task
     from fegear.engine.value import Value
 
 #: More values than a screen has lines are read in no order; the other ones are in files and in the report.
@@ -17,8 +18,9 @@ _MOST = 40
 def spoken_values(results: Results) -> tuple[list[Value], int]:
     """Values for the terminal, in the order of the run, and how many others there are.
 
-    All of them where they fit on a screen. Else those of the requested results only, of each its first ones, as
-    many for one as for another.
+    Those of results that the answer of another one sums up are left to the files: a gearbox has a hundred, and its
+    answer names those to act on. All others where they fit on a screen. Else those of the requested results only, of
+    each its first ones, as many for one as for another.
 
     Parameters
     ----------
@@ -28,17 +30,28 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
     -------
     list of Value, int
     """
-    every = list(results.values)
-    if len(every) <= _MOST:
-        return every, 0
     wanted = {step.task for step in results.plan.steps if step.wanted}
+    summed = _summed_up(results)
+    every = [value for task, of in results.outcomes.items() if task not in summed for value in of.values]
+    names, count = {value.name for value in every}, len(results.values)
+    every = [value for value in results.values if value.name in names]
+    if len(every) <= _MOST:
+        return every, count - len(every)
     tasks = [
         task for task in in_order(results.outcomes, results.plan, results.outcomes, results.scene.case.results)
-        if task in wanted and results.outcomes[task].values
+        if task in wanted and task not in summed and results.outcomes[task].values
     ]  # fmt: skip
     kept: set[str] = set()
     for number, task in enumerate(tasks):
         share = (_MOST - len(kept)) // (len(tasks) - number)  # what one leaves is for those behind it
         kept |= {value.name for value in results.outcomes[task].values[:share]}
     found = [value for value in every if value.name in kept]
-    return found, len(every) - len(found)
+    return found, count - len(found)
+
+
+def _summed_up(results: Results) -> set[Task]:
+    """Tasks of wanted results that the answer of another one covers."""
+    steps = [step for step in results.plan.steps if step.wanted and step.task in results.outcomes]
+    answers = [results.outcomes[step.task].answer for step in steps]
+    covered = {result for answer in answers if answer is not None for result in answer.covers}
+    return {step.task for step in steps if set(step.stage.results) <= covered}

@@ -33,6 +33,8 @@ from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.results.catalogue import STAGES
 
+#: Keys of which a case has one: two measures of the same length.
+_OTHER_KEYS = {"bore_radius": "bore_diameter", "bore_diameter": "bore_radius"}
 #: Points of a sweep beyond which its results do not fit into memory: some 10 GB.
 _MOST_POINTS = 100_000
 
@@ -195,7 +197,22 @@ def _check(axes: Sequence[Axis], document: Mapping[str, Any]) -> None:
         raise InputError("--over", size, "points exceed the maximum of a sweep", f"reduce to at most {_MOST_POINTS:,}")
     trial = copy.deepcopy(dict(document))
     for axis in axes:
+        _refuse_contradicted(trial, axis)
         set_key(trial, axis.key, axis.values[0], "--over")
+
+
+def _refuse_contradicted(document: Mapping[str, Any], axis: Axis) -> None:
+    """Refuse an axis over one of two keys of the same length where the case has the other: no point would be one."""
+    part, _, key = axis.key.rpartition(".")
+    held: Any = document
+    for name in part.split("."):
+        held = held.get(name) if isinstance(held, dict) else None
+    other = _OTHER_KEYS.get(key)
+    if other is not None and isinstance(held, dict) and other in held:
+        raise InputError(
+            "--over", f'"{axis.key}"', f"contradicts {part}.{other} = {held[other]} of the case",
+            f"sweep {part}.{other}, or remove it from the case",
+        )  # fmt: skip
 
 
 def _by_atlas(axes: Sequence[Axis], document: dict[str, Any]) -> dict[str, Any]:

@@ -140,6 +140,23 @@ def test_a_run_says_one_sentence_of_every_wanted_result_and_five_in_all():
     assert answer_of_run(*run_of(*many), [f"R{n}" for n in range(7)]).sentences == tuple(f"{n}." for n in range(7))
 
 
+def test_what_two_results_say_of_the_same_is_said_once_with_more_about_where_it_holds():
+    said = "transmission error 0.3 µm"
+    plan, outcomes = run_of(
+        ("a", "A", True, (f"Pair I: {said}.", "Pair I: K 1.2.", f"Pair II: {said}.")),
+        ("b", "B", True, (f"Pair I at 190 N m: {said}.", "Pair I at end II: K 1.3.")),
+    )
+    found = answer_of_run(plan, outcomes, ("A", "B")).sentences
+    assert set(found) == {
+        "Pair I: K 1.2.",
+        f"Pair II: {said}.",
+        f"Pair I at 190 N m: {said}.",
+        "Pair I at end II: K 1.3.",
+    }
+    first = Task("a", "I")
+    assert answer_of_run(plan, {first: outcomes[first]}, ("A",)).sentences == outcomes[first].answer.sentences
+
+
 def test_what_describes_the_gears_stands_behind_and_what_another_sums_up_is_left_out():
     plan, outcomes = run_of(
         ("drawn", "geometry", True, ("25 teeth.", "1 kg.")), ("a", "A", True, ("a1.",)),

@@ -41,6 +41,44 @@ def test_a_gear_is_the_same_by_both_keys(more):
     assert one.rim(35e-3) == other.rim(35e-3)
 
 
+def kinds(bore, more):
+    """A gear with asymmetric teeth, of a pair in plane, and one with a ring in mesh."""
+    text = f"""
+results = ["geometry"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+face_width = "20 mm"
+{bore}
+{more}
+[gear.b]
+teeth = 40
+module = "3 mm"
+face_width = "20 mm"
+{more}
+bore_diameter = "60 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+torque = "100 N*m"
+"""
+    return build_scene(tomllib.loads(text), "case", Path())
+
+
+def test_an_asymmetric_gear_is_the_same_by_both_keys():
+    more = 'coast_pressure_angle = "28 deg"'
+    by_radius, by_diameter = (kinds(bore, more) for bore in ('bore_radius = "12 mm"', 'bore_diameter = "24 mm"'))
+    assert by_radius.gears["a"] == by_diameter.gears["a"]
+    assert by_diameter.gears["b"].bore_radius == pytest.approx(30e-3)
+
+
+@pytest.mark.parametrize("key", ["bore_radius", "bore_diameter"])
+def test_an_internal_gear_refuses_either_key_under_its_name(key):
+    text = f'internal = true\ncutter = {{ teeth = 20 }}\n{key} = "12 mm"'
+    with pytest.raises(InputError, match=rf"gear\.a\.{key} = "):
+        scene(text)
+
+
 @pytest.mark.parametrize(
     ("keys", "key", "words"),
     [

@@ -133,3 +133,8 @@ def test_the_terminal_has_a_screen_of_values_of_what_is_wanted():
     counts = [sum(value.name.startswith(name) for value in found) for name in "abcd"]
     assert counts == [13, 0, 3, 24]
     assert further == 143 - 40
+    answer = SimpleNamespace(covers=("a", "d"))
+    many.outcomes[Task("c", "")] = SimpleNamespace(values=many.outcomes[Task("c", "")].values, answer=answer)
+    found, further = spoken_values(many)  # of a result that sums others up their values are in the files
+    assert {value.name[0] for value in found} == {"b", "c"}
+    assert len(found) + further == 143

@@ -217,6 +217,10 @@ def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path
         (("--over", "gear.a.teth=20:22:3"), 'did you mean "teeth"'),
         (("--over", "gear.c.teeth=20:22:3"), '"c" is not in this case'),
         (("--over", "gear.a.teeth=20:22:3", "--over", "gear.a.teeth=1:2:3"), "is specified twice"),
+        (
+            ("--set", "gear.a.bore_diameter=20 mm", "--over", "gear.a.bore_radius=8:12:3:mm"),
+            "contradicts gear.a.bore_diameter = 20 mm of the case; sweep gear.a.bore_diameter, or remove it",
+        ),
         (("--over", "gear.a.teeth=20:22:3", "--out", "/proc/none"), "is not writable ("),
         ((), "Missing option '--over'"),
     ],

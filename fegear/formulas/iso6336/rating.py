@@ -231,7 +231,11 @@ def _tip_relief(conditions: Conditions) -> tuple[float, str]:
     if conditions.tip_relief_factor is not None:
         return conditions.tip_relief_factor, "f_ZCa: as specified"
     value = contact.tip_relief_factor(conditions.relieved, conditions.edition)
-    return value, contact.RECALLED.format(value=value, tips=contact.TIPS[conditions.relieved])
+    tips, least = contact.TIPS[conditions.relieved], min(one.tip_relief for one in conditions.quality)
+    if conditions.relieved == "none" and conditions.tip_relief is None and least > 0.0:
+        worn = dynamic.running_in_relief((conditions.strength[0].contact, conditions.strength[1].contact))
+        tips = f"whose tip relief of {least * 1e6:.3g} um does not exceed that of running in, {worn * 1e6:.2g} um,"
+    return value, contact.RECALLED.format(value=value, tips=tips)
 
 
 def permissible_contact(table: FactorTable, conditions: Conditions) -> tuple[FlankStrength, FlankStrength]:
