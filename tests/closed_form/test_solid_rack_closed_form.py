@@ -65,7 +65,10 @@ def test_without_motion_along_the_axis_a_spur_rack_is_the_plane_one():
 
 @pytest.mark.dear
 def test_it_is_the_limit_of_gears_with_many_teeth():
-    """Extrapolated over 250, 500 and 1000 teeth: deflections 1e-3, root stress as both coarse meshes have it."""
+    """Extrapolated over 250, 500 and 1000 teeth: deflections 1e-3, root stress as both coarse meshes have it.
+
+    Root stresses differ by 0.8 %, on meshes three quarters as coarse by 0.26 % with the other sign.
+    """
     deflection, stress = numbers(rack_of(20.0, teeth=15).usual, 0.2)
     beta, counts = math.radians(20.0), (250, 500, 1000)
     found = []

@@ -339,6 +339,13 @@ def test_3d_racks_want_a_face_width_that_is_solved():
         make_plan(build_scene(case(["rack-stiffness"], width="solid", reference_height="200 mm")), STAGES)
 
 
+def test_unequal_teeth_of_a_pinion_are_refused_not_neglected():
+    given = helical_case(["rack-transmission-error"])
+    given["gear"]["p"]["odd_tooth"] = [{"tooth": 1, "missing": True}]
+    with pytest.raises(InputError, match=r"gear\.p\.odd_tooth.*pinion of a rack"):
+        make_plan(build_scene(given), STAGES)
+
+
 @pytest.mark.dear
 def test_results_of_a_helical_rack():
     """A narrow rack of two teeth, coarse: tables over the face, and what the standard does not say left out."""

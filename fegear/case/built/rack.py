@@ -277,4 +277,7 @@ def loaded_rack_inputs(scene: Scene, name: str) -> RackInputs:
     found = rack_inputs(scene, name)
     if not found.force:
         raise InputError(f"rack.{name}.force", "(not given)", "is required for this result", 'set force = "1 kN"')
+    if scene.case.gear[found.pinion].odd_tooth:
+        raise InputError(f"gear.{found.pinion}.odd_tooth", "(given)", "is not available for the pinion of a rack",
+                         "remove it")  # fmt: skip
     return found

@@ -8,7 +8,7 @@ looked for where the curves' sides would meet, as over a revolution of two gears
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from fegear.contact.between_positions import JUMP, between_positions
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Mapping
 
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array, Index
     from fegear.contact.plane.compliance import Side
 
@@ -24,8 +26,8 @@ if TYPE_CHECKING:
 _ROUNDS, _INTERVALS = 3, 2
 #: Extremes are looked for this share of a base pitch from known positions, at least.
 _APART = 1e-3
-#: What is taken for an error of what half of the positions change of a mean.
-_OF_MEAN = 0.5
+#: What is taken for an error of what half of the positions change of a mean: jumps that they widen are not smooth.
+_OF_MEAN = 1.0
 #: Extremes that may be higher by this share of a curve's largest value are looked for.
 _WORTH = 1e-4
 
@@ -65,7 +67,7 @@ class OnPitch:
         """With other positions of the same base pitch."""
         order = np.argsort(np.concatenate([self.roll, other.roll]), kind="stable")
 
-        def both(one: Array, more: Array) -> Array:
+        def both(one: NDArray[Any], more: NDArray[Any]) -> NDArray[Any]:
             return np.concatenate([one, more])[order]
 
         return OnPitch(
@@ -84,7 +86,7 @@ class Beyond(NamedTuple):
     Parameters
     ----------
     mean : float
-        A part of what half of the positions change of the mean transmission error in the middle of the rack [m].
+        What half of the positions change of the mean transmission error in the middle of the rack [m].
     largest, peak_to_peak : float
         Of the transmission error over the stroke, and in the middle of the rack [m].
     pinion, middle, rack : float
@@ -272,8 +274,8 @@ class BasePitches:
                 of_rack[0, t] = one.tooth("tension", t - c).max(initial=of_rack[0, t])
                 of_rack[1, t] = one.tooth("compression", t - c).min(initial=of_rack[1, t])
         return Stroke(
-            travel, error, pairs, share, tension, compression, *of_rack, np.arange(len(every)), self.pitch / self.cos,
-            beyond, added,
+            travel, error, pairs, share, tension, compression, of_rack[0], of_rack[1], np.arange(len(every)),
+            self.pitch / self.cos, beyond, added,
         )  # fmt: skip
 
 
@@ -288,7 +290,7 @@ def _mean(x: Array, values: Array) -> float:
 
 
 def _mean_left(x: Array, values: Array) -> float:
-    """A part of what every second position changes of a mean, both ends kept."""
+    """What every second position changes of a mean, both ends kept."""
     fewer = [np.unique([0, *range(first, x.size, 2), x.size - 1]) for first in (1, 2)]
     return _OF_MEAN * max(abs(_mean(x[kept], values[kept]) - _mean(x, values)) for kept in fewer)
 

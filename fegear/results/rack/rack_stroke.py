@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.built.rack import RackInputs
     from fegear.case.reading import Scene
-    from fegear.contact.rack.over_stroke import Stroke
+    from fegear.contact.rack.stroke import Stroke
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Forecast, Upstream, Work
 
