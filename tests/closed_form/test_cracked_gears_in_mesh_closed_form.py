@@ -2,7 +2,7 @@
 
 import functools
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -19,6 +19,7 @@ from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.odd_compliance import odd_compliance, odd_neighbours_shifted_by_error, odd_shifted_by_error
 from fegear.contact.plane.over_revolution import over_revolution
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.sidebands import condition_indicators, indicator_errors
 from fegear.contact.plane.stress_over_revolution import stress_over_revolution
 from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
@@ -302,6 +303,20 @@ def test_the_loaded_pair_takes_a_cracked_gear_and_states_its_errors():
     assert (off > 0.0).all()
     assert off[1:].max() < 0.02
     assert off[0] < 0.1
+
+
+def test_condition_indicators_state_what_few_positions_leave_open():
+    loaded = load(PairSpec(PAIR, loads=(LOAD,), corner_contact=True), [cracked("driver", 0.5), ordinary("driven")])
+    (few, left), (many, _) = (
+        (
+            np.array(astuple(of(loaded.over_revolution(count), (Z[0],))))
+            for of in (condition_indicators, indicator_errors)
+        )
+        for count in (24, 160)
+    )
+    assert (np.abs(few - many) <= 1.5 * left).all()
+    assert (left > 0.0).all()
+    assert (left[[0, 5, 6]] < 0.05 * few[[0, 5, 6]]).all()
 
 
 def test_solved_gears_are_kept_on_disk(tmp_path):

@@ -34,6 +34,9 @@ from tests.helpers.true_errors import drawn as drawn_pair
 #: Part of a value that the truth itself may be off.
 ROUGH = 5e-5
 VALUES = ("mesh_stiffness_min", "mesh_stiffness_min_ordinary", "mesh_stiffness_loss", "te_max", "te_residual_max")
+INDICATORS = (
+    "residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor"
+)  # fmt: skip
 
 
 def drawn(rng, *, plane=False):
@@ -106,7 +109,8 @@ def answers(case, accuracy, estimates=True):
         name: (curves.column(name).si, curves.column(f"{name}_error").si if estimates else None)
         for name in ("te",)
     }  # fmt: skip
-    found |= {name: (np.array([known[name].si]), np.array([known[name].si_error or np.nan])) for name in VALUES}
+    names = [name for name in (*VALUES, *INDICATORS) if name in known]  # without a residual some are none
+    found |= {name: (np.array([known[name].si]), np.array([known[name].si_error or np.nan])) for name in names}
     roots = {gear: tables[f"root_stress_teeth_I_{gear}"] for gear in ("a", "b")}
     roots = {
         gear: (table.column("root_tension").si, table.column("root_tension_error").si if estimates else None)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from fegear.contact.plane.over_revolution import OverRevolution
 
 #: Even samples over a base pitch, and the highest harmonic of the mesh frequency.
 _SAMPLES, HIGHEST = 128, 8
+#: Positions nearer to each other than this share of a base pitch stand on both sides of a jump.
+_JUMP = 1e-5
 #: Share of the transmission error below which a part of it is round-off.
 _ROUND_OFF = 1e-9
 
@@ -83,6 +85,34 @@ def condition_indicators(found: OverRevolution, teeth: Sequence[int]) -> Conditi
         Numbers of teeth of the gears whose teeth differ: their shafts' orders are the first sidebands.
     """
     return indicators_of(_even(found, found.transmission_error), found.transmission_error.shape[0], teeth)
+
+
+def indicator_errors(found: OverRevolution, teeth: Sequence[int]) -> ConditionIndicators:
+    """Estimated errors of the condition indicators: what errors of the gears and half of the positions change of them.
+
+    That of the residual's RMS is relatively no less than that of its maximum: what all teeth have in common, errors of
+    odd teeth do not share.
+    """
+
+    def each(one: OverRevolution) -> Array:
+        return np.array(astuple(condition_indicators(one, teeth)))
+
+    here = each(found)
+    off = found.shift(each) + np.abs(each(_every_second(found)) - here)
+    if found.largest_residual > 0.0:
+        off[0] = max(off[0], found.largest_residual_error / found.largest_residual * here[0])
+    return ConditionIndicators(*off.tolist())
+
+
+def _every_second(found: OverRevolution) -> OverRevolution:
+    """At half of the roll positions, and on both sides of jumps."""
+    jump = np.diff(found.x) < _JUMP * found.pitch
+    beside = np.append(jump, False) | np.append(False, jump)
+    kept = beside | (np.cumsum(~beside) % 2 == 1)
+    return replace(
+        found, x=found.x[kept], transmission_error=found.transmission_error[:, kept],
+        stiffness=found.stiffness[:, kept], loads=found.loads[:, :, kept], tangent=found.tangent[:, kept], others=(),
+    )  # fmt: skip
 
 
 def without_mesh_harmonics(signal: Array, cycles: int) -> Array:

@@ -2,7 +2,7 @@
 
 Base pitches whose teeth stand alike are solved once. Extremes over the stroke stand between roll positions; they are
 looked for where the curves' sides would meet, as over a revolution of two gears
-(`fegear.contact.wide.between_positions`), and what is left of them is stated.
+(`fegear.contact.between_positions`), and what is left of them is stated.
 """
 
 from __future__ import annotations

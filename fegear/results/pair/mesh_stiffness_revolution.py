@@ -31,6 +31,7 @@ from fegear.contact.plane.sidebands import (
     RevolutionOrders,
     along_revolution,
     condition_indicators,
+    indicator_errors,
     revolution_orders,
 )
 from fegear.contact.plane.stress_over_revolution import StressOfTeeth, stress_over_revolution
@@ -117,6 +118,7 @@ class RevolutionData:
     found: OverRevolution
     orders: RevolutionOrders
     indicators: ConditionIndicators
+    indicator_errors: ConditionIndicators
     stress: tuple[StressByTooth, ...]
     faces: tuple[FacesInMesh, ...] = ()
     positions: int = POSITIONS
@@ -243,7 +245,7 @@ def _data(
 ) -> RevolutionData:
     odd = [pair.gear(member).teeth for member, _ in asked.odd] or [pair.driver.teeth]
     orders, indicators = revolution_orders(over), condition_indicators(over, odd)
-    return RevolutionData(pair, over, orders, indicators, stress, faces)
+    return RevolutionData(pair, over, orders, indicators, indicator_errors(over, odd), stress, faces)
 
 
 def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) -> Iterator[FacesInMesh]:
@@ -346,7 +348,7 @@ _SHEET = Sheet(
         Number("mesh_stiffness_loss", "mesh_stiffness_loss_error"),
         Number("te_max", "te_max_error"),
         Number("te_residual_max", "te_residual_max_error"),
-        *(Number(key, of="indicators") for key in INDICATORS),
+        *(Number(key, f"indicator_errors.{key}", of="indicators") for key in INDICATORS),
     ),
     figures=(
         Chart(
