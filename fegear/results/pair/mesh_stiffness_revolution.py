@@ -60,6 +60,8 @@ if TYPE_CHECKING:
 POSITIONS = 100
 #: Condition indicators, as values.
 INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor")
+#: Roll positions that are added to a 3D pair's where extremes may stand between them, on average (random pairs).
+_ADDED = 12
 #: Changes of deflections so small beside the transmission error are none.
 _EXACT = 1e-6
 #: Seconds of a base pitch of plane teeth; of a station of 3D pairs at a roll position, and again in each base pitch.
@@ -400,7 +402,8 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
         pitches = int(np.ceil(pair.total_contact_ratio)) + 6 if odd else 1
         stations = pair_spec(scene, name).panel_count * pair.total_contact_ratio
-        return Forecast({"positions": PLACES}, PLACES * stations * (_STATION + _AGAIN * pitches ** max(odd, 1)))
+        places = PLACES + _ADDED
+        return Forecast({"positions": places}, places * stations * (_STATION + _AGAIN * pitches ** max(odd, 1)))
     pitches = int(np.ceil(pair.contact_ratio)) + 5 if odd else 1
     return Forecast({"positions": POSITIONS}, _PITCH * pitches ** max(odd, 1))
 
