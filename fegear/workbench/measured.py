@@ -9,6 +9,7 @@ from typing import Any
 from fegear.base.errors import InputError, shown
 from fegear.base.solution_cache import SolutionCache
 from fegear.workbench.given import table
+from fegear.workbench.given_traces import filed_trace, is_table, of_arrays
 from fegear.workbench.pair import Pair
 from fegear.workbench.quantities import Force, Torque
 from fegear.workbench.questions import ask_of_pair, loaded_document
@@ -18,6 +19,15 @@ from fegear.workbench.results import Results
 _GAUGE = "g"
 #: Name of the encoders.
 _RIG = "rig"
+#: SI units of columns of arrays, by the key that names the column.
+_STRAIN_UNITS = {"angle_column": ("angle", "rad"), "strain_column": ("strain", "m/m")}
+_TE_UNITS = {"angle_column": ("angle", "rad"), "te_column": ("te", "m"), "torque_column": ("torque", "N*m")}
+
+
+def _units(of: Mapping[str, tuple[str, str]], given: Any) -> dict[str, str]:
+    """Units of columns by their names, which a case may change."""
+    keys = given if isinstance(given, Mapping) else {}
+    return {str(keys.get(key, name)): unit for key, (name, unit) in of.items() if not isinstance(keys.get(name), str)}
 
 
 def gauge(
@@ -40,6 +50,8 @@ def gauge(
     gauges : mapping
         Keys of ``[gauge.NAME]`` of a case file, for one gauge, or by the names of several: ``gear`` (by default the
         driver), ``fillet``, ``tangent_angle``, ``grid_length``, ``face_position``, ``measured = {"file": ...}``, ...
+        In place of the file ``measured`` takes arrays, ``{"angle": ..., "strain": ..., "fit": [...]}`` (rad and m/m;
+        quantities of pint; heads with units, ``"angle [deg]"``), or a DataFrame, alone or as ``{"data": frame, ...}``.
     torque, load, effects, tolerance, progress, cache
         As in `fegear.transmission_error`.
 
@@ -54,13 +66,26 @@ def gauge(
     InputError
         If a key does not fit: key, value, rule, remedy.
     """
-    given = table(gauges, "gauges")
+    given: Any = gauges if isinstance(gauges, Mapping) else table(gauges, "gauges")
     # of one gauge only `measured` is a table
     several = bool(given) and "measured" not in given and all(isinstance(one, Mapping) for one in given.values())
-    named = given if several else {_GAUGE: given}
+    named = {name: _with_file(one, name) for name, one in (given if several else {_GAUGE: given}).items()}
     document = loaded_document(pair, torque, load)
     document["gauge"] = {name: {"gear": pair.names[0], "pair": pair.name, **one} for name, one in named.items()}
-    return ask_of_pair("gauge", pair, document, effects, tolerance, progress, cache, neglected=False)
+    try:
+        return ask_of_pair("gauge", pair, document, effects, tolerance, progress, cache, neglected=False)
+    except InputError as error:
+        raise of_arrays(error) from None
+
+
+def _with_file(gauge: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The keys of a gauge, its trace in a file."""
+    rest, key = {one: value for one, value in gauge.items() if one != "measured"}, f"gauge.{name}.measured"
+    found = table(rest, "gauges")
+    if (measured := gauge.get("measured")) is None:
+        return found
+    arrays = is_table(measured) or isinstance(measured, Mapping)
+    return {**found, "measured": filed_trace(measured, key, _units(_STRAIN_UNITS, measured)) if arrays else measured}
 
 
 def measured_transmission_error(
@@ -80,8 +105,10 @@ def measured_transmission_error(
     Parameters
     ----------
     pair : Pair
-    traces : path or mapping, or several
+    traces : path, mapping or DataFrame, or several
         CSV files; a mapping ``{"file": ..., "torque": "60 N*m"}`` says at which torque on the driver one was taken.
+        In place of a file arrays, ``{"angle": ..., "te": ..., "torque": "60 N*m"}`` (rad, and m or rad; quantities of
+        pint; heads with units, ``"te [um]"``), or a DataFrame, alone or as ``{"data": frame, "torque": ...}``.
     torque, load, effects, tolerance, progress, cache
         As in `fegear.transmission_error`: every torque of the traces.
     encoders : mapping, optional
@@ -98,11 +125,22 @@ def measured_transmission_error(
     InputError
         If a key or a file does not fit: key, value, rule, remedy.
     """
-    each = [traces] if isinstance(traces, (str, os.PathLike, Mapping)) else list(traces)
+    each: list[Any] = [traces] if isinstance(traces, (str, os.PathLike, Mapping)) or is_table(traces) else list(traces)
     if not each:
         raise InputError("traces", shown(traces), "must name at least one file", 'use traces="trace.csv"')
-    files = [table(one, "traces") if isinstance(one, Mapping) else {"file": os.fspath(one)} for one in each]
+    rig = table(encoders, "encoders")
+    along = rig.get("te_at", "line-of-action") == "line-of-action"
+    units = _units({**_TE_UNITS, "te_column": ("te", "m" if along else "rad")}, rig)
+    files = [
+        filed_trace(one, f"encoders.{_RIG}.traces[{i}]", units)
+        if isinstance(one, Mapping) or is_table(one)
+        else {"file": os.fspath(one)}
+        for i, one in enumerate(each)
+    ]
     document = loaded_document(pair, torque, load)
-    document["encoders"] = {_RIG: {"pair": pair.name, "traces": files, **table(encoders, "encoders")}}
+    document["encoders"] = {_RIG: {"pair": pair.name, "traces": files, **rig}}
     wanted = "measured-transmission-error"
-    return ask_of_pair(wanted, pair, document, effects, tolerance, progress, cache, neglected=False)
+    try:
+        return ask_of_pair(wanted, pair, document, effects, tolerance, progress, cache, neglected=False)
+    except InputError as error:
+        raise of_arrays(error) from None

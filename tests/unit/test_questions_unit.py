@@ -10,6 +10,8 @@ import pytest
 
 import fegear
 from fegear.base.errors import InputError
+from fegear.case.built.encoders import encoders_of
+from fegear.case.built.gauges import check_gauge, gauge_of
 from fegear.case.reading import build_scene
 from fegear.engine.named import Named
 from fegear.engine.plan import make_plan
@@ -352,3 +354,79 @@ def test_gauges_and_traces_are_asked_for_by_the_keys_of_a_case(asked, tmp_path):
 def test_a_number_of_positions_is_no_radius():
     with pytest.raises(InputError, match="use positions=40"):
         fegear.stiffness_table(PINION, 40)
+
+
+_AT = np.radians(np.arange(-20.0, 21.0))
+_STRAIN = 5e-4 - 1e-6 * np.degrees(_AT) ** 2
+
+
+def _trace(scene):
+    return gauge_of(scene, "g").measured
+
+
+@pytest.mark.dear
+def test_traces_are_arrays_quantities_or_tables_as_well_as_files(asked, tmp_path):
+    pair = fegear.Pair(PINION, WHEEL)
+    pd, pint = pytest.importorskip("pandas"), pytest.importorskip("pint")
+    degrees, micro = np.degrees(_AT), _STRAIN * 1e6
+    frame, unit = pd.DataFrame({"angle [deg]": degrees, "strain [um/m]": micro, "note": "x"}), pint.UnitRegistry()
+    rows = [f"{a!r},{s!r}\n" for a, s in zip(degrees.tolist(), micro.tolist(), strict=True)]
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + "".join(rows))
+    ways = [
+        {"file": str(tmp_path / "t.csv")}, {"angle": _AT, "strain": _STRAIN},
+        {"angle": list(_AT), "strain": tuple(_STRAIN)},
+        {"angle [deg]": degrees, "strain [um/m]": pd.Series(micro)}, frame,
+        {"data": {"phi": degrees, "SG": micro}, "angle": "deg", "strain": "um/m", "angle_column": "phi",
+         "strain_column": "SG"},
+        {"data": frame}, {"angle": degrees * unit.deg, "strain": _STRAIN},
+    ]  # fmt: skip
+    for measured in ways:
+        found = _trace(fegear.gauge(pair, {"measured": measured}, torque="90 N*m"))
+        np.testing.assert_allclose(found.angle, _AT, rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(found.strain, _STRAIN, rtol=1e-12)
+    left = {"measured": {"angle": _AT, "strain": _STRAIN, "fit": ["offset", "scale"]}}
+    fitted = fegear.gauge(pair, {"left": left, "right": {}}, load="3 kN").case.gauge
+    assert (fitted["left"].measured.fit, fitted["right"].measured) == (["offset", "scale"], None)
+    gap = np.where(np.arange(_AT.size) == 7, np.nan, _STRAIN)
+    short = _trace(fegear.gauge(pair, {"measured": {"angle": _AT, "strain": gap}}, load="3 kN"))
+    assert short.angle.size == _AT.size - 1
+    te = 1e-6 * np.sin(np.linspace(0.0, 900.0, 4000))
+    traces = [{"angle": np.linspace(0.0, 6.0, 4000), "te": te, "torque": "60 N*m"},
+              {"data": pd.DataFrame({"angle [deg]": np.linspace(0.0, 350.0, 4000), "te [um]": 2e6 * te}),
+               "torque": "90 N*m"}]  # fmt: skip
+    scene = fegear.measured_transmission_error(pair, traces, torque=["60 N*m", "90 N*m"], encoders={"fit": ["shift"]})
+    one, two = encoders_of(scene, "rig").traces
+    np.testing.assert_allclose((one.te, 0.5 * two.te), (te, te), rtol=1e-12)
+    assert (one.angle[-1], two.angle[-1]) == pytest.approx((6.0, math.radians(350.0)))
+
+
+@pytest.mark.parametrize(
+    ("measured", "rule"),
+    [
+        ({"angle": _AT, "strain": _STRAIN[:-1]},
+         "gauge.g.measured = angle [rad] 41, strain [m/m] 40: must be columns of one length"),
+        ({"angle": _AT}, "gauge.g.measured = (arrays): requires a column strain"),
+        ({"angle": _AT[:5], "strain": _STRAIN[:5]}, "gauge.g.measured = (arrays): has 5 samples, fewer than 8"),
+        ({"angle": _AT, "strain": _STRAIN, "file": "t.csv"}, 'measured.file = "t.csv": contradicts arrays'),
+        ({"angle": _AT, "strain": np.ones((41, 2))},
+         "measured.strain = (array of float64, shape (41, 2)): must be one"),
+        ({"angle": _AT, "strain": np.array(["a"] * 41)}, "must be one column of numbers"),
+        ({"angle": _AT, "strain": np.zeros(0)}, "must be one column of numbers"),
+        ({"angle": [1.0, [2.0, 3.0]], "strain": _STRAIN}, "must be one column of numbers"),
+        ({"angle": _AT, "strain": 1e6 * _STRAIN}, "above 5 %"),
+        ({"angle": _AT, "strain": np.ones(41)}, "(arrays): has the same strain in every line"),
+        ({"angle": _AT, "strain": np.where(_AT > 0.2, np.inf, _STRAIN)}, "(arrays): has "),
+        ({"angle": _AT, "strain": _STRAIN, "fit": ["drift", "offset"]},
+         "requires a trace of 2 turns, the trace has 0.114"),
+        ({"angle [mm]": _AT, "strain": _STRAIN}, "is not an angle"),
+        ({"data": 7}, "measured.data = 7: must be a mapping of heads to arrays, or a DataFrame"),
+        ({"data": {}}, "must have at least one column"), ([1.0], "must be a table"),
+    ],
+)  # fmt: skip
+def test_wrong_arrays_are_refused_in_one_sentence(asked, monkeypatch, measured, rule):
+    monkeypatch.setattr(questions, "run_scene", lambda scene, **_: check_gauge(scene, "g"))
+    with pytest.raises(InputError) as refused:
+        fegear.gauge(fegear.Pair(PINION, WHEEL), {"measured": measured}, load="3 kN")
+    assert rule in str(refused.value)
+    assert "\n" not in str(refused.value)
+    assert "arrays_" not in str(refused.value)
