@@ -1,9 +1,12 @@
 """Strokes of racks put together from given base pitches: extremes between positions, means, ends."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from fegear.contact.rack.stroke import BasePitches, OnPitch
+from fegear.results.rack.rack_stroke import _root_shares
 
 PITCH, START, COS, TEETH = 2.0, 1.0, 0.8, 5
 SIDES = ("tension", "compression")
@@ -49,6 +52,17 @@ def test_what_is_not_looked_for_is_stated():
     missed = 1.0 + HEIGHT - np.nanmax(found.error)
     assert 0.0 < missed <= found.beyond.largest * (1.0 + 1e-6) < 0.2
     assert not found.added
+
+
+def test_root_stress_that_is_alike_on_two_meshes_by_chance_has_the_error_of_the_other_side():
+    of = SimpleNamespace(
+        pinion_tension=np.array([[2.0, np.nan]]), pinion_compression=np.array([[-4.0, np.nan]]),
+        rack_tension=np.array([1.0, 5.0]), rack_compression=np.array([-2.0, -10.0]),
+    )  # fmt: skip
+    coarse = SimpleNamespace(**vars(of) | {"rack_compression": np.array([-2.0, -10.2])})
+    pinion, middle, rack = _root_shares(of, coarse)
+    assert pinion == 0.0
+    assert middle == rack == pytest.approx(0.03)
 
 
 def test_a_rounded_top_lies_within_what_is_stated():

@@ -42,6 +42,10 @@ if TYPE_CHECKING:
 
 #: Seconds of a 3D rack at one position of a base pitch of the stroke, both solutions; base pitches that differ.
 _SECONDS_WIDE, _APART = 0.13, 10
+#: Error of the root stress of 3D teeth over what coarser elements change of it, as of single entries of solid gears.
+_OF_ROOTS = 1.5
+#: Of root fillets.
+SIDES = ("tension", "compression")
 
 
 @dataclass(frozen=True)
@@ -141,6 +145,21 @@ def _numbers(stroke: Stroke, force: float) -> StrokeNumbers:
     )  # fmt: skip
 
 
+def _root_shares(fine: Stroke, coarse: Stroke) -> tuple[float, float, float]:
+    """Relative errors of the root stress of the pinion, and twice of the rack, from those by coarser elements.
+
+    A single number may be the same on both meshes by chance: the largest change on either side of any tooth counts.
+    """
+    pinion, rack = (
+        max(
+            float(np.nanmax(np.abs(one - other)) / np.nanmax(np.abs(one)))
+            for one, other in ((getattr(of, f"{member}_{side}") for of in (fine, coarse)) for side in SIDES)
+        )
+        for member in ("pinion", "rack")
+    )
+    return _OF_ROOTS * pinion, _OF_ROOTS * rack, _OF_ROOTS * rack
+
+
 def _plane(asked: RackInputs, upstream: Upstream, work: Work) -> tuple[Stroke, Stroke | None, None]:
     """The stroke, and that by the coarser elements."""
     from fegear.contact.rack.over_stroke import over_stroke
@@ -195,10 +214,12 @@ def _compute(asked: RackInputs, upstream: Upstream, work: Work) -> RackStroke:
     errors = StrokeNumbers(*(math.nan for _ in names))
     if coarse is not None:
         other = _numbers(coarse, force)
+        off = {name: abs(getattr(numbers, name) - getattr(other, name)) for name in names}
+        if asked.wide:
+            for name, share in zip(("pinion", "middle", "rack"), _root_shares(stroke, coarse), strict=True):
+                off[name] = max(off[name], share * getattr(numbers, name))
         left = stroke.beyond._asdict() | {"stiffness": numbers.stiffness * stroke.beyond.mean / numbers.mean}
-        errors = StrokeNumbers(
-            *(abs(getattr(numbers, name) - getattr(other, name)) + left.get(name, 0.0) for name in names)
-        )
+        errors = StrokeNumbers(*(off[name] + left.get(name, 0.0) for name in names))
     there, tangential = ~np.isnan(stroke.error), asked.force
     tooth = np.minimum(np.broadcast_to(stroke.tooth[:, None], there.shape), pair.rack.teeth - 1)
     by_standard = (math.nan, math.nan)
