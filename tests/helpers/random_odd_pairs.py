@@ -164,7 +164,10 @@ def main():
         odd = next(gear["odd_tooth"] for gear in case["gear"].values() if "odd_tooth" in gear)
         print(f"{number}: {odd}, {time.process_time() - started:.0f} s; true / stated, part of the largest:")
         for name, (true, stated, size) in each.items():
-            print(f"  {name}: {true / max(stated, 1e-300):.2f}, {true / size:.1e}, {stated / size:.1e}", flush=True)
+            print(
+                f"  {name}: {true / max(stated, 1e-300):.2f}, {true / (size or 1.0):.1e}, {stated / (size or 1.0):.1e}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":
