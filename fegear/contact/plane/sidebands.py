@@ -91,7 +91,8 @@ def indicator_errors(found: OverRevolution, teeth: Sequence[int]) -> ConditionIn
     """Estimated errors of the condition indicators: what errors of the gears and half of the positions change of them.
 
     That of the residual's RMS is relatively no less than that of its maximum: what all teeth have in common, errors of
-    odd teeth do not share.
+    odd teeth do not share. Kurtosis and sixth moment go with second and third powers of a square: their relative errors
+    are no less than once and twice that one.
     """
 
     def each(one: OverRevolution) -> Array:
@@ -100,7 +101,8 @@ def indicator_errors(found: OverRevolution, teeth: Sequence[int]) -> ConditionIn
     here = each(found)
     off = found.shift(each) + np.abs(each(_every_second(found)) - here)
     if found.largest_residual > 0.0:
-        off[0] = max(off[0], found.largest_residual_error / found.largest_residual * here[0])
+        part = found.largest_residual_error / found.largest_residual
+        off = np.maximum(off, part * np.array([1.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0]) * here)
     return ConditionIndicators(*off.tolist())
 
 
