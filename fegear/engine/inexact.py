@@ -18,6 +18,8 @@ _MISLEADING = 0.01
 _NAMED = 4
 #: A value so small compared with its error is the round-off of zero.
 _ROUND_OFF = 1e-9
+#: Digits of relative errors that put them in order: mirrored halves differ by round-off.
+_ORDERED = 6
 
 
 def is_inexact(value: Value, tolerance: float) -> bool:
@@ -41,7 +43,7 @@ def inexact_values(values: Iterable[Value], tolerance: float) -> str:
     """
     found = sorted(
         ((one.error / abs(one.value), one) for one in values if one.error and is_inexact(one, tolerance)),
-        key=lambda pair: -pair[0],
+        key=lambda pair: -float(f"{pair[0]:.{_ORDERED}g}"),  # equal ones in their own order
     )
     if not found:
         return ""

@@ -94,6 +94,8 @@ def test_values_that_are_known_less_well_than_asked_are_named_the_worst_first():
     assert several.startswith("Estimated errors above 1 % (tolerance 0.1 %): I.te_peak_to_peak")
     assert several.endswith("; and 2 more.")
     assert inexact_values(values, 2.0) == ""
+    halves = [Value("end_I", 306e6, "MPa", 28e6), Value("end_II", 306e6, "MPa", 28e6 * (1.0 + 1e-15))]
+    assert inexact_values(halves, 0.05).index("end_I =") < inexact_values(halves, 0.05).index("end_II =")
 
 
 def test_numbers_and_units_are_written_for_people():
