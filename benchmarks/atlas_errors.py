@@ -18,7 +18,7 @@ from fegear.atlas.tables import row_of
 from fegear.fem.plane.solution import solve_gear
 
 if TYPE_CHECKING:
-    from fegear.atlas.atlas import Atlas
+    from fegear.atlas.interpolation import Atlas
     from fegear.geometry.gear import Gear
 
 SHARES, ON_AN_END, WANTED = (0.4, 0.25, 0.15, 0.2), 0.15, 2e-4

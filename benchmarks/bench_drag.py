@@ -3,11 +3,12 @@
     python benchmarks/bench_drag.py [--moves 60] [--case NAME] [--against CHECKOUT]
 
 A real pointer takes the point of the driver's tip relief and moves it ten times a second (five times for a pair with
-its width) in sight of the small pictures. Every move counts when the picture that answers it, drawn from that very case
-or a later one, has been painted. Printed for each case: median, 95th percentile and largest of the milliseconds, the
-median of the first and second half (a delay that grows shows there), and the processor milliseconds for one move of the
-page's server, the computing process and the browser: a machine that does other things as well stretches the first, not
-these. `--against` drags in another checkout in turn, so that both meet the same company, and prints the ratios.
+its width) in sight of the small pictures; the arrows of the pinion's tooth number and profile shift likewise. Every
+move counts when the picture that answers it, drawn from that very case or a later one, has been painted. Printed for
+each case: median, 95th percentile and largest of the milliseconds, the median of the first and second half (a delay
+that grows shows there), and the processor milliseconds for one move of the page's server, the computing process and the
+browser: a machine that does other things as well stretches the first, not these. `--against` drags in another checkout
+in turn, so that both meet the same company, and prints the ratios.
 """
 
 from __future__ import annotations
@@ -25,7 +26,11 @@ ROOT = Path(__file__).resolve().parents[1]
 CASES = {
     "drive": ("te", "transmission-error", 10.0, (100, 200)),
     "helical_load": ("line-load", "load-distribution", 5.0, (250, 500)),
+    "teeth": ("te", "transmission-error", 10.0, (50, 100)),
+    "profile_shift": ("te", "transmission-error", 10.0, (50, 100)),
 }
+#: Numbers of the pinion that are dragged in the form, and pixels of a step; of all other cases the tip relief's point.
+NUMBERS = {"teeth": 12.0, "profile_shift": 4.0}
 #: The spur pair of the tutorial with tip reliefs, solved by finite elements, the stress inside shown.
 DRIVE = """title = "Drag"
 results = ["load-sharing", "transmission-error", "root-stress-history"]
@@ -96,8 +101,8 @@ class Dragged:
 class Drag:
     """One checkout's window with a case, ready to be dragged in."""
 
-    def __init__(self, bench, checkout: Path, case: Path, picture: str, stage: str) -> None:
-        self.bench, self.window = bench, bench.Window(checkout, case)
+    def __init__(self, bench, checkout: Path, case: Path, picture: str, stage: str, number: str = "") -> None:
+        self.bench, self.window, self.step = bench, bench.Window(checkout, case), NUMBERS.get(number, 0.0)
         self.browser = self.window.browser
         self.browser.size(1300, 800)
         self.browser("Network.disable")  # else every message to the page is written down for who drives the browser
@@ -113,12 +118,20 @@ class Drag:
                 "[...document.querySelectorAll('button')].find((one) => one.textContent === 'Add tip relief')"
             )
             self.browser.until(f"{find} !== null && !document.body.classList.contains('computing')")
+        if number:
+            field = f"document.querySelector('[data-key=\"gear.pinion.{number}\"]')"
+            self.browser.until(f"{field} !== null")
+            find = f"{field}.closest('.scrubs').querySelector('.q-field__inner')"
+            self.browser.run(f"{find}.scrollIntoView({{ block: 'center' }})")
         self._rounds = 0
         self.at = self.browser.run(f"(b => [b.x + b.width / 2, b.y + b.height / 2])({find}.getBoundingClientRect())")
+        if number:  # the arrow in the corner
+            self.at = self.browser.run(f"(b => [b.right - 7, b.top + 7])({find}.getBoundingClientRect())")
 
-    def _mouse(self, kind: str, up: float) -> None:
+    def _mouse(self, kind: str, along: float) -> None:
         x, y = self.at
-        self.browser("Input.dispatchMouseEvent", type=kind, x=x, y=y + up, button="left", buttons=1, clickCount=1)
+        x, y = (x + along, y) if self.step else (x, y + along)
+        self.browser("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
 
     def drag(self, moves: int, every: float, found: Dragged) -> None:
         """Take the point, move it so many times up and down, and let go where it was; never twice to one place."""
@@ -130,7 +143,8 @@ class Drag:
         self._mouse("mousePressed", 0.0)
         for i in range(moves):
             started = time.monotonic()
-            self._mouse("mouseMoved", 3.0 + (i % 8) * 2.0 + 0.3 * (i // 8) + 0.07 * self._rounds)
+            further = 3.0 + (i % 8) * 2.0 + 0.3 * (i // 8) + 0.07 * self._rounds
+            self._mouse("mouseMoved", self.step * (moves * (self._rounds - 1) + i + 1) if self.step else further)
             time.sleep(max(0.0, every - (time.monotonic() - started)))
         for _ in range(100):
             if self.browser.run("unanswered()") == 0:
@@ -157,10 +171,11 @@ def measure(name: str, moves: int, checkouts: list[Path], folder: Path) -> None:
     bench = _windows()
     picture, stage, rate, asked = CASES.get(name, CASES["drive"])
     case = ROOT / "cases" / f"{name}.toml"
-    if name == "drive":
+    if name in ("drive", *NUMBERS):
         case = folder / "drive.toml"
         case.write_text(DRIVE)
-    drags = [Drag(bench, checkout, case, picture, stage) for checkout in checkouts]
+    number = name if name in NUMBERS else ""
+    drags = [Drag(bench, checkout, case, picture, stage, number) for checkout in checkouts]
     found = [Dragged() for _ in drags]
     try:
         for drag in drags:
@@ -195,7 +210,7 @@ if __name__ == "__main__":
 
     parser = argparse.ArgumentParser()
     parser.add_argument("--moves", type=int, default=60)
-    parser.add_argument("--case", help="one of the two, or a spur pair of cases/ with a relief to drag")
+    parser.add_argument("--case", help="one of the four, or a spur pair of cases/ with a relief to drag")
     parser.add_argument("--against", type=Path)
     asked_for = parser.parse_args()
     trees = [ROOT] + ([asked_for.against.resolve()] if asked_for.against else [])

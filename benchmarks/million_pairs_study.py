@@ -24,7 +24,7 @@ from fegear.atlas.many_pairs import known_pairs, spur_pairs
 from fegear.atlas.shipped import RACKS, shipped_atlas
 from fegear.base.errors import FegearError
 from fegear.contact.many.arrays import ManyEngagements
-from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.contact.many.many_roots import root_stresses
 from fegear.formulas.agma import agma908
 from fegear.formulas.fitted_stiffness import terms

@@ -19,8 +19,8 @@ from mkdocs.structure.files import File
 from shortened import chosen
 from snippets import execute, runs
 
+from fegear.base.cache_keys import content_key
 from fegear.base.code_version import code_version
-from fegear.base.keys import content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable

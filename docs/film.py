@@ -27,8 +27,8 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from shortened import chosen
 
+from fegear.base.cache_keys import content_key
 from fegear.base.code_version import code_version
-from fegear.base.keys import content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

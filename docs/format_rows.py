@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from fegear.output.formats import FORMATS
+from fegear.output.export_formats import FORMATS
 
 PAGE = Path(__file__).resolve().parent / "how-to" / "export.md"
 _BLOCK = re.compile(r"<!-- formats -->\n.*?<!-- end of formats -->", re.DOTALL)

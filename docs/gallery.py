@@ -22,8 +22,8 @@ from mkdocs.structure.files import File
 from pathspec.gitignore import GitIgnoreSpec
 from shortened import chosen
 
+from fegear.base.cache_keys import content_key
 from fegear.base.code_version import code_version
-from fegear.base.keys import content_key
 from fegear.engine.citation import bibliography
 
 if TYPE_CHECKING:

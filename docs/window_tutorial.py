@@ -20,8 +20,8 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from shortened import chosen
 
+from fegear.base.cache_keys import content_key
 from fegear.base.code_version import code_version
-from fegear.base.keys import content_key
 
 DOCS = Path(__file__).resolve().parent
 PAGE = DOCS / "tutorial-in-the-window.md"

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import fegear
-from fegear.atlas.atlas import Atlas, Piece
 from fegear.atlas.common_rows import common_rows
+from fegear.atlas.interpolation import Atlas, Piece
 from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degrees, products
 from fegear.atlas.tables import Layout, errors_of, row_of
 from fegear.base.plain import pack, unpack

@@ -15,14 +15,14 @@ from fegear.atlas.tables import shares_of_fillet, shares_of_flank
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks, ManyReliefs
-from fegear.contact.many.many_loaded import ManyErrors, transmission_errors
+from fegear.contact.many.many_load_sharing import ManyErrors, transmission_errors
 from fegear.contact.many.many_roots import ManyFillets, ManyRootStress, root_stresses
 from fegear.fem.plane.contact_width import log_slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.atlas.atlas import Atlas
+    from fegear.atlas.interpolation import Atlas
     from fegear.base.arrays import Array, Mask
     from fegear.geometry.many_pairs import ManyGearPairs
 

@@ -23,7 +23,7 @@ from fegear.fem.plane.solution import solve_gear
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.atlas.atlas import Atlas, Piece
+    from fegear.atlas.interpolation import Atlas, Piece
     from fegear.base.arrays import Array
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear

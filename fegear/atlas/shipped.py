@@ -11,17 +11,17 @@ from hashlib import sha256
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING
 
-from fegear.atlas.atlas import load_atlas
 from fegear.atlas.build import build_atlas
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family
+from fegear.atlas.interpolation import load_atlas
 from fegear.atlas.refining import refined
 from fegear.base.errors import InputError, RangeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.atlas.atlas import Atlas
+    from fegear.atlas.interpolation import Atlas
     from fegear.base.solution_cache import SolutionCache
     from fegear.geometry.gear import Gear
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks
-from fegear.contact.many.many_loaded import shares_at
+from fegear.contact.many.many_load_sharing import shares_at
 from fegear.fem.plane.contact_width import log_slope
 
 if TYPE_CHECKING:
-    from fegear.atlas.atlas import Atlas
+    from fegear.atlas.interpolation import Atlas
     from fegear.base.arrays import Array
     from fegear.geometry.many_pairs import ManyGearPairs
 

@@ -15,7 +15,7 @@ from typing import Any, Generic, Literal, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
-from fegear.base.keys import Key, call_key, remember_made
+from fegear.base.cache_keys import Key, call_key, remember_made
 from fegear.base.store import Store, cache_folder
 
 P = ParamSpec("P")
@@ -119,9 +119,9 @@ class SolutionCache:
         Parameters
         ----------
         function : callable
-            Of a module; see `fegear.base.keys.call_key`. What it raises is raised on and nothing is kept.
+            Of a module; see `fegear.base.cache_keys.call_key`. What it raises is raised on and nothing is kept.
         *args, **named
-            All that the answer depends on; see `fegear.base.keys.content_key`.
+            All that the answer depends on; see `fegear.base.cache_keys.content_key`.
         """
         return self._called(None, function, args, named)
 

@@ -10,7 +10,7 @@ import typer
 
 from fegear.commands.arguments import AsJson, CaseFile, Overrides, Quiet, out_option
 from fegear.commands.terminal import INTERRUPTED, Voice, leave
-from fegear.output.formats import FORMATS
+from fegear.output.export_formats import FORMATS
 
 
 def export(

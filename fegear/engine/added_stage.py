@@ -10,8 +10,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
+from fegear.base.cache_keys import Key
 from fegear.base.extensions import Guarded, held_to_words
-from fegear.base.keys import Key
 from fegear.engine.citation import Citation, bibliography
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Task

@@ -11,8 +11,8 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from fegear.base.cache_keys import function_name, lasting_key
 from fegear.base.errors import InputError
-from fegear.base.keys import function_name, lasting_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
@@ -67,8 +67,8 @@ def map_points(
         Of a module (or `functools.partial` of one); takes a point and returns plain data (see
         `fegear.base.plain.pack`).
     points : sequence
-        Anything that can be pickled; with a cache on disk, what `fegear.base.keys` knows by its content, unless `key`
-        is given.
+        Anything that can be pickled; with a cache on disk, what `fegear.base.cache_keys` knows by its content, unless
+        `key` is given.
     executor : Executor, optional
         By default processes on this machine.
     cache : SolutionCache, optional

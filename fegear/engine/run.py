@@ -10,8 +10,8 @@ from functools import partial
 from typing import NamedTuple, Protocol
 
 from fegear.base.arrays import Alike
+from fegear.base.cache_keys import Key
 from fegear.base.errors import InputError
-from fegear.base.keys import Key
 from fegear.base.notes import Note, NoteClass, class_of, ordered
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import Scene

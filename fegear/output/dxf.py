@@ -20,7 +20,7 @@ from fegear.geometry.spline import DEGREE, Spline, spline_of
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 #: How far chords and splines may lie off the exact curve [modules].
 CHORD_TOLERANCE = 1e-4

@@ -12,14 +12,14 @@ from fegear.case.built.flank_modifications import described_relief
 from fegear.case.nearest import nearest
 from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
 from fegear.geometry.asymmetric_tooth import AsymmetricSide
-from fegear.output.formats import FORMATS, Format, Request, added_formats
+from fegear.output.export_formats import FORMATS, Format, Request, added_formats
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from fegear.case.reading import Scene
-    from fegear.output.formats import Holds
+    from fegear.output.export_formats import Holds
     from fegear.studies.comparison.compare import Side
 
 #: What takes so many seconds is predicted before it starts.

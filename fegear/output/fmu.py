@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.periodic import Periodic
     from fegear.geometry.pair import GearPair
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 
 _SOURCE = Path(__file__).with_name("fmu_mesh.c")

@@ -18,7 +18,7 @@ from fegear.output.tables import write_table
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 #: Places of the fine table, and how far the relief may lie from the lines between points of the chart [m].
 _PLACES, _WITHIN = 101, 1e-7

@@ -19,7 +19,7 @@ from fegear.output.dxf import AS_GENERATED
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 _MM = 1e3
 #: Line load of the fields [N/m].

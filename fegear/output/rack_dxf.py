@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fegear.geometry.curves import Drawn
     from fegear.geometry.rack_relief import RackRelief
     from fegear.geometry.toothed_rack import Rack
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 _MM = 1e3
 

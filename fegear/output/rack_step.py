@@ -10,7 +10,7 @@ from fegear.geometry.rack_relief import relieved_rack_outline
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 
 def written_rack(request: Request) -> Written:

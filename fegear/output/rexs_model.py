@@ -12,7 +12,7 @@ from fegear.exchange.rexs.written_gearbox import model_text
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
     from fegear.studies.comparison.compare import Side
 
 

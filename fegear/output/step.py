@@ -11,7 +11,7 @@ from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
-    from fegear.output.formats import Request, Written
+    from fegear.output.export_formats import Request, Written
 
 
 def seconds_of(gear: Gear) -> float:

@@ -11,9 +11,9 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.shafts.carried import carry
+from fegear.shafts.deflection import Deflection, deflect, response
 from fegear.shafts.held import Held, LoadedShaft, groups_of, held_by
 from fegear.shafts.mesh import MeshPlace, straight_slope
-from fegear.shafts.solution import Deflection, deflect, response
 
 #: Misalignment of a mesh by cause, and its gap over the face.
 MeshState = tuple["MeshMisalignment", "MeshGap"]

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import Bearing
-from fegear.shafts.solution import Deflection
+from fegear.shafts.deflection import Deflection
 from fegear.verify.row import Compared, Rows, near
 
 ROWS = Rows()
@@ -24,8 +24,8 @@ def _shaft(*sections: tuple[float, ...]) -> Shaft:
 
 
 def _deflected(shaft: Shaft, seats: tuple[tuple[Bearing, float], ...], at: float, *load: float) -> Deflection:
+    from fegear.shafts.deflection import deflect
     from fegear.shafts.held import LoadedShaft, Seat
-    from fegear.shafts.solution import deflect
 
     held = tuple(Seat(bearing, z) for bearing, z in seats)
     return deflect((LoadedShaft(shaft, held, np.array([at]), np.array([load], dtype=float), "shaft"),))[0]
@@ -81,8 +81,8 @@ def cones() -> Iterator[Compared]:
 @ROWS.add("tension and torsion of shafts", "own", "rods in closed form")
 def tension_and_twist() -> Iterator[Compared]:
     """Free end of a hollow shaft."""
+    from fegear.shafts.deflection import deflect
     from fegear.shafts.held import LoadedShaft, Seat
-    from fegear.shafts.solution import deflect
 
     loads = np.array([[0, 0, 700.0, 0, 0, -50.0], [0, 0, 0, 0, 0, 50.0]])
     held = (Seat(_held()[2], 0.0),)

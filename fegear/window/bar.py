@@ -10,8 +10,8 @@ from nicegui import ui
 
 from fegear.base.errors import FegearError, InputError
 from fegear.case.text_file import named_path
+from fegear.output.export_formats import formats
 from fegear.output.folder import default_folder
-from fegear.output.formats import formats
 from fegear.window.bench import LEVELS
 from fegear.window.document import OverwriteError
 

@@ -350,7 +350,7 @@ class Results(Found):
         ----------
         folder : path
         formats : str or list of str
-            Names of `fegear.output.formats.FORMATS`, or of formats of other distributions, separated by commas.
+            Names of `fegear.output.export_formats.FORMATS`, or of formats of other distributions, separated by commas.
         gears : tuple of str
             Names of gears; all of them by default.
 

@@ -55,7 +55,7 @@ def keys_by_hand(tree: ast.Module) -> set[str]:
     found = {
         name.name
         for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module == "fegear.base.keys"
+        if isinstance(node, ast.ImportFrom) and node.module == "fegear.base.cache_keys"
         for name in node.names
     }
     return found - {"Key"}
@@ -86,5 +86,5 @@ def test_what_the_mechanics_keeps_out_of_keys_is_said_by_its_types_and_listed_he
 
 
 def test_keys_by_hand_and_uncounted_fields_are_found():
-    assert keys_by_hand(ast.parse("from fegear.base.keys import Key, content_key")) == {"content_key"}
+    assert keys_by_hand(ast.parse("from fegear.base.cache_keys import Key, content_key")) == {"content_key"}
     assert uncounted(ast.parse("class A:\n    a: int = field(compare=False)\n    b: int = field(default=1)")) == {"a"}

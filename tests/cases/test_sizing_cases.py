@@ -368,7 +368,7 @@ def test_the_best_relief_is_that_of_a_plain_scan_of_amounts():
     from fegear.atlas.many_pairs import known_pairs, spur_pairs
     from fegear.atlas.shipped import shipped_atlas
     from fegear.contact.many.arrays import ManyReliefs
-    from fegear.contact.many.many_loaded import transmission_errors
+    from fegear.contact.many.many_load_sharing import transmission_errors
     from fegear.design.sizing.by_atlas import AtlasDuty, bare_errors, relieved_errors
 
     space = space_of(SizingPart.model_validate(

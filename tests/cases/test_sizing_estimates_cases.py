@@ -12,7 +12,7 @@ import pytest
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.case.sizing import SizingPart
-from fegear.contact.many.many_loaded import ManyErrors
+from fegear.contact.many.many_load_sharing import ManyErrors
 from fegear.contact.many.many_roots import ManyRootStress
 from fegear.design.sizing import by_atlas
 from fegear.design.sizing.by_atlas import AtlasDuty, Bare, bare_errors, relieved_errors

@@ -15,8 +15,8 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.dynamics.compound.assembly import Cluster, check_assembly, check_neighbours, clearances, clusters
 from fegear.dynamics.compound.compound_modes import CompoundModel, compound_modes, loaded_flanks
 from fegear.dynamics.compound.compound_set import CompoundSet, End, Mesh, Shaft
-from fegear.dynamics.compound.drives import Drive, Trains
 from fegear.dynamics.compound.mesh_phases import mesh_phases, phasing
+from fegear.dynamics.compound.speeds_and_torques import Drive, Trains
 from fegear.dynamics.compound.tooth_search import Wanted, search
 from fegear.dynamics.planetary import phases as simple_phases
 from fegear.dynamics.planetary.kinematics import running

@@ -15,7 +15,7 @@ import pytest
 from fegear.atlas import many_pairs as atlas_many
 from fegear.atlas.many_pairs import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import shipped_atlas
-from fegear.contact.many import kernel, many_loaded, many_roots, over_fillets, over_mesh
+from fegear.contact.many import kernel, many_load_sharing, many_roots, over_fillets, over_mesh
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement
@@ -56,7 +56,7 @@ def plain(monkeypatch):
         monkeypatch.setattr(module, "np", Unwritten())
     own = {name: function for module in (over_mesh, over_fillets) for name, function in vars(module).items()
            if inspect.isfunction(function)}  # fmt: skip
-    for module in (many_loaded, many_roots):
+    for module in (many_load_sharing, many_roots):
         monkeypatch.setattr(module, "compiled", lambda: own)
 
 
@@ -101,7 +101,7 @@ def _engagement(pair: GearPair, corners: bool, reliefs: ManyReliefs | None, i: i
 def test_positions_are_those_of_each_pair(pairs, many, corners, reliefs):
     known = known_pairs(shipped_atlas("A"), many, corner_contact=corners, reliefs=reliefs, root_stress=True)
     at = np.array([0.0007, 0.3, 0.985])
-    shared = many_loaded.shares_at(known.engagements, LOADS[1], at)
+    shared = many_load_sharing.shares_at(known.engagements, LOADS[1], at)
     histories = many_roots.root_stress_at(known.engagements, known.fillets, LOADS[1], at)
     for i, pair in enumerate(pairs):
         one = _engagement(pair, corners, reliefs, i)
@@ -122,7 +122,7 @@ def test_positions_are_those_of_each_pair(pairs, many, corners, reliefs):
 
 def test_errors_over_the_mesh_are_those_of_each_pair(pairs, many):
     known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS)
-    found = many_loaded.transmission_errors(known.engagements, LOADS[1:], waves=1, samples=8, order=3)
+    found = many_load_sharing.transmission_errors(known.engagements, LOADS[1:], waves=1, samples=8, order=3)
     for i, pair in enumerate(pairs):
         exact = transmission_error(_engagement(pair, True, RELIEFS, i), LOADS[1], 8)
         assert found.mean[i, 0] == pytest.approx(exact.mean, rel=8e-4)
@@ -192,7 +192,7 @@ def test_pairs_that_are_looked_up_in_parts_stand_in_their_order(many, monkeypatc
 
     def errors(engagements, given):
         assert engagements.module.size == len(given) <= 2
-        return many_loaded.ManyErrors(given, given + 10.0, given + 20.0)
+        return many_load_sharing.ManyErrors(given, given + 10.0, given + 20.0)
 
     def stresses(engagements, fillets, given):
         assert fillets.length.shape == (2, len(given))

@@ -11,7 +11,7 @@ import pytest
 from fegear.atlas.many_pairs import ManySpurPairs, known_pairs, loaded_pairs
 from fegear.atlas.shipped import shipped_atlas
 from fegear.contact.many.arrays import ManyReliefs
-from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.contact.many.many_roots import root_stress_at, root_stresses
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement

@@ -10,7 +10,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.contact.many.arrays import ManyReliefs, engagements_of
-from fegear.contact.many.many_loaded import shares_at, transmission_errors
+from fegear.contact.many.many_load_sharing import shares_at, transmission_errors
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance

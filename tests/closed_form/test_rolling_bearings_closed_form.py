@@ -10,11 +10,11 @@ import pytest
 from fegear.base.errors import RangeError
 from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.beam import Shaft
+from fegear.shafts.deflection import deflect
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.life import LifeRating
 from fegear.shafts.rolling_bearing import RollingBearing, point_contact
 from fegear.shafts.section import Section
-from fegear.shafts.solution import deflect
 
 BALL = RollingBearing("ball", 9, 12.7e-3, 65e-3, clearance=15e-6)
 ANGULAR = RollingBearing("ball", 14, 10e-3, 60e-3, contact_angle=math.radians(25))

@@ -11,10 +11,10 @@ import pytest
 from fegear.base.errors import FegearError, InputError
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
+from fegear.shafts.deflection import deflect
 from fegear.shafts.held import Around, LoadedShaft, Seat
 from fegear.shafts.life import LifeRating
 from fegear.shafts.section import Section
-from fegear.shafts.solution import deflect
 
 E, NU, INF = 206e9, 0.3, math.inf
 PIN, ROLLER = stiff(INF, INF), stiff(INF)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.output.formats import FORMATS
+from fegear.output.export_formats import FORMATS
 
 _SPEC = importlib.util.spec_from_file_location("exported", Path(__file__).with_name("exported.py"))
 exported = importlib.util.module_from_spec(_SPEC)

@@ -10,9 +10,9 @@ import pytest
 
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
+from fegear.shafts.deflection import deflect, response
 from fegear.shafts.held import Around, LoadedShaft, Seat
 from fegear.shafts.section import Section
-from fegear.shafts.solution import deflect, response
 
 E, NU = 206e9, 0.3
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fegear.fem.teeth import AlikeTeeth
+from fegear.fem.alike_teeth import AlikeTeeth
 from fegear.geometry.gear import Gear
 
 

@@ -54,8 +54,8 @@ NO_TESTS = 5
 #: Functions that numba compiles leave no trace: those who call them do.
 CALLERS = {
     "fegear/dynamics/motion/kernel/": "fegear/dynamics/motion/motion.py",
-    "fegear/contact/many/kernel.py": "fegear/contact/many/many_loaded.py",
-    "fegear/contact/many/over_mesh.py": "fegear/contact/many/many_loaded.py",
+    "fegear/contact/many/kernel.py": "fegear/contact/many/many_load_sharing.py",
+    "fegear/contact/many/over_mesh.py": "fegear/contact/many/many_load_sharing.py",
     "fegear/contact/many/over_fillets.py": "fegear/contact/many/many_roots.py",
 }
 COMPILED = tuple(CALLERS)

@@ -15,9 +15,9 @@ from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
+from fegear.shafts.deflection import deflect
 from fegear.shafts.held import LoadedShaft, Seat
 from fegear.shafts.section import Section
-from fegear.shafts.solution import deflect
 
 E, NU, STEP, DEGREE = 206e9, 0.3, 5e-3, 4
 

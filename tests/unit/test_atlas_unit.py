@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.atlas.atlas import Atlas, load_atlas
 from fegear.atlas.build import Budget, build_atlas
 from fegear.atlas.common_rows import KEPT, common_rows
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family, Place, place_of
+from fegear.atlas.interpolation import Atlas, load_atlas
 from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degrees, products
 from fegear.atlas.refining import compliances, refined
 from fegear.atlas.tables import Layout
@@ -291,7 +291,7 @@ def test_it_is_kept_as_one_file(atlas, tmp_path):
 
 
 def test_rows_of_another_kind_are_refused(atlas, tmp_path, monkeypatch):
-    monkeypatch.setattr("fegear.atlas.atlas.VERSION", 0)
+    monkeypatch.setattr("fegear.atlas.interpolation.VERSION", 0)
     atlas.save(tmp_path / "old.npz")
     monkeypatch.undo()
     with pytest.raises(InputError, match="build it again"):

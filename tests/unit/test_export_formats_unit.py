@@ -13,9 +13,9 @@ from in_process import fegear as command
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
-from fegear.output import export, formats
+from fegear.output import export, export_formats
 from fegear.output.export import export_gears, wanted_formats
-from fegear.output.formats import FORMATS, Format, _called
+from fegear.output.export_formats import FORMATS, Format, _called
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 GEARS = {
@@ -39,7 +39,7 @@ def teeth(monkeypatch):
     """A format more, by its row alone."""
     row = Format("plane mesh", "number of teeth", _teeth, seconds=lambda gear: 0.25 * gear.teeth)
     more = MappingProxyType({**FORMATS, "teeth": row})
-    for module in (formats, export):
+    for module in (export_formats, export):
         monkeypatch.setattr(module, "FORMATS", more)
 
 

@@ -20,7 +20,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.exchange.importers import IMPORTERS, Importer, importer_for
 from fegear.output.export import export_gears
-from fegear.output.formats import FORMATS, formats
+from fegear.output.export_formats import FORMATS, formats
 from fegear.results.catalogue import STAGES
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "developers" / "own-result.md"
@@ -217,7 +217,7 @@ WRONG_FORMATS = {
 
 def test_files_outside_of_the_folder_of_an_export_and_formats_that_fail_are_refused(folder):
     source = (
-        "from pathlib import Path\nfrom fegear.output.formats import Format\n"
+        "from pathlib import Path\nfrom fegear.output.export_formats import Format\n"
         "OUT = Format('case', 'a file elsewhere', lambda request: ([Path(__file__)], []))\n"
         "FAILS = Format('case', 'fails', lambda request: 1 / 0)\n"
         "ANSWERLESS = Format('case', 'answers None', lambda request: None)\n"

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
-from fegear.base.keys import Key, call_key, content_key, lasting_key, remember_made
+from fegear.base.cache_keys import Key, call_key, content_key, lasting_key, remember_made
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.store import Store
@@ -245,7 +245,7 @@ def test_answers_on_disk_are_bound_to_the_code_of_all_that_made_them(monkeypatch
     key = Key.of("b", inner)
     assert key.packages == {"fem"}
     versions = []
-    monkeypatch.setattr("fegear.base.keys.code_version", lambda *names: versions.append(names) or str(names))
+    monkeypatch.setattr("fegear.base.cache_keys.code_version", lambda *names: versions.append(names) or str(names))
     assert key.lasting == lasting_key(key.digest, {"fem"})
     assert versions == [("fem",), ("fem",)]
     both = Key.of("c", Key("a", frozenset({"fem"})), Key("b", frozenset({"contact"})))
@@ -257,7 +257,7 @@ def test_answers_on_disk_are_bound_to_the_code_of_all_that_made_them(monkeypatch
 
 SCRIPT = """
 import sys
-from fegear.base.keys import call_key
+from fegear.base.cache_keys import call_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.fem.plane.settings import MeshSettings, settings_at
 cache = SolutionCache()

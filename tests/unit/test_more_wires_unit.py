@@ -242,7 +242,7 @@ def test_a_crack_of_either_gear_is_followed_under_the_loads_of_its_own_tooth(mon
 
 
 def test_formats_say_what_they_need_and_what_they_can_write():
-    from fegear.output.formats import FORMATS
+    from fegear.output.export_formats import FORMATS
 
     def of(flag):
         return {name for name, one in FORMATS.items() if getattr(one, flag)}

@@ -13,7 +13,7 @@ from fegear.atlas.family import Place
 from fegear.atlas.many_pairs import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import RACKS, atlas_of, domains_of, family_of, file_name, nearest_atlas, shipped_atlas
 from fegear.base.errors import InputError, RangeError
-from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from fegear.base import store as store_module
-from fegear.base.keys import content_key
+from fegear.base.cache_keys import content_key
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Account, Codec, SolutionCache, cache_on_disk
 from fegear.base.store import Store, cache_folder

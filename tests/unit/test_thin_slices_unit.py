@@ -14,7 +14,7 @@ from fegear.atlas.thin_slices import sliced_errors
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.case.sizing import TolerancesPart
-from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.design.sizing.by_atlas import AtlasDuty, Bare, sliced_errors_of
 from fegear.design.sizing.feasible import Lives
 from fegear.design.sizing.space import variant_of

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog, minimize
 
 from fegear.atlas.shipped import shipped_atlas
-from fegear.base.keys import content_key
+from fegear.base.cache_keys import content_key
 from fegear.base.solution_cache import cache_on_disk
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement

@@ -13,8 +13,8 @@ from scipy.optimize import differential_evolution, minimize
 from typer.testing import CliRunner
 
 import fegear
+from fegear.base.cache_keys import content_key
 from fegear.base.errors import InputError
-from fegear.base.keys import content_key
 from fegear.case.built.design_range import design_range
 from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.reading import build_scene

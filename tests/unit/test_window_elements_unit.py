@@ -19,7 +19,7 @@ from nicegui.events import GenericEventArguments, handle_event
 from nicegui.page import page as ui_page
 
 from fegear.base.errors import InputError
-from fegear.output.formats import formats
+from fegear.output.export_formats import formats
 from fegear.window import messages
 from fegear.window.bar import Bar, exports
 from fegear.window.beginnings import JOBS, examples

@@ -12,7 +12,7 @@ from fegear.case.nearest import nearest
 from fegear.case.part import at
 from fegear.dynamics.compound.assembly import check_assembly, check_neighbours, even_turns
 from fegear.dynamics.compound.compound_set import CompoundSet, End, Mesh, Planets, Shaft, Wheel
-from fegear.dynamics.compound.drives import Drive, Trains
+from fegear.dynamics.compound.speeds_and_torques import Drive, Trains
 from fegear.geometry.pair import GearPair
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ from fegear.case.built.odd_gears import odd_gears_of, on_other_flank
 from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.odd_tooth import STARTS
 from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
+from fegear.fem.alike_teeth import meshing_order
 from fegear.fem.plane.odd.crack import Crack
 from fegear.fem.plane.odd.hole import Hole, hole_at, refuse_hole
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
-from fegear.fem.teeth import meshing_order
 
 if TYPE_CHECKING:
     from fegear.case.odd_tooth import CrackPart, HolePart, OddToothPart, PitPart
@@ -54,7 +54,7 @@ class OddTeeth:
     name: str = field(compare=False)
 
     def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing | Hole]:
-        """Cracks and outlines by the tooth's own number, as of `fegear.fem.teeth`."""
+        """Cracks and outlines by the tooth's own number, as of `fegear.fem.alike_teeth`."""
         return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
 
     def in_solid(self, teeth: int) -> dict[int, Crack | Missing]:

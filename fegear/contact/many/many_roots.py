@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.many import kernel
-from fegear.contact.many.many_loaded import compiled, placed, tables_of
+from fegear.contact.many.many_load_sharing import compiled, placed, tables_of
 from fegear.fem.plane.root_stress import smooth_curve
 
 if TYPE_CHECKING:

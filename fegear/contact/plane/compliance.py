@@ -6,8 +6,8 @@ the pair's Hertzian half-width b(W)
 
     c_0(W) = own(tooth, radius) + kappa ln(b_ref / b(W)).
 
-Every tooth has a number (`fegear.fem.teeth`). Where all teeth are alike an answer depends on the difference of two
-numbers only, and everything that is made of answers is kept once.
+Every tooth has a number (`fegear.fem.alike_teeth`). Where all teeth are alike an answer depends on the difference of
+two numbers only, and everything that is made of answers is kept once.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.fem.teeth import AlikeTeeth, Teeth
+from fegear.fem.alike_teeth import AlikeTeeth, Teeth
 
 if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import CutFillet, FilletCurve

@@ -17,7 +17,7 @@ from fegear.base.tally import tallied
 from fegear.contact.contact_law import LINEAR, ContactLaw
 from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 from fegear.formulas.palmgren import EXPONENT
 from fegear.geometry.pair import MEMBERS
 
@@ -121,7 +121,7 @@ class CoupledTeeth(ABC):
         return math.lcm(self.driver.period, self.driven.period)
 
     def tooth(self, member: Member, number: int, cycle: int) -> int:
-        """Number of a gear's tooth on a pair in a base pitch; see `fegear.fem.teeth`.
+        """Number of a gear's tooth on a pair in a base pitch; see `fegear.fem.alike_teeth`.
 
         Parameters
         ----------

@@ -11,8 +11,8 @@ import numpy as np
 
 from fegear.base.errors import RangeError
 from fegear.contact.plane.spline import Spline, spline
+from fegear.fem.alike_teeth import AlikeTeeth
 from fegear.fem.plane.contact_width import corner_angles, wedge_slope
-from fegear.fem.teeth import AlikeTeeth
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

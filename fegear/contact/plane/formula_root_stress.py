@@ -15,8 +15,8 @@ from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.contact.plane.compliance import Side
 from fegear.contact.plane.spline import Spline, spline
+from fegear.fem.alike_teeth import AlikeTeeth
 from fegear.fem.plane.root_stress import FilletCurve
-from fegear.fem.teeth import AlikeTeeth
 from fegear.formulas.outcome import Outcome, RootStress, RootStressSource, attempt
 from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
 from fegear.geometry.gear import Gear

@@ -18,7 +18,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import contact_changes
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 #: Base pitches that are looked at at most: hunting teeth of two odd gears meet after the product of their numbers.
 MOST_PITCHES = 20_000

@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.contact.plane.compliance import RootStressInfluence, Side
 from fegear.contact.plane.root_stress import Felt, RootStress
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

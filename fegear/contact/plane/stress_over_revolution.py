@@ -21,7 +21,7 @@ from fegear.contact.plane.independent_errors import independent_errors
 from fegear.contact.plane.over_revolution import refuse_too_many
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.tooth_stress import stress_with_error
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 from fegear.geometry.pair import Member
 
 #: Rounds of looking for largest values between positions.

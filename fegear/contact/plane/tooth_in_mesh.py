@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.teeth import meshing_order
+from fegear.fem.alike_teeth import meshing_order
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

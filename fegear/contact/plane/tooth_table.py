@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance, chebyshev_over, roll_length
 from fegear.contact.plane.spline import Spline
-from fegear.fem.teeth import AlikeTeeth
+from fegear.fem.alike_teeth import AlikeTeeth
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

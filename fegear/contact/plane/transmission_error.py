@@ -13,7 +13,7 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shows
 from fegear.contact.fourier import SIDE, FourierSeries, Panels, effective_error, fourier_series, panels
 from fegear.contact.sign_changes import sign_changes
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,8 +2,8 @@
 
 Each gear is seen in its own drawing, loaded flank toward +x: turning the driven gear's by half a turn about the axis
 lays both together, so heights z count alike on both, and hands are opposite. A ring is drawn as its own mirror image
-(`Gear.flank_twist`), and its mate has its hand. Teeth have numbers (`fegear.fem.teeth`): in base pitch p pair j is on
-tooth j - p of the driver and on tooth p - j of the driven gear.
+(`Gear.flank_twist`), and its mate has its hand. Teeth have numbers (`fegear.fem.alike_teeth`): in base pitch p pair j
+is on tooth j - p of the driver and on tooth p - j of the driven gear.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from fegear.base.cache_keys import Key
 from fegear.base.errors import ConvergenceError, InputError
-from fegear.base.keys import Key
 from fegear.contact.wide.load_sharing import growth_by_gaps, hat_averages
 from fegear.contact.wide.shaft_gaps import ShaftGaps
 from fegear.geometry.shaft_tilt import LARGEST_TILT
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair
+    from fegear.shafts.deflection import Deflection
     from fegear.shafts.gearbox import Gearbox
     from fegear.shafts.held import Seat
-    from fegear.shafts.solution import Deflection
 
 #: Change of gaps over their largest at which the solution is found, and steps after which it is given up.
 TOLERANCE, _STEPS = 1e-9, 30

@@ -23,7 +23,7 @@ from fegear.contact.wide.lines import contact_lines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.tip_edges import usual_gap
 from fegear.contact.wide.transmission_error import secant_stiffness
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:

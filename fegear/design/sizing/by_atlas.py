@@ -18,13 +18,13 @@ from fegear.atlas.shipped import SHIPPED, family_of, shipped_atlas
 from fegear.atlas.thin_slices import sliced_errors
 from fegear.contact.many import kernel
 from fegear.contact.many.arrays import ManyReliefs
-from fegear.contact.many.many_loaded import transmission_errors
+from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.contact.many.many_roots import root_stresses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from fegear.atlas.atlas import Atlas
+    from fegear.atlas.interpolation import Atlas
     from fegear.base.arrays import Array, Index, Mask
     from fegear.contact.many.arrays import ManyEngagements
     from fegear.design.sizing.space import SizingSpace

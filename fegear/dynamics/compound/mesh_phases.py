@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.dynamics.compound.compound_set import CompoundSet, Toothed
-    from fegear.dynamics.compound.drives import Drive
+    from fegear.dynamics.compound.speeds_and_torques import Drive
 
 #: A sum of planets below this share of what they are together is cancelled.
 _CANCELLED = 1e-9

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.dynamics.compound.compound_set import Toothed, Wheel
-    from fegear.dynamics.compound.drives import Drive
+    from fegear.dynamics.compound.speeds_and_torques import Drive
 
 #: Combinations of tooth numbers that are looked at.
 MOST = 2_000_000

@@ -13,7 +13,7 @@ import numpy as np
 
 from fegear.contact.plane.engagement import solve_again
 from fegear.contact.plane.transmission_error import contact_changes
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.planetary.mesh_law import SlotSprings
 from fegear.dynamics.planetary.phases import common_parts
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

@@ -16,7 +16,7 @@ from fegear.contact.plane.roll_grids import RollGrid
 from fegear.contact.plane.transmission_error import contact_changes
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
-from fegear.fem.teeth import together
+from fegear.fem.alike_teeth import together
 
 #: Accuracy of the fitted stiffness, separation and transmission error relative to their largest value.
 FIT = 1e-9

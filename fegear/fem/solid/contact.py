@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.fem.alike_teeth import together
 from fegear.fem.solid.bands import (
     Bands,
     band_cosines,
@@ -27,7 +28,6 @@ from fegear.fem.solid.bands import (
     profiles_at,
     quick_band_spectrum,
 )
-from fegear.fem.teeth import together
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.fem.alike_teeth import AlikeTeeth, Teeth
 from fegear.fem.plane.contact_width import curvature_slope
 from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.teeth import AlikeTeeth, Teeth
 from fegear.geometry.involute_side import InvoluteSide
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from fegear.case.built.odd_gears import cracked_gears
 from fegear.case.built.odd_teeth import OddTeeth, odd_teeth_of
 from fegear.engine.sheet.sheet import UNSHOWN
 from fegear.engine.stage import Stage, Upstream, Work
-from fegear.fem.teeth import meshing_order
+from fegear.fem.alike_teeth import meshing_order
 from fegear.geometry.outline import tooth_outline
 from fegear.results import forecasts
 from fegear.results.gear.odd_gear import needs_odd_solution, odd_solution_of

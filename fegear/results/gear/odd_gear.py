@@ -13,7 +13,7 @@ from fegear.case.built.odd_teeth import OddTeeth, check_odd_gear, odd_teeth_of
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.fem.teeth import meshing_order
+from fegear.fem.alike_teeth import meshing_order
 from fegear.results.forecasts import RING
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 

@@ -24,7 +24,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.fem.teeth import meshing_order
+from fegear.fem.alike_teeth import meshing_order
 from fegear.geometry.outline import tooth_outline
 from fegear.results.forecasts import HERTZ, PATCH
 from fegear.results.gear.odd_gear import CRACKS, needs_odd_solution, odd_solution_of

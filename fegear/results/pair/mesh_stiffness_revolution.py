@@ -42,7 +42,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.fem.teeth import meshing_order
+from fegear.fem.alike_teeth import meshing_order
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS

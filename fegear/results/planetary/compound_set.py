@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
     from fegear.case.built.compound import CompoundInputs
     from fegear.case.reading import Scene
-    from fegear.dynamics.compound.drives import Drive
     from fegear.dynamics.compound.mesh_phases import CompoundPhasing, MeshPhases
+    from fegear.dynamics.compound.speeds_and_torques import Drive
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
 

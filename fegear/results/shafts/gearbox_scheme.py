@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.results.shafts.drawn_gearbox import DrawnBody
     from fegear.results.shafts.gearbox_data import GearboxData
-    from fegear.shafts.solution import Deflection
+    from fegear.shafts.deflection import Deflection
 
 #: The largest deflection is drawn as this share of the height of the drawing.
 _DRAWN = 0.05

@@ -18,7 +18,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
 from fegear.results import forecasts
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
-from fegear.shafts.solution import BearingLoads
+from fegear.shafts.deflection import BearingLoads
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
+    from fegear.shafts.deflection import Deflection
     from fegear.shafts.life import LifeRating
-    from fegear.shafts.solution import Deflection
 
 
 @dataclass(frozen=True)

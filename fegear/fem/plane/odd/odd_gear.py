@@ -1,7 +1,7 @@
 """Influence functions of a real gear with odd teeth (cracked, shorter, missing) in SI, with their own error estimate.
 
-All is per unit face width. Teeth have the numbers of the gear (`fegear.fem.teeth`). Those around the odd ones are known
-by number; farther away teeth are as on the ordinary gear, whose solution this one is made from, on the same mesh.
+All is per unit face width. Teeth have the numbers of the gear (`fegear.fem.alike_teeth`). Those around the odd ones are
+known by number; farther away teeth are as on the ordinary gear, whose solution this one is made from, on the same mesh.
 """
 
 from __future__ import annotations
