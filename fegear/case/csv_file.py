@@ -19,7 +19,11 @@ from fegear.case.part import LARGEST
 #: Units of heads as they are written elsewhere.
 _ELSEWHERE = {"Grad": "deg", "Umdr.": "rev", "µE": "ustrain", "uE": "ustrain"}
 #: What stands for a value that was not measured.
-_MISSING = {"", "nan", "#n/a", "n/a", "na", "null", "none", "-", "--", "---"}
+_MISSING = {
+    "", "nan", "#n/a", "n/a", "na", "null", "none", "-", "--", "---",
+    # errors of spreadsheets, English and German, and samples beyond an amplifier's range
+    "#nv", "#num!", "#zahl!", "#value!", "#wert!", "#div/0!", "overflow", "overload", "overrange", "ovld",
+}  # fmt: skip
 #: Heads that a message names.
 _NAMED = 8
 

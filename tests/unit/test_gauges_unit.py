@@ -298,6 +298,12 @@ def test_a_drift_of_the_bridge_is_named_and_found_again(plain, tmp_path):
     assert note.startswith("Gauge g: the measured strain drifts by ")
     assert note.endswith('falsifies offset and residual; add "drift" and "offset" to fit.')
     assert not any("drifts" in one for one in fitted.remarks)
+    (said,) = (one for one in named.answer.sentences if "the trace drifts by 2" in one)
+    assert said.endswith(" µm/m per turn, not corrected.")
+    assert not any("drifts" in one for one in fitted.answer.sentences)
+    captions = [next(f for f in one.figures if f.key == "gauge_g").caption for one in (named, fitted)]
+    assert "drawn less the fitted offset and divided by the fitted scale " in captions[0]
+    assert "drawn less the fitted offset and drift and divided by the fitted scale " in captions[1]
     values = {one.name.removeprefix("g."): one.value for one in fitted.values}
     assert values["measured_drift"] == pytest.approx(20.0, abs=4.0 * values["measured_drift_standard_error"])
     assert values["residual_rms"] == pytest.approx(2.0, rel=0.25)

@@ -84,12 +84,12 @@ def test_tables_are_parted_by_what_parts_their_heads(folder):
 
 
 def test_samples_without_a_value_are_left_out_of_traces(tmp_path):
-    rows = "angle [deg];strain [um/m];note\n0,5;1,5;\n1;;x\n1,5;NaN;\n ;3,5;\n2;#N/A;\n2,5;2;\n"
+    rows = "angle [deg];strain [um/m];note\n0,5;1,5;\n1;;x\n1,5;NaN;\n ;3,5;\n2;#N/A;\n2;#NV;\n2;Overflow;\n2,5;2;\n"
     (tmp_path / "trace.csv").write_text(rows)
     dimensions = {"angle": "angle", "strain": "strain"}
     found = read_columns(tmp_path / "trace.csv", "gauge.g.measured.file", dimensions, gaps=True)
     np.testing.assert_allclose(found["strain"], [1.5e-6, 2e-6])
-    assert found.reading == "decimal commas, 4 samples without a value left out"
+    assert found.reading == "decimal commas, 6 samples without a value left out"
     with pytest.raises(InputError, match="not a number"):
         read_columns(tmp_path / "trace.csv", "gauge.g.measured.file", dimensions)
     (tmp_path / "trace.csv").write_text("angle [deg],strain [um/m]\n1,\n2,nan\n")

@@ -192,7 +192,7 @@ _SHEET = Sheet(
         Chart(
             "gauge_{name}", "Strain of gauge {name}",
             "Gauge {name}: mean strain under the grid over the rotation of the gear, its tooth in contact at the pitch "
-            "point at zero; dashed: grid displaced by the placement tolerance.",
+            "point at zero; dashed: grid displaced by the placement tolerance.{d.drawn_as}",
             (
                 Over(
                     "angle",

@@ -218,6 +218,11 @@ class GaugeData:
         """What the measured strain drifts by where that is not fitted; empty where it does not."""
         return drift_named(self.compared)
 
+    @property
+    def drawn_as(self) -> str:
+        """How the figure draws the trace; empty where it is drawn as measured."""
+        return drawn_as(self.compared)
+
     def _verdict(self, *, brief: bool) -> str:
         if self.compared is None or not self.estimated:
             return ""
@@ -280,7 +285,21 @@ def verdict(
     else:
         judged += f", {'within' if within else 'beyond'} ±{percent(limits.together)}{limit}"
         judged += "" if within else "; check load, gauge factor and position of the grid"
-    return judged if brief else f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"
+    if brief:  # what is said without its notes has to name what falsifies it
+        drift = found.unfitted_drift
+        drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
+        return judged + drifts
+    return f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak"
+
+
+def drawn_as(found: FittedCurve | None) -> str:
+    """How figures draw a fitted trace, a sentence after others; empty where it is drawn as measured."""
+    if found is None:
+        return ""
+    less = " and ".join(one for one in ("offset", "drift") if one in found.fit)
+    done = [f"less the fitted {less}"] if less else []
+    done += [f"divided by the fitted scale {found.scale:.3f}"] if "scale" in found.fit else []
+    return f" The measured strain is drawn {' and '.join(done)}." if done else ""
 
 
 def drift_named(found: FittedCurve | None) -> str:

@@ -21,7 +21,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
-from fegear.results.pair.gauge_data import drift_named, thinned, verdict
+from fegear.results.pair.gauge_data import drawn_as, drift_named, thinned, verdict
 from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     MEASURED,
@@ -139,6 +139,11 @@ class DynamicStrain:
         """What the measured strain drifts by where that is not fitted; empty where it does not."""
         return drift_named(self.compared)
 
+    @property
+    def drawn_as(self) -> str:
+        """How the figure draws the trace; empty where it is drawn as measured."""
+        return drawn_as(self.compared)
+
     def _verdict(self, *, brief: bool) -> str:
         found = self.found
         if self.compared is None or (self.sharper and found.peak_error is None):
@@ -255,7 +260,7 @@ _SHEET = Sheet(
         Chart(
             "dynamic_strain_{name}", "Dynamic strain of gauge {name}",
             "Gauge {name}: mean strain under the grid over the rotation of the gear, with and without vibration; its "
-            "tooth in contact at the pitch point at zero.",
+            "tooth in contact at the pitch point at zero.{d.drawn_as}",
             (
                 Over(
                     "angle",
