@@ -61,7 +61,7 @@ def moved_surface(rooted, side, load):
     solution = rooted.solution
     _, spans = places_of(rooted.lines)
     on = load[rooted.lines.present]
-    loads = np.stack([rooted.loads[:, s] @ on[s] for s in spans], axis=1)
+    loads = np.stack([own @ on[s] for own, s in zip(rooted.loads, spans, strict=True)], axis=1)
     total = 0.0
     for k, felt in rooted.sources.items():
         under = np.zeros((loads.shape[0], len(rooted.teeth)))

@@ -174,7 +174,7 @@ def test_teeth_that_cannot_be_are_refused(change, words):
 
 @pytest.mark.parametrize(
     ("distance", "words"),
-    [(-0.1, "negative backlash"), (-0.5, "reach .* below the root"), (1.2, "contact is interrupted")],
+    [(-0.1, "negative backlash"), (-0.5, "places the tip .* below the root"), (1.2, "contact is interrupted")],
 )
 def test_distances_that_cannot_be_are_refused(distance, words):
     pair = pair_of()

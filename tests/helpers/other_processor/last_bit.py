@@ -60,6 +60,17 @@ def _field(name):
     return of
 
 
+def _front(function, seed):
+    """Of a function that writes matrices into its last argument."""
+
+    def called(*given):
+        function(*given)
+        for one in given[-1]:
+            one[...] = noisy(one, seed)
+
+    return called
+
+
 def _loads(place):
     def of(function, seed):
         def called(*given, **named):
@@ -75,7 +86,7 @@ def _loads(place):
 PLACES = {
     "fegear.fem.plane.tooth_meshing": {"fill": _first},
     "fegear.fem.plane.elasticity": {"_stiffness": _result},
-    "fegear.fem.solid.dissection": {"_smallest": _results},
+    "fegear.fem.solid.dissection": {"_smallest": _front},
     "fegear.contact.plane.pair_compliance": {"PairCompliance.matrices": _field("compliance")},
     "fegear.contact.wide.compliance": {"flank_compliance": _field("matrix")},
     "fegear.contact.plane.load_sharing": {"share_load": _loads(2)},
