@@ -273,8 +273,8 @@ def test_colours_in_sections_of_helical_teeth_are_the_root_stress_through_the_me
     ran = over_the_face(hand="right")
     found, largest = ran.outcomes[WIDE].data, ran.outcomes[WIDE].data.largest
     values = [ran.values[f"I.{member}.largest_root_tension"].si for member in MEMBERS]
-    assert largest.value == max(values)
-    assert largest.member == MEMBERS[values.index(max(values))]
+    # values look at all positions of the base pitch, the picture at those of the table
+    assert 0.98 * max(values) < largest.value <= values[MEMBERS.index(largest.member)]
     # It is in the picture where it is marked; the result lies on a curve through the points up the fillet.
     p, t = np.flatnonzero(found.roll == largest.roll)[0], list(found.pairs).index(largest.pair)
     one = found.gears[largest.member]

@@ -39,7 +39,7 @@ def softened(matrices, pairs):
 def errors(loaded):
     matrices = loaded.grid.matrices
     every = softened(matrices, range(loaded.loads.shape[0]))
-    shifted = SimpleNamespace(compliance=SimpleNamespace(matrices=lambda _contacts, _cycle: every))
+    shifted = SimpleNamespace(matrices=lambda _contacts, _cycle: every)
     contacts = loaded.grid.contacts
     return independent_errors(loaded, [shifted], (float(contacts.x.min()), float(contacts.x.max())))
 

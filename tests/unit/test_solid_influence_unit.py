@@ -65,7 +65,7 @@ def test_an_order_of_elements_changes_more_than_shorter_edges_leave():
     assert third.coarser(3.0).section.order < third.section.order
 
     def shares(fine, coarse, tau=TAU):
-        one, other = (None if of is None else SimpleNamespace(settings=of, tau=tau) for of in (fine, coarse))
+        one, other = (None if of is None else SimpleNamespace(settings=of, base_twist=tau) for of in (fine, coarse))
         return SolidInfluence.entry_shares.fget(SimpleNamespace(fine=one, coarse=other))
 
     usual = shares(COARSE, COARSE.coarser(3.0))

@@ -105,7 +105,7 @@ def test_zones_of_a_section_assembled_whole_are_the_sums_of_their_elements(meshe
     zone = np.select([number % 12 == 0, number % 12 == 1], [2, 0], -1)
     lean = np.where(zone == 2, 0.4, 0.0)
     found = assembled_zones(elements, section.axes, TAU, NU, zone, lean)
-    known = _stiffness(elements, section.axes[elements.element_nodes], TAU, NU, lean)
+    known = _stiffness(elements, section.axes[elements.element_nodes], (TAU, 0.0), NU, lean)
     dofs = (3 * elements.element_nodes[:, :, None] + np.arange(3)).reshape(count, -1)
     assert len(found) == 3
     for number, matrices in enumerate(found):
