@@ -69,8 +69,43 @@ class Limits:
         return math.sqrt(self.placement**2 + self.load**2 + self.model**2 + self.scatter**2)
 
 
+class BesideTrace:
+    """What results say of a measured strain beside the computed one; heirs are dataclasses."""
+
+    compared: FittedCurve | None
+
+    @property
+    def drawn(self) -> FittedCurve | None:
+        """The comparison by as many samples as a figure can show."""
+        return None if self.compared is None else thinned(self.compared)
+
+    @property
+    def verdict(self) -> str:
+        """Measured against computed strain at the nominal load; empty without a trace and in drafts."""
+        return self._verdict(brief=False)
+
+    @property
+    def judged(self) -> str:
+        """The same without what its limit is made of."""
+        return self._verdict(brief=True)
+
+    @property
+    def drifts(self) -> str:
+        """What the measured strain drifts by where that is not fitted; empty where it does not."""
+        return drift_named(self.compared)
+
+    @property
+    def drawn_as(self) -> str:
+        """How the figure draws the trace; empty where it is drawn as measured."""
+        return drawn_as(self.compared)
+
+    def _verdict(self, *, brief: bool) -> str:
+        """Without a trace, and in drafts, empty."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class GaugeData:
+class GaugeData(BesideTrace):
     """What a gauge sees under every load, and what it measured.
 
     Parameters
@@ -194,34 +229,9 @@ class GaugeData:
         return float(np.abs(peaks - self.peak_strain[self.at]).max())
 
     @property
-    def drawn(self) -> FittedCurve | None:
-        """The comparison by as many samples as a figure can show."""
-        return None if self.compared is None else thinned(self.compared)
-
-    @property
     def near_contact(self) -> bool:
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
-
-    @property
-    def verdict(self) -> str:
-        """Measured against computed strain at the nominal load; empty without a trace and in drafts."""
-        return self._verdict(brief=False)
-
-    @property
-    def judged(self) -> str:
-        """The same without what its limit is made of."""
-        return self._verdict(brief=True)
-
-    @property
-    def drifts(self) -> str:
-        """What the measured strain drifts by where that is not fitted; empty where it does not."""
-        return drift_named(self.compared)
-
-    @property
-    def drawn_as(self) -> str:
-        """How the figure draws the trace; empty where it is drawn as measured."""
-        return drawn_as(self.compared)
 
     def _verdict(self, *, brief: bool) -> str:
         if self.compared is None or not self.estimated:

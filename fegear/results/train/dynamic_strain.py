@@ -21,7 +21,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
-from fegear.results.pair.gauge_data import drawn_as, drift_named, thinned, verdict
+from fegear.results.pair.gauge_data import BesideTrace, verdict
 from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     MEASURED,
@@ -89,7 +89,7 @@ class DynamicStrainInputs:
 
 
 @dataclass(frozen=True)
-class DynamicStrain:
+class DynamicStrain(BesideTrace):
     """Strain of a gauge in motion, and what it measured.
 
     Parameters
@@ -110,11 +110,6 @@ class DynamicStrain:
     sharper: str = ""
 
     @property
-    def drawn(self) -> FittedCurve | None:
-        """The comparison by as many samples as a figure can show."""
-        return None if self.compared is None else thinned(self.compared)
-
-    @property
     def error(self) -> Array | None:
         """Estimated, shape (P,); None where it is not known."""
         return None if self.found.peak_error is None else self.found.error
@@ -123,26 +118,6 @@ class DynamicStrain:
     def others(self) -> bool:
         """Whether other meshes, or fluctuating torques, excite the train."""
         return not self.alone
-
-    @property
-    def verdict(self) -> str:
-        """Measured against computed strain; empty where nothing was measured, and in drafts of 3D gears."""
-        return self._verdict(brief=False)
-
-    @property
-    def judged(self) -> str:
-        """The same without what its limit is made of."""
-        return self._verdict(brief=True)
-
-    @property
-    def drifts(self) -> str:
-        """What the measured strain drifts by where that is not fitted; empty where it does not."""
-        return drift_named(self.compared)
-
-    @property
-    def drawn_as(self) -> str:
-        """How the figure draws the trace; empty where it is drawn as measured."""
-        return drawn_as(self.compared)
 
     def _verdict(self, *, brief: bool) -> str:
         found = self.found
