@@ -15,6 +15,7 @@ import numpy as np
 
 from fegear.base.tally import tallied
 from fegear.contact.contact_law import LINEAR, ContactLaw
+from fegear.contact.plane.closing_faces import ClosingFaces, closing_faces, faces_of, share_with_faces
 from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.fem.alike_teeth import together
@@ -47,10 +48,13 @@ class PairMatrices:
         c_jj' [m/N], the diagonal at the reference load; zero in rows of pairs that are absent.
     law : ContactLaw
         What the loads change of the diagonal.
+    faces : ClosingFaces, optional
+        Crack faces that close as the loads want; the compliances are those of free ones.
     """
 
     compliance: Array
     law: ContactLaw = LINEAR
+    faces: ClosingFaces | None = None
 
     def at_load(self, loads: Array) -> Array:
         """Secant compliances at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
@@ -62,13 +66,15 @@ class PairMatrices:
 
     def share(self, separation: ArrayLike, load: ArrayLike) -> SharedLoad:
         """Loads of the pairs at separations [m] under loads [N]; see `share_load`."""
+        if self.faces is not None:
+            return share_with_faces(self.compliance, self.faces, separation, load, self.law)
         return share_load(self.compliance, separation, load, self.law)
 
     def _with_diagonal(self, loads: Array, of: Callable[[ContactLaw, Array, Array], Array]) -> Array:
         each = np.arange(loads.shape[0])
         c = np.broadcast_to(self.compliance[..., None], (each.size, *loads.shape)).copy()
         c[each, each] = of(self.law.each(lambda values: values[..., None]), c[each, each], loads)
-        return c
+        return c if self.faces is None else c - self.faces.stiffening_under(loads)
 
 
 class CoupledTeeth(ABC):
@@ -186,13 +192,25 @@ class CoupledTeeth(ABC):
             c[j, j, ~here] = 1.0
             if follows:
                 slope[j, here] = self.log_slope
+        faces = closing_faces(self, at, cycle) if self.coupling else None
+        if faces is not None:
+            self._free(c, at, cycle)
         if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
             self._couple(c, at, cycle)
         edges = None
         if follows and at.edge.max() > -np.inf and self.log_slope > 0.0:
             edges = self._edges(at, self.half_width(np.asarray(reference), at.relative_radius))
         q = self.power("driver") + self.power("driven") if follows else 0.0
-        return PairMatrices(c, ContactLaw(slope, reference, edges, q * face**-EXPONENT))
+        return PairMatrices(c, ContactLaw(slope, reference, edges, q * face**-EXPONENT), faces)
+
+    def _free(self, c: Array, at: Contacts, cycle: int) -> None:
+        """Give back what crack faces take away of the diagonal by closing under the load of their pair alone."""
+        for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True):
+            source = faces_of(self.source(member))
+            for j, here in enumerate(at.present if source is not None else ()):
+                if source is not None and here.any():
+                    i = self.tooth(member, int(at.number[j]), cycle)
+                    c[j, j, here] -= source.by_closing(i, radius[j, here]) / self.face_width
 
     @property
     def contact_load(self) -> float:

@@ -1,9 +1,4 @@
-"""Faces of a crack on its way through the mesh: how much of them presses under the loads that the teeth share.
-
-Compliances of a gear whose crack may close take its faces as pressed by the load on their own tooth, so that they are
-of degree one in it and are shared like any others. Under all loads together other nodes may press; what that changes
-of the deflections is known afterwards, and is zero where the crack is open, or shut, all along under both.
-"""
+"""Faces of a crack on its way through the mesh: how much of them presses under the loads that the teeth share."""
 
 from __future__ import annotations
 
@@ -37,14 +32,11 @@ class FacesInMesh:
     member : {"driver", "driven"}
     closed : ndarray
         Share of the faces' nodes that press on each other.
-    off : ndarray
-        Largest change of a loaded tooth's deflection by all loads together [m].
     """
 
     tooth: int
     member: Member
     closed: Array
-    off: Array
 
 
 def faces_in_mesh(
@@ -65,7 +57,7 @@ def faces_in_mesh(
         The cracked tooth by its own number.
     """
     way = ToothInMesh(engagement, found, member, influence, tooth)
-    closed, off = [np.zeros(0)], [np.zeros(0)]
+    closed = [np.zeros(0)]
     for row_of_tooth, number in enumerate(found.number):  # base pitches in which its tooth is on this pair
         loads, teeth = way.in_pitch(int(number))
         at = np.flatnonzero(loads[row_of_tooth] > _CARRIES * found.load)
@@ -76,7 +68,5 @@ def faces_in_mesh(
             for row, one in enumerate(teeth)
             if (loads[row, at] > 0.0).any()
         }
-        share, changes = influence.faces_under(teeth[row_of_tooth], here)
-        closed.append(share)
-        off.append(np.max([np.where(here[one][1] > 0.0, np.abs(changes[one]), 0.0) for one in here], axis=0))
-    return FacesInMesh(way.order, member, np.concatenate(closed), np.concatenate(off))
+        closed.append(influence.faces_under(teeth[row_of_tooth], here))
+    return FacesInMesh(way.order, member, np.concatenate(closed))

@@ -8,7 +8,7 @@ can touch, and only they are solved: the others recall the ordinary one (`same_a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -49,15 +49,24 @@ class OddCompliance:
         Of the gear whose teeth are all alike.
     own_splines : mapping of int to Spline
         c_ii at the reference half-width [m^2/N] over the roll length [m], by the tooth's number from the middle one.
-        Of no missing tooth: it carries no load.
+        Of no missing tooth: it carries no load. Faces of cracks that may close do so under this load.
     series : mapping of (int, int) to ndarray
-        Chebyshev coefficients of c_ij(p, q), shape (m, m) each, by such numbers.
+        Chebyshev coefficients of c_ij(p, q), shape (m, m) each, by such numbers; faces of cracks are free.
+    closing : mapping of int to Spline
+        What such faces change of c_ii by closing; empty where none may close.
+    openings : mapping of int to ndarray
+        Chebyshev coefficients of the opening of the nodes of all such faces, free, per line load, shape (N, m).
+    free : bool
+        Whether root stress is that of free faces, to which `stress_by_faces` adds what their forces do.
     """
 
     influence: OddGearInfluence
     ordinary: FiniteElementCompliance | ShiftedCompliance
     own_splines: Mapping[int, Spline]
     series: Mapping[tuple[int, int], Array]
+    closing: Mapping[int, Spline] = field(default_factory=dict)
+    openings: Mapping[int, Array] = field(default_factory=dict)
+    free: bool = False
 
     kinks = ()
     power = 0.0
@@ -138,6 +147,37 @@ class OddCompliance:
         """The half-width that `own` is for [m]."""
         return self.ordinary.reference_half_width(radius)
 
+    def by_closing(self, i: int, radius: ArrayLike) -> Array:
+        """What faces of cracks that close under a load on tooth i change of `own` [m^2/N]."""
+        near = self._from_middle(i)
+        if near not in self.closing:
+            return np.zeros(np.shape(radius))
+        return np.asarray(self.closing[near](self._along(near, radius)))
+
+    def moves_faces(self, i: int) -> bool:
+        """Whether loads on a tooth open or close cracks whose faces may close."""
+        return self._from_middle(i) in self.openings
+
+    def face_openings(self, i: int, radius: Array) -> Array:
+        """Opening of the nodes of all such faces, free, per unit line load on a tooth, shape (N, P) [m^2/N]."""
+        near = self._from_middle(i)
+        coefficients = np.ascontiguousarray(self.openings[near].T)
+        return np.asarray(np.polynomial.chebyshev.chebval(self._share(near, radius), coefficients))
+
+    def stress_by_faces(self, i: int, side: Side) -> Array | None:
+        """Stress along a fillet of tooth i per pair of line forces on these faces, (points, N) [1/m]; None if none."""
+        if self._from_middle(i) not in self.openings:
+            return None
+        kept, name = self.influence.tabulated, f"by faces {i % self.period} {side}"
+        if name not in kept:
+            kept[name] = self.influence.stress_by_faces(i, side)
+        return np.asarray(kept[name])
+
+    @cached_property
+    def with_free_faces(self) -> OddCompliance:
+        """The same with the root stress of free faces."""
+        return replace(self, free=True)
+
     def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """c_ij(p, q), zero beyond the reach."""
         teeth = self._odd(i, j)
@@ -165,7 +205,7 @@ class OddCompliance:
             return self.ordinary.root_stress(i, j, radius_q, side)
         if teeth is None or abs(i - j) > self.reach:
             return np.zeros_like(self.influence.fillet_stress(i, i, side, self._within(i, radius_q)))
-        return self.influence.fillet_stress(i, j, side, self._within(j, radius_q))
+        return self.influence.fillet_stress(i, j, side, self._within(j, radius_q), free=self.free)
 
     def _within(self, tooth: int, radius: ArrayLike) -> Array:
         """Radii, beyond a shorter tooth's tip that of the tip [m]."""
@@ -207,20 +247,36 @@ def odd_compliance(influence: OddGearInfluence) -> OddCompliance:
     """Tabulate the influence functions of a gear with odd teeth, once for each solution."""
     ordinary, kept = finite_element_compliance(influence.ordinary), influence.tabulated
     if "odd" not in kept:
-        there = (near for near in influence.touched if near not in influence.fine.missing)
-        own = {near: _own(influence, near) for near in there}
-        kept["odd"] = own, _series(influence, ordinary, own)
+        there = [near for near in influence.touched if near not in influence.fine.missing]
+        closing = influence.fine.closing
+        own = {near: tabulated_own(influence.alone(near))[0] for near in there}
+        by_closing = {near: _by_closing(influence, near, own[near].x) for near in there if closing}
+        own |= {near: spline(own[near].x, own[near].y + less.y) for near, less in by_closing.items()}
+        moves = [near for near in there if any(abs(near - k) <= ordinary.reach for k in closing)]
+        openings = {near: _openings(influence, ordinary, near, own) for near in moves}
+        kept["odd"] = own, _series(influence, ordinary, own), by_closing, openings
     return OddCompliance(influence, ordinary, *kept["odd"])
 
 
-def _own(influence: OddGearInfluence, near: int) -> Spline:
-    """c_ii of a tooth, faces of cracks that may close pressed on each other."""
-    curve = tabulated_own(influence.alone(near))[0]
-    if not influence.fine.closing:
-        return curve
-    low, high = influence.ends(near)
-    radius = np.clip(np.hypot(influence.gear.base_radius, curve.x), low, high)
-    return spline(curve.x, curve.y + influence.by_closing(near, radius))
+def _by_closing(influence: OddGearInfluence, near: int, lengths: Array) -> Spline:
+    """What faces of cracks take away of c_ii of a tooth by closing under its load, over the roll length."""
+    radius = np.clip(np.hypot(influence.gear.base_radius, lengths), *influence.ends(near))
+    return spline(lengths, influence.by_closing(near, radius))
+
+
+def _nodes(
+    influence: OddGearInfluence, ordinary: FiniteElementCompliance, near: int, own: Mapping[int, Spline]
+) -> tuple[Array, Array]:
+    """Radii on the flank of a tooth at which functions over it are taken, and the matrix to their series."""
+    end = own[near].x[-1] if near in own else ordinary.highest
+    return chebyshev_nodes(influence.gear, ordinary.lowest, float(end))
+
+
+def _openings(
+    influence: OddGearInfluence, ordinary: FiniteElementCompliance, near: int, own: Mapping[int, Spline]
+) -> Array:
+    radii, to_series = _nodes(influence, ordinary, near, own)
+    return influence.openings(near, radii) @ to_series.T
 
 
 def _series(
@@ -228,10 +284,9 @@ def _series(
 ) -> dict[tuple[int, int], Array]:
     found = {}
     for i, j in _coupled(influence, ordinary.reach):
-        ends = (own[near].x[-1] if near in own else ordinary.highest for near in (i, j))
-        (p, to_series), (q, _) = (chebyshev_nodes(influence.gear, ordinary.lowest, float(end)) for end in ends)
+        (p, to_series), (q, _) = (_nodes(influence, ordinary, near, own) for near in (i, j))
         first, second = (influence.middle + near for near in (i, j))
-        found[i, j] = to_series @ influence.between(first, second, p, q) @ to_series.T
+        found[i, j] = to_series @ influence.between(first, second, p, q, free=True) @ to_series.T
         found[j, i] = found[i, j].T  # reciprocity, exact for pressure-weighted deflections
     return found
 

@@ -198,7 +198,10 @@ def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | N
         log_slope=columns(lambda grid: grid.matrices.law.log_slope),
         edges=None if none else EdgeContacts(*columns(lambda grid: _edges(grid.matrices.law))),
     )
-    matrices = PairMatrices(columns(lambda grid: grid.matrices.compliance), law)
+    faces = old.matrices.faces  # those of the same teeth
+    if faces is not None:
+        faces = replace(faces, opening=columns(attrgetter("matrices.faces.opening")))
+    matrices = PairMatrices(columns(lambda grid: grid.matrices.compliance), law, faces)
     return RollGrid(x, replace(old.contacts, **places), matrices, old.teeth)
 
 

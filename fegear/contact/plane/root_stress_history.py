@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fegear.contact.plane.closing_faces import faces_of
 from fegear.contact.plane.compliance import RootStressInfluence, Side
 from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.fem.alike_teeth import together
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.contact.plane.odd_compliance import OddCompliance
     from fegear.contact.plane.stress_rows import Rows
     from fegear.geometry.pair import Member
 
@@ -135,10 +137,29 @@ def superposed_stress(
     yield from _along_fillets(engagement, loaded, RootStress.of(engagement.compliance, member, side, source), beyond)
 
 
+class PressedFaces(NamedTuple):
+    """Forces between faces of a gear's cracks that may close, (N, P, L) [N/m], and its source with free faces."""
+
+    line_force: Array
+    source: OddCompliance
+
+
+def _pressed_faces(loaded: Loaded, roots: RootStress, face_width: float) -> PressedFaces | None:
+    """Of a gear whose root stress comes from where its compliance does; None without such cracks."""
+    faces, source = loaded.grid.matrices.faces, faces_of(roots.source)
+    if faces is None or source is None or roots.member not in faces.of:
+        return None
+    forces = faces.forces(loaded.loads)[faces.of[roots.member]]
+    return PressedFaces(forces / face_width, source.with_free_faces)
+
+
 def _along_fillets(engagement: Engagement, loaded: Loaded, roots: RootStress, beyond: int) -> Iterator[Array]:
     compliance, contacts = engagement.compliance, loaded.grid.contacts
     radius = contacts.radius_driver if roots.member == "driver" else contacts.radius_driven
     n = radius.shape[0]
+    pressed = _pressed_faces(loaded, roots, compliance.face_width)
+    if pressed is not None:
+        roots = replace(roots, source=pressed.source)
     reach = min(roots.reach, n - 1 + beyond)
     line_load = loaded.loads / compliance.face_width
     carries = np.asarray((line_load > 0.0).any(axis=2))
@@ -160,7 +181,9 @@ def _along_fillets(engagement: Engagement, loaded: Loaded, roots: RootStress, be
             for one in carrying if tooth - one.tooth in one.rows
         ]  # fmt: skip
         points = felt[0].row.shape[-1] if felt else roots.rows(tooth, radius[:1, 0], 0)[0].shape[1]
-        yield roots.superposed(felt, (*line_load.shape[1:], points))
+        stress = roots.superposed(felt, (*line_load.shape[1:], points))
+        row = None if pressed is None else pressed.source.stress_by_faces(tooth, roots.side)
+        yield stress if pressed is None or row is None else stress + np.einsum("kpl,sk->pls", pressed.line_force, row)
 
 
 class Carrying(NamedTuple):

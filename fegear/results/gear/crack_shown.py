@@ -170,7 +170,7 @@ def _compute(asked: CrackInputs, upstream: Upstream, _work: Work) -> CracksShown
             loads = {number: (np.array([radius]), np.array([1.0]))}
             change, more = known.closed_intensity(number, loads)
             k, off = np.stack([np.maximum(k[0] + change[0], 0.0), k[1] + change[1]]), off + more
-            closed = float(known.closed_share(number, radius)[0])
+            closed = float(known.faces_under(number, loads)[0])
         own, usual = known.own(number, radius, half), plain.self_compliance(np.array([radius]), np.array([half]))
         angle = float(shape.flank_angle(radius / m))
         found.append(

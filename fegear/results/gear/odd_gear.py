@@ -76,7 +76,7 @@ def _closed(seen: Seen) -> Iterator[str]:
         radii = np.linspace(low, high, _PLACES)[1:-1]
         who = f"Gear {seen.asked.name}: loads on tooth {tooth}"
         if crack.closing:
-            share = found.closed_share(number, radii)
+            share = found.faces_under(number, {number: (radii, np.ones(np.shape(radii)))})
             if share.any():
                 yield (
                     f"{who} close {percents(float(share.min()), float(share.max()))} of its crack faces "

@@ -14,7 +14,6 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS, WIDE_EFFECTS
-from fegear.base.notes import neglecting
 from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
 from fegear.case.built.odd_gears import odd_gears_in
@@ -62,8 +61,6 @@ POSITIONS = 100
 INDICATORS = ("residual_rms", "residual_kurtosis", "fm0", "fm4", "m6a", "energy_ratio", "sideband_level_factor")
 #: Roll positions that are added to a 3D pair's where extremes may stand between them, on average (random pairs).
 _ADDED = 12
-#: Changes of deflections so small beside the transmission error are none.
-_EXACT = 1e-6
 #: Seconds of a base pitch of plane teeth; of a station of 3D pairs at a roll position, and again in each base pitch.
 _PITCH, _STATION, _AGAIN = 0.04, 2.5e-3, 3e-4
 
@@ -286,22 +283,15 @@ def _not_listed(seen: Seen) -> Iterator[str]:
 
 
 def _closing(seen: Seen) -> Iterator[str]:
-    """How far the faces of cracks are closed, and what is left out of their contact."""
+    """How far the faces of cracks are closed."""
     data: RevolutionData = seen.data
     for one in data.faces:
         if one.closed.any():
-            gear, off = seen.asked.gears[MEMBERS.index(one.member)], float(one.off.max())
-            text = (
+            gear = seen.asked.gears[MEMBERS.index(one.member)]
+            yield (
                 f"Pair {seen.name}: while tooth {one.tooth} of gear {gear} carries load, "
                 f"{percents(float(one.closed.min()), float(one.closed.max()))} of its crack faces are closed."
             )
-            if off < _EXACT * data.te_max:
-                yield f"{text} Their contact is the same under the loads of all teeth."
-            else:
-                yield neglecting(
-                    f"{text} The contact is that under the load on this tooth; loads on the other teeth would change "
-                    f"deflections by up to {off * 1e6:.2g} µm."
-                )
 
 
 def _answer(seen: Seen) -> Iterator[str]:

@@ -117,37 +117,56 @@ def pressed(compliance: Array, opening: Array) -> Array:
     # Nodes near the tip open little: in units of their own compliance all count alike.
     unit = 1.0 / np.sqrt(np.diagonal(compliance))
     scaled = compliance * unit * unit[:, None]
-    closed = np.zeros(opening.shape[0], dtype=bool)
-    for load, w in enumerate((opening * unit[:, None]).T):
-        size = np.abs(w).max(initial=0.0)
-        if (w < -_NONE * size).any():
-            force, closed = _one(scaled, w / size, closed)
-            found[:, load] = size * unit * force
+    w = opening * unit[:, None]
+    size = np.abs(w).max(axis=0, initial=0.0)
+    todo = np.flatnonzero((w < -_NONE * size).any(axis=0))
+    w = w[:, todo] / size[todo]
+    closed = w < 0.0
+    for _ in range(_MOST_SETS):
+        if not todo.size:
+            return found
+        force = shut_by(scaled, closed, -w)
+        gap = w + scaled @ force
+        slack = _NONE * np.maximum(1.0, np.abs(force).max(axis=0))
+        after = np.where(closed, force > slack, gap < -_NONE)
+        left = (after != closed).any(axis=0)
+        found[:, todo[~left]] = size[todo[~left]] * unit[:, None] * force[:, ~left]
+        todo, w, closed = todo[left], w[:, left], after[:, left]
+    for load, opened in zip(todo, w.T, strict=True):
+        found[:, load] = size[load] * unit * _one_by_one(scaled, opened)
     return found
 
 
-def _one(compliance: Array, opening: Array, begin: Mask) -> tuple[Array, Mask]:
-    """Forces of one load whose largest opening is one, and which nodes press; tried from those that `begin`."""
-    closed = begin if begin.any() else opening < 0.0
-    for _ in range(_MOST_SETS):
-        force = _on(closed, compliance, opening)
-        gap = opening + compliance @ force
-        slack = _NONE * max(1.0, float(np.abs(force).max()))
-        after = np.where(closed, force > slack, gap < -_NONE)
-        if np.array_equal(after, closed):
-            return force, closed
-        closed = after
+def _one_by_one(compliance: Array, opening: Array) -> Array:
+    """Forces of one load whose largest opening is one, nodes taken one by one."""
     from scipy.optimize import nnls
 
     factor = np.linalg.cholesky(compliance)
     closed = nnls(factor.T, -np.linalg.solve(factor, opening))[0] > 0.0
-    return np.maximum(_on(closed, compliance, opening), 0.0), closed
+    return np.asarray(np.maximum(shut_by(compliance, closed[:, None], -opening[:, None])[:, 0], 0.0))
 
 
-def _on(closed: Mask, compliance: Array, opening: Array) -> Array:
-    """Forces at the closed nodes that shut them, of either sign."""
-    force = np.zeros(opening.shape)
-    at = np.flatnonzero(closed)
-    if at.size:
-        force[at] = np.linalg.solve(compliance[np.ix_(at, at)], -opening[at])
-    return force
+def shut_by(compliance: Array, closed: Mask, opened: Array) -> Array:
+    """Forces at closed nodes, of either sign, that open them by so much; zero at the others.
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (N, N)
+    closed : ndarray of bool, shape (N, P)
+    opened : ndarray, shape (N, ..., P)
+
+    Returns
+    -------
+    ndarray, shape (N, ..., P)
+    """
+    found = np.zeros(opened.shape)
+    _, which = np.unique(np.packbits(closed, axis=0), axis=1, return_inverse=True)
+    which = which.ravel()
+    order = np.argsort(which, kind="stable")
+    for alike in np.split(order, np.flatnonzero(np.diff(which[order])) + 1) if order.size else ():
+        at = np.flatnonzero(closed[:, alike[0]])
+        if at.size:
+            right = opened[at][..., alike]
+            forces = np.linalg.solve(compliance[np.ix_(at, at)], right.reshape(at.size, -1))
+            found[np.ix_(at, *(np.arange(n) for n in opened.shape[1:-1]), alike)] = forces.reshape(right.shape)
+    return found

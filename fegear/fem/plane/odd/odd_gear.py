@@ -152,54 +152,64 @@ class OddGearInfluence:
         """
         return self.fine.by_closing(near, self._on_flank(near, radius), self._patch) / self._modulus
 
-    def closed_share(self, i: int, radius: ArrayLike) -> Array:
-        """Share of the nodes of a crack's faces that press on each other under a load on its tooth, shape (P,)."""
-        (near,) = self._near(i)
-        loads = self.fine.tooth(near).remote(self._modules(radius), self._patch)
-        return np.asarray((self.fine.face_forces(near, near, loads) > 0.0).mean(axis=0))
+    @cached_property
+    def faces_compliance(self) -> Array:
+        """Opening of the faces of all cracks that may close per pair of line forces on them, shape (N, N) [m^2/N]."""
+        return np.asarray(self.fine.faces_compliance / self._modulus)
 
-    def faces_under(self, i: int, loads: Mapping[int, tuple[Array, Array]]) -> tuple[Array, dict[int, Array]]:
-        """The crack of tooth i, which may close, under loads on several teeth at once.
+    def openings(self, near: int, radius: ArrayLike) -> Array:
+        """Opening of these faces, free, per unit line load on a tooth, by its number from the middle one, (N, P)."""
+        loads = self.fine.tooth(near).remote(self._on_flank(near, radius), self._patch)
+        return np.asarray(self.fine.openings(near, loads) / self._modulus)
+
+    def stress_by_faces(self, i: int, side: Side) -> Array:
+        """Stress along a fillet of tooth i per pair of line forces on these faces, shape (points, N) [1/m]."""
+        (near,) = self._near(i)
+        return np.asarray(self.fine.stress_by_faces(near, side) / self.gear.module)
+
+    def faces_under(self, i: int, loads: Mapping[int, tuple[Array, Array]]) -> Array:
+        """Share of the nodes of the crack of tooth i that press on each other under loads on several teeth, (P,).
 
         Parameters
         ----------
         i : int
         loads : mapping of int to (ndarray, ndarray), shape (P,) each
-            Radii [m] and line loads [N/m], by tooth; tooth i among them.
-
-        Returns
-        -------
-        share : ndarray, shape (P,)
-            Of the nodes of its faces that press on each other.
-        off : dict of int to ndarray, shape (P,)
-            By what the deflection of each tooth differs from that by `own` and `between` [m].
+            Radii [m] and line loads [N/m], by tooth.
         """
-        near = dict(zip(loads, self._near(*loads), strict=True))
-        here = {near[j]: (self._modules(radius), load) for j, (radius, load) in loads.items()}
-        forces, off = self.fine.faces_under(near[i], here, self._patch)
-        return (forces > 0.0).mean(axis=0), {j: off[k] / self._modulus for j, k in near.items()}
+        near, here = self._by_number(i, loads)
+        forces = self.fine.faces_under(here, self._patch)[self.fine.faces_at[near]]
+        return np.asarray((forces > 0.0).mean(axis=0))
+
+    def _by_number(
+        self, i: int, loads: Mapping[int, tuple[Array, Array]]
+    ) -> tuple[int, dict[int, tuple[Array, Array]]]:
+        """A tooth, and loads with their radii in modules, by their numbers from the middle tooth."""
+        near, *others = self._near(i, *loads)
+        each = zip(others, loads.values(), strict=True)
+        return near, {other: (self._modules(radius), load) for other, (radius, load) in each}
 
     def closed_intensity(self, i: int, loads: Mapping[int, tuple[Array, Array]]) -> tuple[Array, Array]:
-        """What the faces of the crack of tooth i add to its K_I and K_II by pressing on each other, and the error.
+        """What the faces of cracks add to K_I and K_II of that of tooth i by pressing on each other, and the error.
 
         Of a crack that may close, under loads on several teeth at once, as of `faces_under`; shape (2, P) each, beside
         the sums of `stress_intensity`, which has open faces [Pa sqrt(m)].
         """
-        near = dict(zip(loads, self._near(*loads), strict=True))
-        here, root = {near[j]: (self._modules(r), load) for j, (r, load) in loads.items()}, np.sqrt(self.gear.module)
-        forces, _ = self.fine.faces_under(near[i], here, self._patch)
-        value, other = self.fine.closed_intensity(near[i], forces)
+        (near, here), root = self._by_number(i, loads), np.sqrt(self.gear.module)
+        value, other = self.fine.closed_intensity(near, self.fine.faces_under(here, self._patch))
         error, lower = np.abs(value - other), self.fine.lower
         if lower is None:
             return value / root, np.full(value.shape, np.nan)
-        below = lower.closed_intensity(near[i], lower.faces_under(near[i], here, self._patch)[0])[0]
+        below = lower.closed_intensity(near, lower.faces_under(here, self._patch))[0]
         return value / root, (error + np.abs(value - below)) / root
 
-    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [m^2/N]."""
+    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike, *, free: bool = False) -> Array:
+        """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [m^2/N].
+
+        With the faces of cracks that may close as of `OddInfluence.between`.
+        """
         p, q = self._modules(radius_p), self._modules(radius_q)
         near, other = self._near(i, j)
-        return self.fine.between(near, other, p, q, self._patch) / self._modulus
+        return self.fine.between(near, other, p, q, self._patch, free=free) / self._modulus
 
     def between_error(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `between`, shape (P, Q) [m^2/N]."""
@@ -231,11 +241,15 @@ class OddGearInfluence:
         return self._kept[key]
 
     def fillet_stress(
-        self, i: int, j: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
+        self, i: int, j: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None, *, free: bool = False
     ) -> Array:
-        """Tangential stress along a fillet of tooth i per unit line load on tooth j, shape (points, P) [1/m]."""
+        """Tangential stress along a fillet of tooth i per unit line load on tooth j, shape (points, P) [1/m].
+
+        With the faces of cracks that may close as of `OddInfluence.fillet_stress`.
+        """
         near, other = self._near(i, j)
-        found = self.fine.fillet_stress(near, other, side, self._modules(radius), self._half_width(half_width))
+        r, b = self._modules(radius), self._half_width(half_width)
+        found = self.fine.fillet_stress(near, other, side, r, b, free=free)
         return found / self.gear.module
 
     def fillet_curve(self, i: int, side: Side) -> FilletCurve | CutFillet:

@@ -138,11 +138,41 @@ class OddInfluence:
 
     def by_closing(self, i: int, radius: ArrayLike, patch: float) -> Array:
         """What faces of cracks take away of c_ii(p, p) by pressing on each other, shape (P,) [1/E]."""
-        loads = self.tooth(i).remote(radius, patch)
-        found = np.zeros(loads.shape[1])
+        opening = self.openings(i, self.tooth(i).remote(radius, patch))
+        return np.asarray((opening * pressed(self.faces_compliance, opening)).sum(axis=0))
+
+    @cached_property
+    def faces_at(self) -> dict[int, slice]:
+        """Which of the nodes of all cracks that may close, one after the other, are of which tooth."""
+        ends = np.cumsum([0, *(self._faces(k).own.shape[0] for k in self.closing)]).tolist()
+        return {k: slice(*ends[n : n + 2]) for n, k in enumerate(self.closing)}
+
+    @cached_property
+    def faces_compliance(self) -> Array:
+        """Opening of all cracks that may close under pairs of forces on their faces, shape (N, N) [1/E]."""
+        each = [
+            [
+                self.face_compliance(k)
+                if k == other
+                else self._faces(k).follows @ self.ring.between(k, other) @ self._faces(other).follows.T
+                for other in self.closing
+            ]
+            for k in self.closing
+        ]
+        return np.asarray(np.block(each))
+
+    def openings(self, j: int, loads: Array) -> Array:
+        """Opening of all cracks that may close under loads on the flank of tooth j, faces free, shape (N, P)."""
+        return np.concatenate([self.opening(k, j, loads) for k in self.closing])
+
+    def stress_by_faces(self, i: int, side: Side) -> Array:
+        """Stress along a fillet of tooth i under pairs of forces on the faces of all cracks, shape (points, N)."""
+        found = []
         for k in self.closing:
-            found += (self.opening(k, i, loads) * self.face_forces(k, i, loads)).sum(axis=0)
-        return found
+            faces = self._faces(k)
+            by_sides = self.kind(i).stress_follows[side] @ self.ring.between(i, k) @ faces.follows.T
+            found.append(by_sides + faces.stress[side] if i == k else by_sides)
+        return np.hstack(found)
 
     def opening(self, i: int, j: int, loads: Array) -> Array:
         """Opening of the crack of tooth i under loads on the flank of tooth j, its faces free, shape (N, P).
@@ -193,34 +223,17 @@ class OddInfluence:
     def _sets(self) -> dict[int, Array]:
         return {}
 
-    def faces_under(
-        self, i: int, loads: Mapping[int, tuple[Array, Array]], patch: float
-    ) -> tuple[Array, dict[int, Array]]:
-        """The crack of tooth i, which may close, under loads on several teeth at once.
+    def faces_under(self, loads: Mapping[int, tuple[Array, Array]], patch: float) -> Array:
+        """Forces between the faces of all cracks that may close under loads on several teeth at once, shape (N, P).
 
         Parameters
         ----------
-        i : int
         loads : mapping of int to (ndarray, ndarray), shape (P,) each
-            Radii [modules] and line loads, by tooth; tooth i among them.
+            Radii [modules] and line loads, by tooth.
         patch : float
-
-        Returns
-        -------
-        forces : ndarray, shape (N, P)
-            Between its faces.
-        off : dict of int to ndarray, shape (P,)
-            By what the deflection of each tooth differs from that by `own` and `between` [1/E].
         """
-        pushed = {j: self.tooth(j).remote(radius, patch) * load for j, (radius, load) in loads.items()}
-        opening = {j: self.opening(i, j, one) for j, one in pushed.items()}
-        total = np.sum(list(opening.values()), axis=0)
-        forces, alone = pressed(self.face_compliance(i), total), self.face_forces(i, i, pushed[i])
-        beside = -self._shut(i) @ (total - opening[i])
-        off = {j: (one * (forces - alone - beside)).sum(axis=0) for j, one in opening.items()}
-        # By reciprocity: what loads beside it do to the tooth goes with the forces of its own load.
-        off[i] = (opening[i] * (forces - alone) - alone * (total - opening[i])).sum(axis=0)
-        return forces, {j: _over(one, loads[j][1]) for j, one in off.items()}
+        each = [self.openings(j, self.tooth(j).remote(radius, patch) * load) for j, (radius, load) in loads.items()]
+        return pressed(self.faces_compliance, np.sum(each, axis=0))
 
     def _faces(self, i: int) -> CrackFaces:
         found = self.kind(i).faces
@@ -232,16 +245,18 @@ class OddInfluence:
         """Motion of the sides of sector i under loads on the flank of tooth j, shape (2 m, P)."""
         return self.ring.between(i, j) @ (self.kind(j).flank_follows.T @ loads)
 
-    def between(self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
+    def between(
+        self, i: int, j: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float, *, free: bool = False
+    ) -> Array:
         """c_ij(p, q): deflection at p of tooth i per unit line load at q of tooth j, shape (P, Q) [1/E].
 
-        Cracks that may close do so by `face_forces`: c_ij(p, q) = c_ji(q, p) stays.
+        Cracks that may close do so by `face_forces`: c_ij(p, q) = c_ji(q, p) stays; or their faces are `free`.
         """
         there, here = self.tooth(i).remote(radius_p, patch), self.tooth(j).remote(radius_q, patch)
         found = (there.T @ self.kind(i).flank_follows) @ self._sides(i, j, here)
         if i == j:
             found = found + there.T @ self.kind(i).flank_own @ here
-        for k in self.closing:
+        for k in () if free else self.closing:
             if k == i != j:
                 found = found + self.face_forces(k, i, there).T @ self.opening(k, j, here)
             else:
@@ -249,18 +264,26 @@ class OddInfluence:
         return found
 
     def fillet_stress(
-        self, i: int, j: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+        self,
+        i: int,
+        j: int,
+        side: Side,
+        radius_q: ArrayLike,
+        half_width: ArrayLike = REFERENCE_HALF_WIDTH,
+        *,
+        free: bool = False,
     ) -> Array:
         """Tangential stress along a fillet of tooth i per unit line load at q of tooth j, shape (points, Q) [1/module].
 
-        Beside the mouth of a crack a fillet is free of stress.
+        Beside the mouth of a crack a fillet is free of stress. Cracks that may close do so by `face_forces`, or their
+        faces are `free`.
         """
         if i == j:
             found = self.tooth(i).fillet_stress(0, side, radius_q, half_width)
         else:
             loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T
             found = self.kind(i).stress_follows[side] @ self._sides(i, j, loads.toarray())
-        for k in self.closing:
+        for k in () if free else self.closing:
             faces = self._faces(k)
             forces = self.face_forces(k, j, self.tooth(j).remote(radius_q, REFERENCE_HALF_WIDTH))
             pushed = self.kind(i).stress_follows[side] @ (self.ring.between(i, k) @ (faces.follows.T @ forces))
@@ -297,10 +320,12 @@ class OddInfluence:
         return np.asarray(found + kind.intensity_own @ loads if i == j else found)
 
     def closed_intensity(self, i: int, forces: Array) -> Array:
-        """K_I and K_II of the crack of tooth i by forces between its faces, shape (rings, 2, P)."""
-        faces = self._faces(i)
-        sides = self.ring.between(i, i) @ (faces.follows.T @ forces)
-        return np.asarray(self.kind(i).intensity_follows @ sides + faces.intensity @ forces)
+        """K_I and K_II of the crack of tooth i by forces between the faces of all cracks, shape (rings, 2, P)."""
+        sides = sum(
+            self.ring.between(i, k) @ (self._faces(k).follows.T @ forces[at]) for k, at in self.faces_at.items()
+        )
+        own = self._faces(i).intensity @ forces[self.faces_at[i]]
+        return np.asarray(self.kind(i).intensity_follows @ sides + own)
 
     def stress_intensity(self, i: int, j: int, radius_q: ArrayLike, patch: float) -> tuple[Array, Array]:
         """K_I and K_II of the crack of tooth i per unit line load at q of tooth j, and their error, (2, Q) each.
@@ -318,11 +343,6 @@ class OddInfluence:
             return usual, np.full(usual.shape, np.nan)
         below = self.lower.by_ring(i, j, radius_q, patch)[0]
         return usual, np.abs(usual - other) + np.abs(usual - below)
-
-
-def _over(values: Array, load: Array) -> Array:
-    """Work over the load that does it: a deflection; zero without load."""
-    return np.divide(values, load, out=np.zeros_like(values), where=load > 0.0)
 
 
 @tallied("tooth shapes")
