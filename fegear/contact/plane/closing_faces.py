@@ -26,13 +26,12 @@ from fegear.fem.plane.odd.crack_faces import pressed, shut_by
 from fegear.geometry.pair import MEMBERS, Member
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array, Index, Mask
     from fegear.contact.contact_law import ContactLaw
-    from fegear.contact.plane.coupled_teeth import CoupledTeeth
     from fegear.contact.plane.meshing import Contacts
     from fegear.contact.plane.odd_compliance import OddCompliance
 
@@ -83,12 +82,25 @@ class ClosingFaces:
         return np.stack(found, axis=-1)
 
 
-def closing_faces(teeth: CoupledTeeth, at: Contacts, cycle: int) -> ClosingFaces | None:
-    """Faces of all cracks that the teeth on the pairs of a base pitch can move; None where there are none."""
+def closing_faces(
+    sources: Sequence[object], teeth: Sequence[Sequence[int]], at: Contacts, face_width: float
+) -> ClosingFaces | None:
+    """Faces of all cracks that loads on the pairs can move; None where there are none.
+
+    Parameters
+    ----------
+    sources : sequence of GearCompliance
+        Of driver and driven gear.
+    teeth : sequence of sequence of int
+        The teeth of each on the n pairs.
+    at : Contacts
+    face_width : float
+        [m].
+    """
     openings, compliances, of, first = [], [], {}, 0
-    for member, radius in zip(MEMBERS, (at.radius_driver, at.radius_driven), strict=True):
-        source = faces_of(teeth.source(member))
-        numbers = [teeth.tooth(member, int(j), cycle) for j in at.number]
+    radii = at.radius_driver, at.radius_driven
+    for member, radius, given, numbers in zip(MEMBERS, radii, sources, teeth, strict=True):
+        source = faces_of(given)
         if source is None or not any(source.moves_faces(i) for i in numbers):
             continue
         count = source.influence.faces_compliance.shape[0]
@@ -97,8 +109,8 @@ def closing_faces(teeth: CoupledTeeth, at: Contacts, cycle: int) -> ClosingFaces
             here = at.present[row]
             if here.any() and source.moves_faces(i):
                 found[:, row, here] = source.face_openings(i, radius[row, here])
-        openings.append(found / teeth.face_width)
-        compliances.append(source.influence.faces_compliance / teeth.face_width)
+        openings.append(found / face_width)
+        compliances.append(source.influence.faces_compliance / face_width)
         of[member] = slice(first, first + count)
         first += count
     if not openings:

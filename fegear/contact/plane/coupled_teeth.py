@@ -192,7 +192,8 @@ class CoupledTeeth(ABC):
             c[j, j, ~here] = 1.0
             if follows:
                 slope[j, here] = self.log_slope
-        faces = closing_faces(self, at, cycle) if self.coupling else None
+        on_pairs = [[self.tooth(member, int(j), cycle) for j in at.number] for member in MEMBERS]
+        faces = closing_faces(self.both, on_pairs, at, face) if self.coupling else None
         if faces is not None:
             self._free(c, at, cycle)
         if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
