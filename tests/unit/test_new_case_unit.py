@@ -467,21 +467,61 @@ def test_shafts_of_a_drafted_gearbox_suit_its_gears():
     case = tomllib.loads(draft(Answers("gearbox", given), "case"))
     turn = np.cos(np.radians(15.0))
     assert case["shaft"]["output"]["axis"] == [f"{100.0 / turn:.6g} mm", "0 mm"]
-    bore = 0.5 * (20.0 / turn - 2.5)
-    for shaft, gear, radius in (("input", "pinion", bore), ("output", "wheel", 1.5 * bore)):
-        one = case["shaft"][shaft]
-        length, at, seats, outer = (
-            [float(text.split()[0]) for text in texts]
-            for texts in (
-                [one["sections"][0]["length"]], [one["gears"][0]["at"]], [b["at"] for b in one["bearings"]],
-                [one["sections"][0]["outer"]],
-            )
-        )  # fmt: skip
-        assert float(case["gear"][gear]["bore_radius"].split()[0]) == pytest.approx(radius, rel=1e-5)
-        assert outer[0] == pytest.approx(2.0 * radius, rel=1e-5)
-        assert at[0] == pytest.approx(0.5 * length[0])
-        assert seats[0] < at[0] - 12.5 < at[0] + 12.5 < seats[1] < length[0]
-        assert sum(seats) == pytest.approx(length[0])
+
+    def mm(text):
+        return float(text.split()[0])
+
+    for shaft, gear, teeth in (("input", "pinion", 20), ("output", "wheel", 80)):
+        one, hole = case["shaft"][shaft], mm(case["gear"][gear]["bore_radius"])
+        thick, root = mm(one["sections"][1]["outer"]), teeth / turn - 2.5
+        assert hole == pytest.approx(min(0.5 * thick, 0.65 * root), rel=1e-5)
+        length = sum(mm(part["length"]) for part in one["sections"])
+        at, seats = mm(one["gears"][0]["at"]), [mm(place["at"]) for place in one["bearings"]]
+        assert at == pytest.approx(0.5 * length)
+        assert seats[0] < at - 12.5 < at + 12.5 < seats[1] < length
+        assert sum(seats) == pytest.approx(length)
+
+
+@pytest.mark.parametrize(
+    ("given", "tapered"),
+    [
+        ({}, True),  # a 6312 would need a shaft of 69 mm in a root circle of 59.5 mm
+        ({"teeth": "17 80"}, True),
+        ({"speed": "300 rpm"}, False),
+        ({"teeth": "19 90", "module": "2 mm", "torque": "20 N*m", "speed": "2900 rpm"}, False),
+    ],
+)
+def test_bearings_of_a_drafted_stage_have_a_designation_and_last_within_the_root_circles(given, tapered):
+    """They had 210 N/um of no bearing, and no life."""
+    scene = build_scene(tomllib.loads(draft(Answers("gearbox", given), "case")), "case", Path())
+    case, box, pair = scene.case, gearbox_of(scene), scene.pairs["I"]
+    (state,) = load_gearbox(box, [EvenForces(mesh.even / mesh.load) for mesh in box.meshes], [1.0])
+    speeds = case.pair["I"].speed / np.array([1.0, pair.driven.teeth / pair.driver.teeth])
+    for shaft, bent, speed in zip(case.shaft.values(), state.bent, speeds, strict=True):
+        for place, force in zip(shaft.bearings, bent.bearing_forces, strict=True):
+            bearing = case.bearing[place.bearing]
+            rolls = bearing.rating.revolutions(np.hypot(*force[:2]), force[2])
+            assert rolls * 2.0 * np.pi / speed > 20e3 * 3600.0
+            assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
+        root = min(scene.gears[one.gear].root_radius for one in shaft.gears)
+        assert shaft.sections[0].outer < shaft.sections[1].outer <= 2.0 * root
+    first = case.shaft["input"].bearings
+    assert [case.bearing[one.bearing].printed.kind == "tapered" for one in first] == [tapered, tapered]
+    assert [one.reversed for one in first] == [False, tapered]
+
+
+def test_a_drafted_stage_says_which_bearings_do_not_last_or_are_assumed():
+    heavy = draft(Answers("gearbox", {"teeth": "17 80", "torque": "900 N*m", "module": "3 mm"}), "case")
+    assert heavy.count("; shorter life: none within the root circle lasts as long") == 2
+    small = draft(Answers("gearbox", {"teeth": "17 80", "module": "1 mm"}), "case")
+    assert small.count("assumed: pinion too small for tabulated designations") == 2
+    for text in (heavy, small):
+        scene = build_scene(tomllib.loads(text), "case", Path())
+        shaft = scene.case.shaft["input"]
+        root = scene.gears["pinion"].root_radius
+        assert shaft.sections[0].outer < shaft.sections[1].outer <= 2.0 * root * (1.0 + 1e-6)
+    assert scene.case.bearing["input_locating"].fixed
+    assert scene.case.bearing["input_locating"].radial == pytest.approx(7e9 * 0.8 * 2.0 * root, rel=0.05)
 
 
 @pytest.mark.parametrize(

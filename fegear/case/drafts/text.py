@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib.resources import files
 from string import Template
@@ -13,7 +13,7 @@ from string import Template
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
-from fegear.case.drafts.two_stages import PlacedShaft, TwoStages, centre_distance, two_stages
+from fegear.case.drafts.two_stages import ChosenBearing, LaidOut, PlacedShaft, centre_distance, laid_out, two_stages
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -91,17 +91,20 @@ _SHAFT = """\
     {{ length = "{seat_length}", outer = "{seat}" }},
 ]
 gears = [{gears}]
-bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}" }}]
+bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}"{reversed} }}]
 {coupling}"""
-_BEARINGS = """\
-[bearing.{name}_locating]
-designation = "{locating}"
-life = {{}}     # C, X, Y and e of the designation
-
-[bearing.{name}_floating]
-designation = "{floating}"
-life = {{}}     # C of the designation
+_BEARING = """\
+[bearing.{name}]
+designation = "{designation}"
+life = {{}}     # {rated} of the designation{short}
 """
+_STIFF = """\
+[bearing.{name}]
+radial = {radial}     # with its seat, assumed: pinion too small for tabulated designations
+{fixed}"""
+#: What a bearing is rated by, and what is said of one that does not last.
+_RATED_BY = {"floating": "C"}
+_SHORT = "; shorter life: none within the root circle lasts as long"
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
 _NO_RELIEF = 'relief = { tip = { amount = "15 um", length = "4 mm" } }'
@@ -145,11 +148,6 @@ tolerance_class = 6     # ISO 1328; assumed
 roughness = { flank_rz = "4 um", root_rz = "16 um" }     # assumed
 strength = { material = "case-hardened-steel", quality = "MQ" }     # assumed
 material = { young_modulus = "206 GPa" }     # assumed: steel"""
-#: Middle of a bearing from the end of its shaft, in diameters; radial stiffness per bore, of deep groove ball bearings
-#: of middle size and their seats [N/m / m].
-_SEAT, _PER_BORE = 0.4, 7e9
-#: Thickest shaft of a wheel, over that of its pinion.
-_THICKER = 1.5
 #: Inertia of motor and machine over that of the gear beside them, assumed.
 _BODIES = 10.0
 _STEEL = 7850.0
@@ -160,6 +158,9 @@ _BACKLASH = 0.05
 _BORE, _RIM, _HALF_WIDTH = 0.5, 1.21, 0.02
 #: Mesh stiffness per face width, assumed for a ring and for reliefs [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
+
+#: Radial stiffness per bore of deep groove ball bearings of middle size and their seats [N/m / m].
+_PER_BORE = 7e9
 
 
 def draft(answers: Answers, stem: str, schema: str = "") -> str:
@@ -188,13 +189,13 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         pad=" " * len(file),
         title=toml_string(f"{stem}: {teeth} teeth, module {answers['module']}"),
     )
-    laid_out = two_stages(answers) if answers.kind == TWO_STAGES else None
+    stages = two_stages(answers) if answers.kind == TWO_STAGES else None
     values = {
         "head": head,
         "first": kind.gears[0],
         "second": kind.gears[-1],
-        "gears": "" if laid_out else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
-        "pair": "" if laid_out else _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
+        "gears": "" if stages else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
+        "pair": "" if stages else _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -204,7 +205,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         **(_train(answers) if answers.kind == "train" else {}),
         **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_gearbox(answers) if answers.kind == "gearbox" else {}),
-        **(_two_stages(answers, laid_out) if laid_out else {}),
+        **(_two_stages(answers, stages) if stages else {}),
         **(_study(answers) if answers.kind == "study" else {}),
         **(_rack(answers) if answers.kind == "rack" else {}),
     }
@@ -251,11 +252,11 @@ def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None)
         bore, note = thinner, "a rim of 1.2 tooth depths"
     texts |= {"bore_radius": _length(bore * module), "bore_note": note}
     if answers.kind == "gearbox":
-        texts |= {"bore_radius": _length(_shaft_radii(answers)[number]), "bore_note": "that of the shaft"}
+        texts |= {"bore_note": "that of the shaft"}
     if answers.helical:
         return _HELICAL.format(**{**texts, "hand": ("right", "left")[number], **(other or {})})
     texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
-    return _SPUR.format(**texts)
+    return _SPUR.format(**{**texts, **(other or {})})
 
 
 def _modified(answers: Answers, number: int, texts: Mapping[str, str]) -> str:
@@ -353,20 +354,13 @@ def _train(answers: Answers) -> Mapping[str, str]:
 
 
 def _gearbox(answers: Answers) -> Mapping[str, str]:
-    """Shafts as thick as their gears let them be, with bearings of that size clear of the gears."""
-    radii, face = _shaft_radii(answers), answers.si("face_width")
-    seat = 2.0 * _SEAT * radii[0]
-    length = face + 4.0 * seat
-    return {
-        "shaft_length": _length(length), "middle": _length(0.5 * length), "left": _length(seat),
-        "right": _length(length - seat), "input_diameter": _length(2.0 * radii[0]),
-        "output_diameter": _length(2.0 * radii[1]),
-        "distance": _length(centre_distance(answers)),
-        "bearing": _amount(2.0 * _PER_BORE * radii[0], "N/um"),
-    }  # fmt: skip
+    """Gears, shafts and bearings of one stage."""
+    found, names = laid_out((answers,)), KINDS["gearbox"].gears
+    gears = [_gear(answers, n, {"bore_radius": _length(hole)}) for n, hole in enumerate(found.holes)]
+    return {"gears": "\n".join(gears), "shafts": _shafts(found, ("input", "output"), names, ((0,), (1,)))}
 
 
-def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
+def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
     """Gears, pairs, shafts and bearings of two stages."""
     names, hands = KINDS[TWO_STAGES].gears, ("right", "left", "left", "right")
     gears, pairs = [], []
@@ -387,50 +381,60 @@ def _two_stages(answers: Answers, found: TwoStages) -> Mapping[str, str]:
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
         pairs.append(_pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows}) + _OPERATED)
     on = ((0,), (1, 2), (3,))
-    shafts = "\n".join(_placed_shaft(found, n, one, on[n]) for n, one in enumerate(found.shafts))
+    return {
+        "gears": "\n".join(gears), "pairs": "\n".join(pairs),
+        "shafts": _shafts(found, ("input", "middle", "output"), names, on),
+    }  # fmt: skip
+
+
+def _shafts(found: LaidOut, names: Sequence[str], gears: Sequence[str], on: Sequence[tuple[int, ...]]) -> str:
+    """Shafts of these names with their gears, `on` each, and bearings."""
+    shafts = "\n".join(_placed_shaft(found, n, names, [(gears[at], at // 2) for at in own]) for n, own in enumerate(on))
     bearings = "\n".join(
-        _BEARINGS.format(
-            name=_SHAFTS[n], locating=one.locating.designation, floating=one.floating.designation,
-        )
-        for n, one in enumerate(found.shafts)
-    )  # fmt: skip
+        _bearing(f"{name}_{role}", role, bearing, lasts=one.lasts)
+        for name, one in zip(names, found.shafts, strict=True)
+        for role, bearing in sorted(one.bearings.items(), key=lambda each: each[0] == "floating")
+    )
     said = (
         "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
         "from\n# them (ISO 281). Values of a catalogue are better and belong to one designation, as of a 6306:\n"
         '# life = { dynamic_rating = "29.6 kN" }, catalogue = { static_rating = "16 kN" }; X, Y and e are of ISO 281.\n'
     )
-    return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": f"{shafts}\n{said}\n{bearings}"}
+    if any(one.tapered for one in found.shafts):
+        said += (
+            "# Tapered bearings against each other where a ball and a roller bearing would need a shaft thicker than "
+            "the\n# root circle of its pinion: its teeth are cut into the shaft.\n"
+        )
+    return f"{shafts}\n{said}\n{bearings}"
 
 
-#: Shafts of two stages.
-_SHAFTS = ("input", "middle", "output")
+def _bearing(name: str, role: str, bearing: ChosenBearing, *, lasts: bool) -> str:
+    """A bearing by its designation, or by an assumed stiffness."""
+    if not bearing.designation:
+        stiffness = toml_string(_amount(_PER_BORE * bearing.bore, "N/um"))
+        return _STIFF.format(name=name, radial=stiffness, fixed="fixed = true\n" if role == "locating" else "")
+    rated = _RATED_BY.get(role, "C, X, Y and e")
+    return _BEARING.format(name=name, designation=bearing.designation, rated=rated, short="" if lasts else _SHORT)
 
 
-def _placed_shaft(found: TwoStages, n: int, one: PlacedShaft, gears: tuple[int, ...]) -> str:
-    name, seat = _SHAFTS[n], 2.0 * found.ends[0]
-    left, right = ("floating", "locating") if one.floating_first else ("locating", "floating")
+def _placed_shaft(found: LaidOut, n: int, names: Sequence[str], gears: Sequence[tuple[str, int]]) -> str:
+    """A shaft by its number, with its gears and their stages."""
+    one: PlacedShaft = found.shafts[n]
+    name, seat = names[n], 2.0 * found.ends[0]
+    left, right = one.bearings
     away = sum(found.distances[:n])
-    notes = ("     # distances along it from its left end; places and sizes are assumed", "", "")
-    couplings = ('coupling = "0 mm"     # where the torque enters\n', "", f'coupling = "{_length(found.length)}"\n')
+    note = "" if n else "     # distances along it from its left end; places and sizes are assumed"
+    coupling = "" if n else 'coupling = "0 mm"     # where the torque enters\n'
+    if n == len(names) - 1:
+        coupling = f'coupling = "{_length(found.length)}"\n'
     return _SHAFT.format(
-        name=name, note=notes[n], axis=f'axis = ["{_length(away)}", "0 mm"]     # centre distance\n' if n else "",
+        name=name, note=note, axis=f'axis = ["{_length(away)}", "0 mm"]     # centre distance\n' if n else "",
         seat_length=_length(seat), seat=_length(one.seat), between=_length(found.length - 2.0 * seat),
         thick=_length(one.thick), left=left, right=right, first=_length(found.ends[0]), last=_length(found.ends[1]),
-        gears=", ".join(
-            f'{{ gear = "{KINDS[TWO_STAGES].gears[at]}", at = "{_length(found.middles[at // 2])}" }}' for at in gears
-        ),
-        coupling=couplings[n],
+        reversed=", reversed = true" if one.tapered else "",
+        gears=", ".join(f'{{ gear = "{gear}", at = "{_length(found.middles[stage])}" }}' for gear, stage in gears),
+        coupling=coupling,
     )  # fmt: skip
-
-
-def _shaft_radii(answers: Answers) -> tuple[float, float]:
-    """Half the root radius of the pinion, and up to half as much again below the wheel [m]."""
-    turn, dedendum = math.cos(answers.si("helix_angle")), BasicRack.named(answers["rack"]).dedendum
-    teeth, shifts = (map(float, answers.numbers(name)) for name in ("teeth", "profile_shift"))
-    first, second = (
-        _BORE * answers.si("module") * (0.5 * z / turn - dedendum + x) for z, x in zip(teeth, shifts, strict=True)
-    )
-    return first, min(second, _THICKER * first)
 
 
 def _planetary(answers: Answers) -> Mapping[str, str]:

@@ -1,15 +1,17 @@
-"""Two helical stages on three parallel shafts: module, torque and speed of the second, places, shafts, bearings.
+"""One or two helical stages on parallel shafts: module, torque and speed of the second, places, shafts, bearings.
 
 The wheel of the first stage and the pinion of the second turn together and have one hand, so that their axial forces
 are against each other. Each shaft has a deep groove ball bearing that locates it, at the end with less radial force,
-and a cylindrical roller bearing that lets it grow.
+and a cylindrical roller bearing that lets it grow; where these would need a shaft thicker than a root circle, two
+tapered roller bearings against each other. Teeth of small pinions are cut into their shaft.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
@@ -30,8 +32,10 @@ _SHOULDER, _HOLE = 1.15, 0.65
 _SHEAR = 25e6
 #: Life that bearings are chosen for [h], of the gearbox and some more: the load over the face moves their forces.
 _LIFE, _MORE = 20e3, 1.25
-_SERIES = {"ball": ("62", "63"), "roller": ("NU2", "NU3")}
+_SERIES = {"ball": ("62", "63"), "roller": ("NU2", "NU3"), "tapered": ("302", "322", "303", "323")}
 _FIRST, _LAST = 4, 20
+#: Bore of a bearing over its number [m]; times that the life is halved where no bearing lasts as long.
+_STEP, _HALVES = 5e-3, 24
 
 
 @dataclass(frozen=True)
@@ -41,14 +45,15 @@ class ChosenBearing:
     Parameters
     ----------
     designation : str
-    rating : LifeRating
+        Empty for one of which only a stiffness is assumed.
+    rating : LifeRating or None
         With C to two digits, estimated from its dimensions.
     bore, width : float
         [m].
     """
 
     designation: str
-    rating: LifeRating
+    rating: LifeRating | None
     bore: float
     width: float
 
@@ -61,85 +66,115 @@ class PlacedShaft:
     ----------
     seat, thick : float
         Diameter below the bearings and between them [m].
-    floating_first : bool
-        Whether the locating bearing is the right one.
-    locating, floating : ChosenBearing
+    bearings : mapping of str to ChosenBearing
+        From left to right by what they do: "locating" and "floating", or "left" and "right" against each other.
+    lasts : bool
+        Whether the bearings have the life that they are chosen for; else they are the best for this root circle.
     """
 
     seat: float
     thick: float
-    floating_first: bool
-    locating: ChosenBearing
-    floating: ChosenBearing
+    bearings: Mapping[str, ChosenBearing]
+    lasts: bool = True
+
+    @property
+    def tapered(self) -> bool:
+        """Whether two tapered bearings locate it together."""
+        return "left" in self.bearings
+
+
+class _Forces(NamedTuple):
+    """Radial forces at the left and at the right end, axial force [N], turns within the life, largest shaft [m]."""
+
+    left: float
+    right: float
+    axial: float
+    rolls: float
+    most: float
 
 
 @dataclass(frozen=True)
-class TwoStages:
+class LaidOut:
     """What the case has besides its gears; lengths from the left end of all three shafts [m].
 
     Parameters
     ----------
     stages : tuple of Answers
-        Of each stage, as of a gearbox with one.
+        Of each of the one or two stages, as of a gearbox with one.
     holes : tuple of float
         Radius of the hole of each gear [m].
     distances : tuple of float
         Centre distances [m].
     middles : tuple of float
-        Middle of both stages' faces.
+        Middle of each stage's faces.
     ends : tuple of float
         Middle of the bearings at the left and at the right.
     length : float
     shafts : tuple of PlacedShaft
     """
 
-    stages: tuple[Answers, Answers]
+    stages: tuple[Answers, ...]
     holes: tuple[float, ...]
-    distances: tuple[float, float]
-    middles: tuple[float, float]
+    distances: tuple[float, ...]
+    middles: tuple[float, ...]
     ends: tuple[float, float]
     length: float
     shafts: tuple[PlacedShaft, ...]
 
 
-def two_stages(answers: Answers) -> TwoStages:
+def two_stages(answers: Answers) -> LaidOut:
     """Lay out both stages.
 
     Parameters
     ----------
     answers : Answers
     """
-    stages = _stages(answers)
+    return laid_out(_stages(answers))
+
+
+def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
+    """Places, shafts and bearings of one stage or two.
+
+    Parameters
+    ----------
+    stages : tuple of Answers
+    """
     radii = [_radii(one) for one in stages]
     modules, faces = [one.si("module") for one in stages], [one.si("face_width") for one in stages]
-    torques = [stages[0].si("torque"), stages[1].si("torque")]
-    torques.append(torques[1] * _ratio(stages[1]))
-    speeds = [stages[0].si("speed"), stages[1].si("speed")]
-    speeds.append(speeds[1] / _ratio(stages[1]))
-    clear, seats = _CLEAR * modules[1], [(16.0 * torque / (math.pi * _SHEAR)) ** (1.0 / 3.0) for torque in torques]
+    torques, speeds = [one.si("torque") for one in stages], [one.si("speed") for one in stages]
+    torques.append(torques[-1] * _ratio(stages[-1]))
+    speeds.append(speeds[-1] / _ratio(stages[-1]))
+    clear, seats = _CLEAR * modules[-1], [(16.0 * torque / (math.pi * _SHEAR)) ** (1.0 / 3.0) for torque in torques]
+    # stage and member of the gears of each shaft
+    on: tuple[tuple[tuple[int, int], ...], ...] = (((0, 0),), ((0, 1),))
+    if len(stages) > 1:
+        on = (((0, 0),), ((0, 1), (1, 0)), ((1, 1),))
+    roots = [list(_roots(one)) for one in stages]
     width = 0.6 * max(seats)
-    ends, length, middles = (0.0, 0.0), 0.0, (0.0, 0.0)
+    ends, length = (0.0, 0.0), 0.0
+    middles: tuple[float, ...] = ()
     shafts: tuple[PlacedShaft, ...] = ()
     for _ in range(3):  # forces follow the places, places the widths of bearings, and these the forces
-        middles = (width + clear + 0.5 * faces[0], width + clear + faces[0] + _GAP * modules[1] + 0.5 * faces[1])
-        length = middles[1] + 0.5 * faces[1] + clear + width
+        middles = (width + clear + 0.5 * faces[0],)
+        if len(stages) > 1:
+            middles = (*middles, width + clear + faces[0] + _GAP * modules[1] + 0.5 * faces[1])
+        length = middles[-1] + 0.5 * faces[-1] + clear + width
         ends = 0.5 * width, length - 0.5 * width
         forces = [_mesh_forces(one, torque) for one, torque in zip(stages, torques, strict=False)]
-        on = (((0, 0),), ((0, 1), (1, 0)), ((1, 1),))  # stage and member of the gears of each shaft
         shafts = tuple(
             _shaft(
-                seat, speed,
+                seat, speed, 2.0 * min(roots[n][member] for n, member in gears),
                 [(middles[n] - ends[0], *forces[n], radii[n][member], -1.0 if member else 1.0) for n, member in gears],
                 ends[1] - ends[0],
             )
             for seat, speed, gears in zip(seats, speeds, on, strict=True)
         )  # fmt: skip
-        width = max(one.width for shaft in shafts for one in (shaft.locating, shaft.floating))
-    thick = (shafts[0].thick, shafts[1].thick, shafts[1].thick, shafts[2].thick)
-    roots = [root for one in stages for root in _roots(one)]
-    holes = tuple(min(0.5 * d, _HOLE * root) for d, root in zip(thick, roots, strict=True))
-    distances = [sum(one) for one in radii]
-    return TwoStages(stages, holes, (distances[0], distances[1]), middles, ends, length, shafts)
+        width = max(one.width for shaft in shafts for one in shaft.bearings.values())
+    thick = [shaft.thick for shaft, gears in zip(shafts, on, strict=True) for _ in gears]
+    holes = tuple(
+        min(0.5 * d, _HOLE * root) for d, root in zip(thick, [one for own in roots for one in own], strict=True)
+    )
+    return LaidOut(stages, holes, tuple(sum(one) for one in radii), middles, ends, length, shafts)
 
 
 def _stages(answers: Answers) -> tuple[Answers, Answers]:
@@ -197,9 +232,10 @@ def _mesh_forces(stage: Answers, torque: float) -> tuple[float, float, float]:
 
 
 def _shaft(
-    seat: float, speed: float, meshes: Sequence[tuple[float, float, float, float, float, float]], span: float
-) -> PlacedShaft:
-    """The smallest shaft and bearings that carry the forces of its meshes."""
+    seat: float, speed: float, root: float, meshes: Sequence[tuple[float, float, float, float, float, float]],
+    span: float,
+) -> PlacedShaft:  # fmt: skip
+    """The smallest shaft and bearings that carry the forces of its meshes within the smallest root circle."""
     tangent, apart, moment, axial = [0.0, 0.0], [0.0, 0.0], 0.0, 0.0
     for at, tangential, radial, along, radius, side in meshes:
         # On shafts in a row both meshes of the middle one push it up, and from both sides; axial forces of one hand
@@ -209,40 +245,80 @@ def _shaft(
             apart[end] += share * side * radial
         moment += along * radius / span
         axial += side * along
-    forces = [math.hypot(one, abs(other) + moment) for one, other in zip(tangent, apart, strict=True)]
-    floating_first = forces[0] > forces[1]
+    left, right = (math.hypot(one, abs(other) + moment) for one, other in zip(tangent, apart, strict=True))
     rolls = _LIFE * _MORE * 3600.0 * speed / (2.0 * math.pi)
-    located, floats = min(forces), max(forces)
-    locating = _bearing("ball", seat, located, abs(axial), rolls)
-    floating = _bearing("roller", seat, floats, 0.0, rolls)
-    bore = max(locating.bore, floating.bore)
-    locating, floating = (
-        one if one.bore == bore else _bearing(kind, bore, radial, along, rolls)
-        for one, kind, radial, along in (
-            (locating, "ball", located, abs(axial)), (floating, "roller", floats, 0.0)
-        )
-    )  # fmt: skip
-    bore = max(locating.bore, floating.bore)
-    return PlacedShaft(bore, math.ceil(_SHOULDER * bore * 1e3) * 1e-3, floating_first, locating, floating)
+    forces = _Forces(left, right, abs(axial), rolls, root)
+    seat = min(seat, _STEP * _LAST, _STEP * math.floor(root / _SHOULDER / _STEP))
+    for halved in range(_HALVES):  # where none lasts as long, one that lasts half of it, and so on
+        forces = forces._replace(rolls=rolls * 0.5**halved)
+        found = _located(seat, forces) or _adjusted(seat, forces)
+        if found is not None:
+            return replace(found, lasts=not halved)
+    return _assumed(forces)
 
 
-def _bearing(kind: str, seat: float, radial: float, axial: float, rolls: float) -> ChosenBearing:
-    """The smallest bearing on a seat of this diameter, or a larger one, with the life; else the largest there is."""
-    found: ChosenBearing | None = None
+def _assumed(forces: _Forces) -> PlacedShaft:
+    """A shaft on bearings of an assumed stiffness: its pinion is too small for those that are tabulated."""
+    seat = 0.8 * forces.most
+    made = ChosenBearing("", None, seat, 0.4 * seat)
+    return PlacedShaft(seat, forces.most, {"locating": made, "floating": made})
+
+
+def _located(seat: float, forces: _Forces) -> PlacedShaft | None:
+    """A shaft with a ball bearing that locates it, where the radial force is less, and a roller bearing that floats."""
+    floating_first = forces.left > forces.right
+    located, floats = sorted((forces.left, forces.right))
+    bore = seat
+    while True:  # both have one bore
+        locating = _bearing("ball", bore, located, forces.axial, forces)
+        floating = _bearing("roller", bore, floats, 0.0, forces)
+        if locating is None or floating is None:
+            return None
+        bore = max(locating.bore, floating.bore)
+        if locating.bore == floating.bore:
+            break
+    both = {"locating": locating, "floating": floating}
+    if floating_first:
+        both = {"floating": floating, "locating": locating}
+    return PlacedShaft(bore, _thick(bore, forces.most), both)
+
+
+def _adjusted(seat: float, forces: _Forces) -> PlacedShaft | None:
+    """A shaft between two equal tapered bearings, one of which has the axial force and what the other induces."""
+    radial = max(forces.left, forces.right)
+    found = _bearing("tapered", seat, radial, forces.axial, forces)
+    if found is None:
+        return None
+    return PlacedShaft(found.bore, _thick(found.bore, forces.most), {"left": found, "right": found})
+
+
+def _thick(bore: float, most: float) -> float:
+    """Diameter of the shaft between its bearings: a shoulder, within the root circle."""
+    return min(math.ceil(_SHOULDER * bore * 1e3) * 1e-3, most)
+
+
+def _bearing(kind: str, seat: float, radial: float, axial: float, forces: _Forces) -> ChosenBearing | None:
+    """The smallest bearing on this or a larger seat with the life, and with a shoulder within the root circle."""
     for number in range(_FIRST, _LAST + 1):
-        if 5e-3 * number < seat - 1e-9 and number < _LAST:
+        bore = _STEP * number
+        if bore < seat - 1e-9 or _SHOULDER * bore > forces.most:
             continue
         for series in _SERIES[kind]:
             found = _known(f"{series}{number:02d}")
-            if found.rating.revolutions(radial, axial) >= rolls:
+            rating = found.rating
+            if rating is None:
+                continue
+            # half of F_r/Y of the other bearing (ISO 281), which has no more radial force
+            induced = 0.5 * radial / rating.axial.at(0.0)[1] if kind == "tapered" and rating.axial else 0.0
+            if rating.revolutions(radial, axial + induced) >= forces.rolls:
                 return found
-    assert found is not None  # noqa: S101  (for mypy: there is a largest one)
-    return found
+    return None
 
 
 def _known(designation: str) -> ChosenBearing:
     one = KNOWN[designation]
-    inside = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, None, 0.0).inside
+    angle = one.contact_angle or None
+    inside = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, angle, 0.0).inside
     rated = float(f"{dynamic_rating(inside):.2g}")
     factors = AxialFactors(inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2)
     return ChosenBearing(designation, LifeRating(rated, inside.kind, axial=factors), one.bore, one.width)

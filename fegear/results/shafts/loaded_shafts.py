@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
 from fegear.base.notes import Note, assuming, class_of, neglecting
+from fegear.case.built.bearing_room import said_of_room
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
@@ -88,7 +89,8 @@ def inputs_of_shafts(scene: Scene, _name: str) -> LoadedShaftsInputs:
     box = gearbox_of(scene)
     flanks = tuple(pair_spec(scene, mesh.pair) if _feeding(scene, mesh.pair) else None for mesh in box.meshes)
     scales = {1.0}.union(*(_scales(scene, mesh.pair) for mesh in box.meshes))
-    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), (*said_of_bodies(scene), *said_of_bearings(scene)))
+    said = (*said_of_room(scene), *said_of_bodies(scene), *said_of_bearings(scene))
+    return LoadedShaftsInputs(box, flanks, tuple(sorted(scales)), said)
 
 
 def mesh_forces(inputs: LoadedShaftsInputs, upstream: Upstream, work: Work) -> list[MeshForces]:

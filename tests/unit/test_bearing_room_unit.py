@@ -1,0 +1,84 @@
+"""Bearings on shafts of another diameter and bodies that cut each other: what is said of them, and when nothing is."""
+
+import tomllib
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+from fegear.base.notes import NoteClass, class_of
+from fegear.case.built.bearing_room import said_of_room
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import TWO_STAGES
+from fegear.case.drafts.text import draft
+from fegear.case.reading import build_scene
+
+BOX = tomllib.loads(draft(Answers(TWO_STAGES, {"teeth": "21 53 19 61"}), "case"))
+
+
+def notes_of(changed: dict) -> list:
+    """Notes on a box of which some keys, "shaft.input.gears.0.at", have other values."""
+    document = deepcopy(BOX)
+    for path, value in changed.items():
+        *way, last = (int(step) if step.isdigit() else step for step in path.split("."))
+        at = document
+        for step in way:
+            at = at[step]
+        at[last] = value
+    return list(said_of_room(build_scene(document, "case", Path())))
+
+
+def test_a_draft_has_room():
+    assert not notes_of({})
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"bearing.input_floating.designation": "NU212"},
+         "Bearing input_floating (NU212): bore 60 mm is larger than the diameter of shaft input there, 35 mm; correct"),
+        ({"shaft.input.sections.0.outer": "40 mm"},
+         "bore 35 mm is smaller than the diameter of shaft input there, 40 mm"),
+    ],
+)  # fmt: skip
+def test_a_bore_that_is_not_that_of_the_shaft_is_a_failure_with_both_numbers(changed, said):
+    (note,) = notes_of(changed)
+    assert class_of(note) is NoteClass.FAILS
+    assert said in note
+    assert "shaft.input.sections or shaft.input.bearings.0.at, or choose a bearing of bore" in note
+    assert note.margin == pytest.approx(35.0 / (60.0 if "NU212" in note else 40.0))
+
+
+def test_at_a_step_and_on_a_cone_the_diameter_there_counts():
+    seat = float(BOX["shaft"]["input"]["sections"][0]["length"].split()[0])
+    at_step = notes_of({"shaft.input.bearings.0.at": f"{seat} mm"})  # 35 mm to the left, 41 mm to the right
+    assert not [note for note in at_step if "bore" in note]
+    cone = {"shaft.input.sections.0.outer": "30 mm", "shaft.input.sections.0.outer_end": "40 mm"}
+    assert not notes_of(cone)  # 35 mm in the middle, where the bearing is
+    steep = cone | {"shaft.input.sections.0.outer_end": "42 mm"}
+    (note,) = notes_of(steep)
+    assert "36 mm" in note
+
+
+def test_a_bearing_without_known_dimensions_says_nothing():
+    assert not notes_of({"bearing.input_floating": {"radial": "200 N/um"}})
+
+
+def test_bodies_on_two_shafts_that_cut_each_other_are_named_with_radii_and_distance():
+    # the output shaft under the wheel of the first stage: 87.6 mm of tip radius and 85 mm of shaft, axes 170.3 mm apart
+    (note,) = notes_of({"shaft.output.sections.1.outer": "170 mm"})
+    assert class_of(note) is NoteClass.FAILS
+    assert "Gear wheel_1 (diameter 175.2 mm) and shaft output (diameter 170 mm) cut each other" in note
+    assert "radii 172.6 mm, axes of shafts middle and output 170.3 mm apart" in note
+    assert not notes_of({"shaft.output.sections.1.outer": "164 mm"})
+
+
+def test_a_bearing_beside_a_gear_overlaps_it_along_the_shaft():
+    face, width = 30.0, 17.0  # of pinion_1, and of the NU207 that is moved to it, with an outside diameter of 72 mm
+    place = BOX["shaft"]["input"]
+    at = float(place["gears"][0]["at"].split()[0])
+    thick = {"shaft.input.sections.0.outer": "35 mm", "shaft.input.sections.1.outer": "35 mm"}
+    note, cut = notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width) + 2.0} mm"})
+    assert "Bearing input_floating (diameter 72 mm) and gear wheel_1 (diameter 175.2 mm) cut each other" in cut
+    assert "Gear pinion_1 and bearing input_floating on shaft input overlap by 2 mm along it" in note
+    assert not notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width)} mm"})
