@@ -231,6 +231,10 @@ class TeethPart(Part):
 
     @model_validator(mode="after")
     def _sized_once(self) -> Self:
+        if self.helix_angle is not None and self.helix_angle < 0.0:
+            angle = f'set helix_angle = "{-math.degrees(self.helix_angle):.9g} deg"'
+            sign = ' and hand = "left" or "right"' if self.hand is None else f'; hand = "{self.hand}" defines the sign'
+            raise refuse("must be between 0 and 60 deg", angle + sign, key="helix_angle")
         if self.is_helical:
             self._check_helical_size()
         else:

@@ -9,6 +9,7 @@ from fegear.base.errors import InputError
 from fegear.base.extensions import Added
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.flank_modifications import described_relief
+from fegear.case.built.rack import rack_pinion
 from fegear.case.nearest import nearest
 from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
 from fegear.geometry.asymmetric_tooth import AsymmetricSide
@@ -129,12 +130,11 @@ def export_gears(
                 say(f"Gear {gear}, {name.upper()}: about {predicted:.0f} s of CPU time for {teeth} teeth.")
             write(name, (gear,), cache)
         remarks += _left_out(scene, gear, wanted, fitting)
-    holding = [name for name, row in wanted.items() if row.racks]
     for rack in racks:
+        cache, holding = SolutionCache(), _of_rack(scene, rack, wanted)
         for name in holding:
-            write(name, (rack,), SolutionCache(), rack=True)
-        unwritten = sorted(name for name in of_gears if name not in holding)
-        remarks += [f"Rack {rack}: no {', '.join(unwritten)} is written for racks."] if unwritten else []
+            write(name, (rack,), cache, rack=True)
+        remarks += _left_out_of_rack(scene, rack, wanted, [name for name in of_gears if name not in holding])
     for name in _of(wanted, "case") if chosen else ():
         write(name, chosen, SolutionCache())
     if not written and "relief" not in wanted:
@@ -182,6 +182,24 @@ def _refuse_asymmetric(scene: Scene, chosen: Sequence[str], wanted: Mapping[str,
         raise InputError(
             "--format", f'"{other}"', f"is not available for the asymmetric teeth of gear {gear}", f"use {held}"
         )
+
+
+def _of_rack(scene: Scene, rack: str, wanted: Mapping[str, Format]) -> list[str]:
+    """Formats that are written for a rack: those that hold racks, plane meshes of spur racks only."""
+    helical = bool(scene.gears[rack_pinion(scene, rack)].helix_angle)
+    return [name for name, row in wanted.items() if row.racks and not (helical and row.holds == "plane mesh")]
+
+
+def _left_out_of_rack(scene: Scene, rack: str, wanted: Mapping[str, Format], unwritten: Sequence[str]) -> list[str]:
+    """What is not written for a rack, and what its meshes do not hold."""
+    plane = sorted(name for name in unwritten if wanted[name].racks)
+    others = sorted(name for name in unwritten if not wanted[name].racks)
+    meshes = sorted(name for name, row in wanted.items() if row.holds.endswith("mesh") and name not in unwritten)
+    said = [f"Rack {rack} is helical: no {', '.join(plane)} is written for it."] if plane else []
+    said += [f"Rack {rack}: no {', '.join(others)} is written for racks."] if others else []
+    if meshes and scene.case.rack[rack].tip_relief:
+        said.append(f"Rack {rack}, {', '.join(meshes)}: flanks as generated, without the tip relief of the case.")
+    return said
 
 
 def _of(wanted: Mapping[str, Format], holds: Holds) -> list[str]:

@@ -152,28 +152,34 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         "the involute, finely and as the points of a profile chart (K-chart)",
     ),
     "msh": Format(
-        "plane mesh", "mesh of the gear, Gmsh", "fegear.output.plane_mesh_files:written_msh", "*.msh",
-        "gmsh: the whole gear with named groups", asymmetric=True,
+        "plane mesh", "mesh of the gear or rack, Gmsh", "fegear.output.plane_mesh_files:written_msh", "*.msh",
+        "gmsh: the whole gear, or spur rack, with named groups", asymmetric=True,
+        racks="fegear.output.rack_mesh_files:written_msh",
     ),
     "vtu": Format(
-        "plane mesh", "mesh of the gear, ParaView", "fegear.output.plane_mesh_files:written_vtu", "*.vtu",
+        "plane mesh", "mesh of the gear or rack, ParaView", "fegear.output.plane_mesh_files:written_vtu", "*.vtu",
         "ParaView: the same with displacement and stress under 1 N/mm", asymmetric=True,
+        racks="fegear.output.rack_mesh_files:written_vtu",
     ),
     "inp": Format(
-        "plane mesh", "mesh of the gear, Abaqus and CalculiX", "fegear.output.plane_mesh_files:written_inp", "*.inp",
+        "plane mesh", "mesh of the gear or rack, Abaqus and CalculiX", "fegear.output.plane_mesh_files:written_inp",
+        "*.inp",
         "CalculiX, Abaqus: complete input deck: six-node plane elements, bore fixed, contact pressure of "
-        "1 N/mm on tooth 0", asymmetric=True,
+        "1 N/mm on tooth 0; of a spur rack back or pins fixed, on the middle tooth", asymmetric=True,
+        racks="fegear.output.rack_mesh_files:written_inp",
     ),
     "solid-inp": Format(
-        "solid mesh", "3D mesh of the gear, Abaqus and CalculiX",
+        "solid mesh", "3D mesh of the gear or rack, Abaqus and CalculiX",
         "fegear.output.solid_mesh_files:written_inp",
         "*_solid.inp",
-        "CalculiX, Abaqus: the 3D gear: hexahedra and wedges of second order (C3D20, C3D15), bore fixed, 1 kN on a "
-        "band at mid-face of tooth 0", asymmetric=True,
+        "CalculiX, Abaqus: the 3D gear, or rack, spur or helical: hexahedra and wedges of second order (C3D20, C3D15), "
+        "bore (back or pins) fixed, 1 kN on a band at mid-face of tooth 0 (the middle tooth)", asymmetric=True,
+        racks="fegear.output.rack_mesh_files:written_solid_inp",
     ),
     "solid-vtu": Format(
-        "solid mesh", "3D mesh of the gear, ParaView", "fegear.output.solid_mesh_files:written_vtu",
+        "solid mesh", "3D mesh of the gear or rack, ParaView", "fegear.output.solid_mesh_files:written_vtu",
         "*_solid.vtu", "ParaView: the same mesh and its nodal forces", asymmetric=True,
+        racks="fegear.output.rack_mesh_files:written_solid_vtu",
     ),
     "fmu": Format(
         "case", "each loaded pair as a force element, FMI 3.0", "fegear.output.fmu:written_fmu", "mesh_PAIR.fmu",

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import splu
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.elasticity import assemble
-from fegear.fem.plane.gear_field import _nodal_stress
+from fegear.fem.plane.gear_field import nodal_stress
 from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.fem.plane.settings import LEVEL_RATIO, MeshSettings
@@ -232,7 +232,7 @@ def test_stress_at_the_nodes_of_quadratic_displacements_is_exact(plane):
     by_x = terms @ np.stack([np.ones_like(x), 0 * x, 2 * x, y, 0 * x])
     by_y = terms @ np.stack([0 * x, np.ones_like(x), 0 * x, x, 2 * y])
     xx, yy, shear = by_x[:, 0], by_y[:, 1], by_y[:, 0] + by_x[:, 1]
-    found = _nodal_stress(mesh, u, NU, plane)
+    found = nodal_stress(mesh, u, NU, plane)
     # Hooke's law the other way round: strains of the stresses found.
     sx, sy, sxy, sz = found.transpose(1, 0, 2)
     assert np.abs(sx - NU * (sy + sz) - xx).max() < 1e-12

@@ -28,6 +28,12 @@ EXPORTS = {
     "ring": ("ring_gear", (), (), "dxf"),
     "asymmetric": ("asymmetric_pair", (), ("wheel",), "dxf"),
     "rack": ("rack_and_pinion", (), ("axis",), "dxf"),
+    "meshed rack": (
+        "rack_and_pinion",
+        (*COARSE, "rack.axis.teeth=2", "rack.axis.face_width=4 mm"),
+        ("axis",),
+        "msh,vtu,inp,solid-inp",
+    ),
     "solid": ("helical_pair", (*COARSE, "gear.pinion.face_width=4 mm"), ("pinion",), "solid-inp,solid-vtu"),
 }
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")

@@ -89,8 +89,13 @@ def solid(beta, coarseness, ends, inside, shape=EXTERNAL):
 def solve(folder, name, mesh, bands, loaded, ccx="ccx", timeout=None, shape=EXTERNAL):
     """Displacements (3, P), module 1 and E = 1, of the printed nodes by load; NaN elsewhere."""
     gear = Gear(shape.tooth, 1e-3, shape.bore * 1e-3, FACE * 1e-3, Material(YOUNG, NU))
+    return solved(folder, name, gear, mesh, bands, loaded, (-1, 0, 1), ccx, timeout)
+
+
+def solved(folder, name, gear, mesh, bands, loaded, teeth, ccx="ccx", timeout=None):
+    """As `solve`, of a gear or a rack of module 1 mm, with the numbers of the printed teeth."""
     boundaries = mesh.section.boundaries
-    wanted = [boundaries[n, k] for n in ("flank", "fillet", "back_fillet") for k in (-1, 0, 1)]
+    wanted = [boundaries[n, k] for n in ("flank", "fillet", "back_fillet") for k in teeth]
     printed = {"WANTED": np.unique(np.concatenate([mesh.nodes_of(edges) for edges in wanted]))}
     force = 1e3
     write_solid_inp(folder / f"{name}.inp", gear, mesh, {b: bands[b] for b in loaded}, force, printed)
@@ -111,7 +116,7 @@ def deflection(u, forces):
     return float((u[:, at] * forces[:, at]).sum())
 
 
-def surface_stress(mesh, u, edges, side=1):
+def surface_stress(mesh, u, edges, side=1, outward=None):
     """Stress on a free surface over edges of the section, at the Gauss points of its faces, E = 1.
 
     Returns
@@ -120,7 +125,7 @@ def surface_stress(mesh, u, edges, side=1):
     stress : ndarray, shape (3, 2 L, 2 n)
         Tangential (in the transverse section), across it in the surface, and shear between both.
     """
-    height = side * np.hypot(*mesh.section.points)
+    height = side * np.hypot(*mesh.section.points) if outward is None else outward
     edges = edges[:, np.argsort(height[edges[2]])]
     up = height[edges[0]] < height[edges[1]]
     edges = np.where(up, edges, edges[[1, 0, 2]])
@@ -162,9 +167,9 @@ def _slopes(g):
     return 2 * np.array(d_eta), 2 * np.array(d_xi)
 
 
-def largest_along(mesh, u, name, sign, side=1):
-    """Largest tangential stress over one fillet of tooth 0 at `STATIONS`."""
-    zeta, arc, stress = surface_stress(mesh, u, mesh.section.boundaries[name, 0], side)
+def largest_along(mesh, u, name, sign, side=1, tooth=0, outward=None):
+    """Largest tangential stress over one fillet of a tooth at `STATIONS`; outward: height of the section's nodes."""
+    zeta, arc, stress = surface_stress(mesh, u, mesh.section.boundaries[name, tooth], side, outward)
     value, _ = extreme(stress[0].T, arc, sign, arc[-1])
     return CubicSpline(zeta, value)(STATIONS)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.built.rack import drawn_rack
 from fegear.case.reading import build_scene
 from fegear.fem.solid.rack_step import write_rack_step
@@ -61,3 +62,39 @@ def test_an_export_writes_it_in_millimetres(tmp_path):
         pitch = 2.0 * np.pi
         assert (low_x, high_x) == pytest.approx((-0.5 * pitch, 3.5 * pitch), abs=1e-5)
         assert (low_y, low_z, high_z) == pytest.approx((-8.0, -6.0, 6.0), abs=1e-5)
+
+
+def exported(folder, formats, gear=None, **rack):
+    given = {**CASE, "gear": {"p": CASE["gear"]["p"] | (gear or {})}, "rack": {"r": CASE["rack"]["r"] | rack}}
+    given["gear"]["p"] = {key: value for key, value in given["gear"]["p"].items() if value is not None}
+    return export_gears(build_scene(given | {"accuracy": {"tolerance": 0.3}}, "rack", Path()), folder, ["r"], formats)
+
+
+HELICAL = {"module": None, "normal_module": "2 mm", "helix_angle": "20 deg", "hand": "left"}
+
+
+@pytest.mark.dear
+def test_meshes_of_racks_are_written_plane_and_3d(tmp_path):
+    made = exported(tmp_path, "msh,vtu,inp,solid-inp,solid-vtu", teeth=2, support="pins", pin_every=2, first_pin=1)
+    assert made.files == tuple(f"r_rack{end}" for end in (".msh", ".vtu", ".inp", "_solid.inp", "_solid.vtu"))
+    assert made.remarks == (
+        "Rack r, inp, msh, solid-inp, solid-vtu, vtu: flanks as generated, without the tip relief of the case.",
+    )
+    for name, fixed in (("r_rack.inp", "PINS, 1, 2"), ("r_rack_solid.inp", "PINS, 1, 3")):
+        deck = (tmp_path / name).read_text().splitlines()
+        assert deck[deck.index("*BOUNDARY") + 1] == fixed
+        assert {"*NSET, NSET=PINS", "*NSET, NSET=FLANK_1", "*NSET, NSET=BACK"} <= set(deck)
+        assert "ELSET=RACK" in next(line for line in deck if line.startswith("*ELEMENT"))
+
+
+def test_helical_racks_have_3d_meshes_only(tmp_path):
+    made = exported(tmp_path, "dxf,msh", HELICAL)
+    assert made.remarks == ("Rack r is helical: no msh is written for it.",)
+    with pytest.raises(InputError, match="wrote nothing: Rack r is helical: no msh is written for it"):
+        exported(tmp_path, "msh", HELICAL)
+
+
+@pytest.mark.parametrize("format_", ["msh", "solid-inp"])
+def test_bodies_that_cannot_be_meshed_are_refused_by_their_key(tmp_path, format_):
+    with pytest.raises(InputError, match=r"^rack\.r\.reference_height = 300 mm: must be between 3 and 102\.5 mm"):
+        exported(tmp_path, format_, reference_height="300 mm", tip_relief=None)

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from fegear.base.errors import InputError
+from fegear.base.errors import InputError, RangeError
 from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.nearest import nearest
 from fegear.case.part import at
@@ -127,6 +127,22 @@ def rack_inputs(scene: Scene, name: str) -> RackInputs:
     if scene.case.effects.relief:
         return RackInputs(pair, force, positions, _flanks(scene, name, pair), name, pinion, wide=wide)
     return RackInputs(pair, force, positions, RackFlanks(), name, pinion, relieved_parts(scene, name), wide)
+
+
+def check_body(name: str, rack: Rack) -> None:
+    """Refuse bodies that finite elements cannot have.
+
+    Raises
+    ------
+    RangeError
+        Under its key in the case.
+    """
+    from fegear.fem.plane.rack.rack_mesh import THICKEST_BODY, THINNEST_BODY
+
+    if not THINNEST_BODY <= rack.body / rack.module <= THICKEST_BODY:
+        low, high = ((one - rack.tooth.root_height) * rack.module * 1e3 for one in (THINNEST_BODY, THICKEST_BODY))
+        raise RangeError(f"rack.{name}.reference_height", f"{rack.reference_height * 1e3:.6g} mm",
+                         f"must be between {low:.4g} and {high:.4g} mm for finite elements")  # fmt: skip
 
 
 def relieved_parts(scene: Scene, name: str) -> tuple[str, ...]:

@@ -71,12 +71,20 @@ def gear_field(
     sectors = [(k + z // 2) % z - z // 2 for k in range(z)]  # clockwise from tooth 0, within the reach
     response = ring.field(flank.dofs, forces, sectors)
     displacement = np.stack([response[k][:, 0][elasticity.node_dofs] for k in sectors])
-    stress = _nodal_stress(mesh, displacement, poisson_ratio, plane)
+    stress = nodal_stress(mesh, displacement, poisson_ratio, plane)
     return GearField(mesh, displacement, stress, loads[elasticity.node_dofs])
 
 
-def _nodal_stress(mesh: SectorMesh, displacement: Array, poisson_ratio: float, plane: Plane) -> Array:
-    """Stress at the elements' own nodes, averaged where elements meet within a sector, shape (z, 4, N)."""
+def nodal_stress(mesh: SectorMesh, displacement: Array, poisson_ratio: float, plane: Plane) -> Array:
+    """Stress at the elements' own nodes, averaged where elements meet within a sector, shape (z, 4, N).
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+    displacement : ndarray, shape (z, 2, N)
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    """
     from scipy.sparse import csr_array
 
     lam, mu = lame(poisson_ratio, plane)

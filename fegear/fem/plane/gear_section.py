@@ -142,8 +142,7 @@ def uneven_section(
     -------
     Section
     """
-    multiples = (coarseness, *(others or coarseness,) * (len(_EDGES) - 1))
-    settings = [_settings(f, *edges) for f, edges in zip(multiples, _EDGES, strict=True)]
+    settings = uneven_settings(coarseness, others)
     inside = bore_radius if body is None else body.rim_radius
     boundaries = [sector_boundary(tooth, inside, kind) for kind in settings]
     # Neighbours fit: all have the sides and the bore of tooth 0.
@@ -157,6 +156,12 @@ def uneven_section(
     count = row or tooth.teeth
     first = -((count - 1) // 2)
     return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + count)})
+
+
+def uneven_settings(coarseness: float, others: float | None = None) -> list[MeshSettings]:
+    """Settings of the loaded tooth, its neighbours and the others; as of `uneven_section`."""
+    multiples = (coarseness, *(others or coarseness,) * (len(_EDGES) - 1))
+    return [_settings(f, *edges) for f, edges in zip(multiples, _EDGES, strict=True)]
 
 
 def _settings(f: float, root: float, flank: float, end: float, growth: float) -> MeshSettings:

@@ -15,6 +15,7 @@ from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.plane.whole_gear import WholeGear, whole_gear
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import turned
+from fegear.geometry.toothed_rack import Rack
 
 _MM = 1e3
 
@@ -54,12 +55,13 @@ def loaded_gear(
     return whole_gear(shape), gear_field(gear.tooth, shape, nu, plane, place / gear.module, half_width)
 
 
-def nodal_fields(gear: Gear, whole: WholeGear, field: GearField, line_load: float) -> dict[str, Array]:
+def nodal_fields(gear: Gear | Rack, whole: WholeGear, field: GearField, line_load: float) -> dict[str, Array]:
     """Displacement [mm] and von Mises stress [MPa] at the nodes of the whole gear.
 
     Parameters
     ----------
-    gear : Gear
+    gear : Gear or Rack
+        Of a rack the field is that of all of it.
     whole : WholeGear
     field : GearField
     line_load : float

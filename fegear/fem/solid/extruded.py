@@ -1,7 +1,7 @@
 """The solid gear as wedges and hexahedra: a section drawn along the face and turned with the helix.
 
 The coordinates are those of the twisted gear (X = R(tau zeta) (xi, eta), Z = zeta), zeta = 0 in the middle of the face:
-a spur gear has tau = 0, a right hand a positive one.
+a spur gear has tau = 0, a right hand a positive one. The section of a rack slides instead: X = xi + slide zeta.
 """
 
 from __future__ import annotations
@@ -40,6 +40,8 @@ class SolidMesh:
         [modules]; plane after plane: all nodes of the section at a station, its vertices in the middle of a layer.
     wedges : ndarray of int, shape (15, L M)
     hexahedra : ndarray of int, shape (20, L K)
+    slide : float
+        Way of the section along x per length along the face: of a rack.
     """
 
     section: Section
@@ -48,6 +50,7 @@ class SolidMesh:
     points: Array
     wedges: Index
     hexahedra: Index
+    slide: float = 0.0
 
     @property
     def layers(self) -> int:
@@ -94,7 +97,7 @@ def _plane(section: Section, station: int | Index) -> Index:
 
 
 def extruded(
-    section: Section, stations: Sequence[float] | Array, twist: float, body: GearBody | None = None
+    section: Section, stations: Sequence[float] | Array, twist: float, body: GearBody | None = None, slide: float = 0.0
 ) -> SolidMesh:
     """Draw a section along the face.
 
@@ -107,6 +110,8 @@ def extruded(
         [rad/module], positive for a right hand.
     body : GearBody, optional
         Whose web and hub are all that is left of the layers inside the rim [modules].
+    slide : float
+        Way of the section along x per length along the face: of a rack.
 
     Returns
     -------
@@ -125,9 +130,10 @@ def extruded(
     heights = _heights(section.points, body, along)
     planes = []
     for i, place in enumerate(z):
-        planes.append(_turned_up(section.points, heights(place), twist))
+        planes.append(_turned_up(section.points, heights(place), twist, slide))
         if i < z.size - 1:
-            planes.append(_turned_up(section.points[:, corners], heights(0.5 * (place + z[i + 1]))[corners], twist))
+            between = heights(0.5 * (place + z[i + 1]))[corners]
+            planes.append(_turned_up(section.points[:, corners], between, twist, slide))
     rank, step = _rank(section), size + corners.size
     low = step * np.arange(z.size - 1)
 
@@ -141,7 +147,7 @@ def extruded(
         return drawn[:, _filled(along, zones(body, section.points, bottom), z)]
 
     return SolidMesh(
-        section, z, twist, np.hstack(planes), solid(section.triangles, 3), solid(section.quadrilaterals, 4)
+        section, z, twist, np.hstack(planes), solid(section.triangles, 3), solid(section.quadrilaterals, 4), slide
     )
 
 
@@ -173,9 +179,9 @@ def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
     return [*found, (float(mesh.stations[-1]), every)]
 
 
-def _turned_up(points: Array, height: Array, twist: float) -> Array:
+def _turned_up(points: Array, height: Array, twist: float, slide: float) -> Array:
     s, c = np.sin(twist * height), np.cos(twist * height)
-    return np.stack([c * points[0] - s * points[1], s * points[0] + c * points[1], height])
+    return np.stack([c * points[0] - s * points[1] + slide * height, s * points[0] + c * points[1], height])
 
 
 def with_stations(stations: Array, more: Sequence[float]) -> Array:
@@ -255,6 +261,45 @@ def pressed_band(
     rb = tooth.base_radius
     arc = 0.5 * rb * tooth.roll(np.maximum(vertices, rb)) ** 2
     place = 0.5 * rb * float(tooth.roll(radius)) ** 2
+
+    def inward(along: Array, zeta: Array) -> Array:
+        angle = tooth.base_half_angle - tooth.side * np.sqrt(2.0 * along / rb)
+        turn = mesh.twist * zeta - 2.0 * np.pi * number / mesh.section.teeth
+        a = angle[None, :, :, None] - turn[:, None, None, :]  # the section's frame turns counterclockwise
+        return np.stack([-np.cos(a), np.sin(a), np.full(a.shape, -mesh.twist * rb)])
+
+    return band_forces(mesh, edges, arc, place, half_width, hat, inward)
+
+
+def band_forces(
+    mesh: SolidMesh,
+    edges: Index,
+    arc: Array,
+    place: float,
+    half_width: float,
+    hat: tuple[float, float, float],
+    inward: Callable[[Array, Array], Array],
+) -> Array:
+    """Nodal forces of a band of pressure on a flank, as `pressed_band`.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    edges : ndarray of int, shape (3, n)
+        Of the flank, one after the other, each from its lower arc length to its upper one.
+    arc : ndarray, shape (n + 1,)
+        Arc lengths up the flank at their ends [modules].
+    place, half_width, hat : float
+        Arc length at the middle of the band; the rest as of `pressed_band` [modules].
+    inward : callable
+        Of arc lengths, shape (n, q), and places along the face, shape (L, q'): normal into the material whose part
+        along the transverse line of action is one, shape (3, L, n, q, q').
+
+    Raises
+    ------
+    RangeError
+        As of `pressed_band`.
+    """
     low, top, high = hat
     half = 0.5 * (mesh.stations[-1] - mesh.stations[0])
     if place - half_width < arc[0] - 1e-9 or place + half_width > arc[-1] + 1e-9:
@@ -272,7 +317,6 @@ def pressed_band(
     share = width[:, None] * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
     s = place + half_width * np.sin(theta)
     xi = (s - arc[:-1, None]) / np.diff(arc)[:, None]
-    angle = tooth.base_half_angle - tooth.side * np.sqrt(2.0 * s / rb)
     # Along the face, layer by layer; the hat's kinks are stations.
     zeta = 0.5 * (mesh.stations[1:] + mesh.stations[:-1])[:, None] + 0.5 * np.diff(mesh.stations)[:, None] * _GAUSS[0]
     height = np.ones_like(zeta)
@@ -284,10 +328,7 @@ def pressed_band(
     height = height * 0.5 * np.diff(mesh.stations)[:, None] * _GAUSS[1] * 2.0 / (high - low)
     eta = np.broadcast_to(0.5 + 0.5 * _GAUSS[0], zeta.shape)
     shapes = serendipity(xi[None, :, :, None], eta[:, None, None, :])  # (8, L, n, q, q')
-    turn = mesh.twist * zeta - 2.0 * np.pi * number / mesh.section.teeth
-    a = angle[None, :, :, None] - turn[:, None, None, :]  # the section's frame turns counterclockwise
-    inward = np.stack([-np.cos(a), np.sin(a), np.full(a.shape, -mesh.twist * rb)])
-    values = np.einsum("klnqp,clnqp,nq,lp->kcln", shapes, inward, share, height, optimize=True)
+    values = np.einsum("klnqp,clnqp,nq,lp->kcln", shapes, inward(s, zeta), share, height, optimize=True)
     nodes = mesh.faces(edges)
     forces = np.zeros((3, mesh.points.shape[1]))
     for c in range(3):

@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from fegear.case.built.rack import is_wide_rack, rack_inputs, racks
+from fegear.case.built.rack import check_body, is_wide_rack, rack_inputs, racks
 from fegear.case.built.solid_influence import seconds_of_solid_gear, solid_settings_of
 from fegear.case.part import at
 from fegear.engine.citation import citing
@@ -87,15 +87,11 @@ def needs_solid_rack(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _check(scene: Scene, name: str) -> None:
     from fegear.base.errors import InputError, RangeError
-    from fegear.fem.plane.rack.rack_mesh import THICKEST_BODY, THINNEST_BODY
     from fegear.fem.solid.settings import check_width
 
     asked = SolidRackToSolve.of(scene, name)
     rack, m = asked.rack, asked.rack.module
-    if not THINNEST_BODY <= rack.body / m <= THICKEST_BODY:
-        low, high = ((one - rack.tooth.root_height) * m * 1e3 for one in (THINNEST_BODY, THICKEST_BODY))
-        raise RangeError(f"rack.{name}.reference_height", f"{rack.reference_height * 1e3:.6g} mm",
-                         f"must be between {low:.4g} and {high:.4g} mm for finite elements")  # fmt: skip
+    check_body(name, rack)
     given = scene.case.rack[name].face_width is not None or scene.case.gear[asked.pinion].face_width is not None
     if not given:
         raise InputError(f"rack.{name}.face_width", "(not given)", "is required for 3D racks",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from fegear.case.built.rack import rack_inputs, rack_pinion, racks
+from fegear.case.built.rack import check_body, rack_inputs, rack_pinion, racks
 from fegear.case.part import at
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
@@ -105,15 +105,7 @@ def _present(data: BothOrders, _asked: RackToSolve) -> Outcome:
 
 
 def _check(scene: Scene, name: str) -> None:
-    from fegear.base.errors import RangeError
-    from fegear.fem.plane.rack.rack_mesh import THICKEST_BODY, THINNEST_BODY
-
-    rack = rack_inputs(scene, name).pair.rack
-    deep = rack.body / rack.module
-    if not THINNEST_BODY <= deep <= THICKEST_BODY:
-        low, high = ((one - rack.tooth.root_height) * rack.module * 1e3 for one in (THINNEST_BODY, THICKEST_BODY))
-        raise RangeError(f"rack.{name}.reference_height", f"{rack.reference_height * 1e3:.6g} mm",
-                         f"must be between {low:.4g} and {high:.4g} mm for finite elements")  # fmt: skip
+    check_body(name, rack_inputs(scene, name).pair.rack)
 
 
 def _forecast(_scene: Scene, _name: str) -> Forecast:
