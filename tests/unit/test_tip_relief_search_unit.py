@@ -509,6 +509,25 @@ def test_differences_of_one_side_lead_where_those_of_both_do(pair, monkeypatch, 
     assert one_sided < both
 
 
+@pytest.mark.parametrize("by", ["exact", "rough"])
+@pytest.mark.parametrize(("metric", "power"), [("peak_to_peak", 1.0), ("peak_to_peak", 2.0), ("effective_error", 2.0)])
+def test_gradients_are_those_of_differences(pair, by, metric, power):
+    """Of what is left at the worst of two loads; harmonics take no account of how bends grow, quick sharing of more."""
+    trials = Trials(_even(pair, 40), np.array([0.5 * LOAD, LOAD]), power, metric)
+    p = np.random.default_rng(7).uniform([15e-6, 0.3, 15e-6, 0.3], [40e-6, 0.8, 40e-6, 0.8], (6, 4))
+    tried = getattr(trials, by)(p)
+    value, gradient = trials.tangent(tried, np.zeros_like(p))
+    np.testing.assert_allclose(value, trials.left(tried.seen, tried.low if metric == "peak_to_peak" else None))
+    step = 2e-4 * UNIT
+    of_steps = [
+        trials.tangent(getattr(trials, by)(p + sign * step * np.eye(4)[k]), np.zeros_like(p))[0]
+        for k in range(4) for sign in (1.0, -1.0)
+    ]  # fmt: skip
+    differences = np.array([0.5 * (up - down) for up, down in zip(of_steps[::2], of_steps[1::2], strict=True)]).T
+    off = np.abs(gradient * step - differences).max(axis=1) / np.abs(differences).max(axis=1)
+    assert off.max() < (1e-4 if (by, metric) == ("exact", "peak_to_peak") else 0.2), off
+
+
 def test_a_step_past_a_kink_is_tried_downward_too(pair):
     """A slope that jumps within the step: the relief starts where a roll position is."""
 
