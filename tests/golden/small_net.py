@@ -84,9 +84,11 @@ RUNS = {
     "four_square_minimum_excitation": ("four_square_minimum_excitation", {}),
     "fracture_options": ("small/fracture_options", {}),
     "gauges": ("small/gauges", {}),
+    "gauges_on_the_face": ("small/gauges_on_the_face", {}),
     "gear_details": ("small/gear_details", {}),
     "gearbox": ("small/gearbox", {}),
     "gearbox_misaligned": ("gearbox_misaligned", ROUGH),
+    "helical_rack": ("small/helical_rack", {}),
     "helical_set": (
         "helical_planetary_set",
         {
