@@ -274,16 +274,9 @@ def check_dynamic_strain(data, name, found):
     peak = np.abs(still["strain"]).max()
     assert np.median(np.abs(data["static_strain"] - np.interp(data["x"], still["x"], still["strain"]))) < 0.02 * peak
     close(data["strain"], data["strain_own_mesh"])
-    close(
-        np.diff(data["t"]) / np.diff(data["x"]),
-        np.full(data["x"].size - 1, np.ptp(data["t"]) / np.ptp(data["x"])),
-        1e-6,
-    )
-    close(
-        np.diff(data["angle"]) / np.diff(data["x"]),
-        np.full(data["x"].size - 1, 1.0 / _slope(still["x"], still["angle"])),
-        1e-6,
-    )
+    x = data["x"] - data["x"][0]
+    close(data["t"] - data["t"][0], x * np.ptp(data["t"]) / np.ptp(x), 1e-7)
+    close(data["angle"] - data["angle"][0], x / _slope(still["x"], still["angle"]), 1e-7)
     dynamic = number_of(found, f"{gauge}.dynamic_peak_strain")
     at = np.abs(data["strain"]).argmax()
     assert (dynamic, number_of(found, f"{gauge}.dynamic_peak_angle")) == (data["strain"][at], data["angle"][at])
@@ -322,20 +315,20 @@ def check_rack_error(data, name, found):
     rack = name.removeprefix("rack_transmission_error_")
     assert data["te"].max() == pytest.approx(number_of(found, f"{rack}.te_max"))
     assert data["pinion_root_stress"].max() == pytest.approx(number_of(found, f"{rack}.pinion_root_stress"))
-    close(data["travel"][-1], number_of(found, f"{rack}.stroke"), 1e-6)
     assert set(np.diff(data["tooth"])) <= {0, 1}
-    assert (data["tooth"][0], data["tooth"][-1]) == (1, 6)
-    assert ((data["largest_share"] == 1.0) == (data["pairs_in_contact"] == 1)).all()
+    assert (data["tooth"][0], data["tooth"][-1]) == (1, 2 if found.scene.case.title == "Helical rack" else 6)
+    close(data["largest_share"][data["pairs_in_contact"] == 1], 1.0)
     assert (data["largest_share"] * data["pairs_in_contact"] >= 1.0 - 1e-9).all()
-    pitch = number_of(found, f"{rack}.pitch")
-    begins = data["travel"][np.flatnonzero(np.diff(data["tooth"]))]
-    close(begins, pitch * np.round(begins / pitch), 0.05)  # a tooth comes each pitch, the first at zero
+    if f"{rack}.pitch" in {value.name for value in found.values}:
+        pitch, begins = number_of(found, f"{rack}.pitch"), data["travel"][np.flatnonzero(np.diff(data["tooth"]))]
+        close(begins, pitch * np.round(begins / pitch), 0.05)  # a tooth comes each pitch, the first at zero
+        close(data["travel"][-1], number_of(found, f"{rack}.stroke"), 1e-6)
 
 
 def check_rack_roots(data, name, found):
     rack = name.removeprefix("rack_root_stress_")
     assert data["root_tension"].max() == pytest.approx(number_of(found, f"{rack}.rack_root_stress"))
-    assert data["tooth"].tolist() == list(range(1, 7))
+    assert data["tooth"].tolist() == list(range(1, data["tooth"].size + 1))
 
 
 def check_idler(data, name, found):
@@ -506,6 +499,7 @@ OF_TABLES = {
     "gauge": check_gauge, "gauge_loads": check_gauge_loads, "gauge_places": None,
     "gauge_measured": check_gauge_measured, "dynamic_strain": check_dynamic_strain,
     "rack_geometry": check_rack_geometry, "rack_stiffness": check_rack_stiffness,
+    "rack_stiffness_over_face": None,
     "rack_transmission_error": check_rack_error, "rack_root_stress": check_rack_roots, "idler_root_stress": check_idler,
     "crack_path": check_crack_path, "stress_intensity": check_stress_intensity, "vibration_revolution": check_vibration,
     "measured_te_summary": check_measured_error, "gearbox_meshes": check_gearbox,
