@@ -38,6 +38,10 @@ _TIP_EDGE, _TIP_SHARE = 0.08, 0.15
 _RAYS = 8
 #: Edges at the mouth, as a share of the crack; how fast edges grow along it.
 _MOUTH_SHARE, _GROWTH = 0.25, 0.35
+#: Edges of its fillet from the root land to the mouth, or to this share of the fillet where the mouth is lower, as a
+#: share of the ordinary tooth's: bending turns about the tip, so that the largest tension is at the root land, where an
+#: ordinary fillet has none to speak of.
+_BELOW_MOUTH, _LOWER_PART = 0.35, 0.5
 #: A crack's tip keeps so far from every surface, its line from every other, as a share of its length.
 _CLEAR = 0.02
 #: How often, and by which factor, edges are shortened when elements turn inside out.
@@ -238,8 +242,11 @@ def _mesh(
     at_mouth = scale * min(float(usual(np.array([crack.mouth]))[0]), _MOUTH_SHARE * length)
     tip_edge = scale * min(_TIP_EDGE, _TIP_SHARE * room)
 
+    low = max(crack.mouth, _LOWER_PART * fillet_length(tooth))
+
     def size(s: Array) -> Array:
-        return np.minimum(usual(s), at_mouth + settings.growth * np.abs(s - crack.mouth))
+        below = _BELOW_MOUTH * usual(np.minimum(s, low)) + settings.growth * np.maximum(s - low, 0.0)
+        return np.minimum(np.minimum(usual(s), below), at_mouth + settings.growth * np.abs(s - crack.mouth))
 
     split, mouth = _split(chains, tooth, name, crack.mouth, size)
     polygon = np.hstack([chain.vertices[:, :-1] for chain in split])
