@@ -180,7 +180,7 @@ def test_root_stress_is_looked_for_on_either_side_of_the_mouth():
     stress, place = found.largest_root_stress(0, 0, "tension", radii)
     assert (stress > 0.0).all()
     assert (stress < 0.5 * healthy).all()
-    assert ((place >= 0.0) & (place <= fillet_length(TOOTH))).all()
+    assert ((place >= 0.0) & (place <= (1.0 + 1e-6) * fillet_length(TOOTH))).all()  # edges of the mesh are summed
     assert found.largest_root_stress(1, 1, "tension", radii)[0] == pytest.approx(healthy, rel=0.02)
     points = found.fillet_stress(0, 0, "tension", radii)
     for start, _, chosen in found.kind(0).pieces("tension"):
