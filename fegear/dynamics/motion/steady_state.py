@@ -159,9 +159,12 @@ class SteadyState:
         packed = pack(self.model)
         count = periods or max(self.periods, 1)
         length = count * packed.period
+        # steps end where pieces of a stiffness do
+        ends = float(np.diff(packed.first) @ packed.rate) * length
         passage = propagate(
-            packed, self.x, self.v, length, tolerance=tolerance, record=1000 * count + int(8 * length), peaks=False
-        )
+            packed, self.x, self.v, length, tolerance=tolerance, record=1000 * count + int(8 * length + 2 * ends),
+            peaks=False,
+        )  # fmt: skip
         return Trajectory(packed, passage)
 
 

@@ -21,6 +21,30 @@ from fegear.dynamics.motion.effort import of_one
 from fegear.dynamics.motion.motion_model import MotionParts
 from fegear.dynamics.motion.steady_state import SteadyState, steady_state
 from fegear.dynamics.planetary.set_response import LinearSet, forced_response
+from fegear.dynamics.train.excitation import MeshExcitation
+
+
+@dataclass(frozen=True)
+class OddMeshes:
+    """Meshes of a set some of whose teeth differ.
+
+    Parameters
+    ----------
+    teeth : tuple of tuple of MeshExcitation
+        Of each planet's mesh with the sun, and of each planet's with the ring, over the base pitches until the same
+        teeth meet again.
+    delays : ndarray, shape (2, planets)
+        Whole ones (`whole_delays`) [base pitches].
+    """
+
+    teeth: tuple[tuple[MeshExcitation, ...], tuple[MeshExcitation, ...]]
+    delays: Array
+
+    @property
+    def base_pitches(self) -> int:
+        """Until the same teeth mesh again."""
+        parts = (part for mesh in self.teeth for one in mesh for part in (*one.stiffness, *one.separation))
+        return math.lcm(*(part.pitches for part in parts))
 
 
 @dataclass(frozen=True)
@@ -39,12 +63,15 @@ class SetMotion:
         Radially outward and counter-clockwise [m].
     backlash : float
         Along the line of action of every mesh [m]; infinite where back flanks never touch.
+    odd : OddMeshes, optional
+        Where teeth differ; the modes and the mean stiffnesses are those of ordinary teeth.
     """
 
     linear: LinearSet
     mesh_frequency: float
     pin_errors: Array | None = None
     backlash: float = math.inf
+    odd: OddMeshes | None = None
 
     def __post_init__(self) -> None:
         """Refuse standstill."""
@@ -58,8 +85,8 @@ class SetMotion:
 
     @property
     def period(self) -> float:
-        """Of all excitations [s]: one mesh cycle."""
-        return 1.0 / self.mesh_frequency
+        """Of all excitations [s]: one mesh cycle, or as many as it takes until the same teeth mesh again."""
+        return (1 if self.odd is None else self.odd.base_pitches) / self.mesh_frequency
 
     @cached_property
     def static(self) -> Array:
@@ -89,14 +116,16 @@ class SetMotion:
         if math.isfinite(model.planet.pin):
             load = load - model.planet.pin * errors.ravel() @ model.pin_rows.reshape(-1, model.size)
         start = model.with_pin_errors(errors)
+        sun, ring = ((one,) * model.count for one in meshed.teeth)
+        odd = self.odd or OddMeshes((sun, ring), meshed.delays)
         excitations = tuple(
             replace(
                 one,
                 separation=tuple(gap.plus(-float(model.mesh_rows[mesh, n] @ start)) for gap in one.separation),
-                phase=one.phase - float(meshed.delays[mesh, n]),
+                phase=one.phase - float(odd.delays[mesh, n]),
             )
-            for mesh, one in enumerate(meshed.teeth)
-            for n in range(model.count)
+            for mesh, teeth in enumerate(odd.teeth)
+            for n, one in enumerate(teeth)
         )
         count = 2 * model.count
         return MotionParts(

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
-from fegear.case.built.planetary import pin_errors, planetary_part, set_inputs
+from fegear.case.built.planetary import check_masses, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import MESHES
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
@@ -68,13 +68,18 @@ class SetMotionInputs:
     name: str
 
 
+def unlimited(backlash: float | Literal["unlimited"]) -> float:
+    """Backlash of a set [m], infinite where back flanks never touch."""
+    return math.inf if backlash == "unlimited" else backlash
+
+
 def _inputs(scene: Scene, name: str) -> SetMotionInputs:
     part, run, dynamics = planetary_part(scene, name), set_inputs(scene, name).run, scene.case.dynamics
     speeds = np.zeros(0) if part.speeds is None else np.sort(part.speeds.array)
     per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
-    backlash = math.inf if part.backlash == "unlimited" else part.backlash
     return SetMotionInputs(
-        speeds, per_turn, pin_errors(part), backlash, dynamics.direction, dynamics.tolerance, part.input, name
+        speeds, per_turn, pin_errors(part), unlimited(part.backlash), dynamics.direction, dynamics.tolerance,
+        part.input, name,
     )  # fmt: skip
 
 
@@ -202,6 +207,12 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 def _check(scene: Scene, name: str) -> None:
     check_vibration(scene, name)
+    check_moving(scene, name)
+
+
+def check_moving(scene: Scene, name: str) -> None:
+    """Refuse sets that the integration of a motion does not take."""
+    check_masses(scene, name)
     part = planetary_part(scene, name)
     if part.backlash != "unlimited" and scene.gears[part.planet].asymmetric:
         raise InputError(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
@@ -35,20 +35,24 @@ from fegear.results.planetary.planet_load_sharing import check_set, effects_of_s
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from fegear.base.arrays import Array
     from fegear.case.built.planetary import SetInputs
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
+    from fegear.contact.plane.engagement import Engagement
     from fegear.dynamics.planetary.set_cycle import MeshTeeth
-    from fegear.dynamics.planetary.set_revolution import RingLines, SetRevolution
+    from fegear.dynamics.planetary.set_revolution import SetRevolution
+    from fegear.dynamics.planetary.set_signals import RingLines
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
 
 #: Seconds of the laws of a set with odd teeth, and of the equilibrium over a base pitch.
 _LAWS, _PITCH = 3.0, 0.02
+#: What a mesh makes of its engagements.
+Teeth = TypeVar("Teeth")
 
 
 @dataclass(frozen=True)
@@ -79,15 +83,50 @@ class SetRevolutionInputs:
     of_planet: bool
     name: str
 
+    @property
+    def clockwise(self) -> bool:
+        """Whether the sun turns clockwise relative to the carrier."""
+        return self.asked.run.sun_turns < 0.0
 
-def _odd_gears(scene: Scene, name: str) -> tuple[str, ...]:
+    @property
+    def delays(self) -> Array:
+        """Which teeth meet where (`whole_delays`) [base pitches], shape (2, planets)."""
+        asked = self.asked
+        return whole_delays(
+            asked.found, asked.phases, self.odd_planet, clockwise=self.clockwise, sun_drives=asked.run.sun_drives
+        )
+
+    def of_planets(
+        self, mesh: Mesh, odd: Sequence[Engagement], teeth: Callable[[Sequence[Engagement]], Teeth]
+    ) -> tuple[Teeth, ...]:
+        """Teeth of a mesh of every planet: the odd ones of planets are those of one of them.
+
+        Parameters
+        ----------
+        mesh : {"sun", "ring"}
+        odd : sequence of Engagement
+            With the odd teeth.
+        teeth : callable
+            What is made of them, and of the same with ordinary planets.
+        """
+        from fegear.dynamics.planetary.set_revolution import with_ordinary_teeth
+
+        found = teeth(odd)
+        if not self.of_planet:
+            return (found,) * self.asked.model.count
+        plain = teeth([with_ordinary_teeth(one, self.planet[mesh]) for one in odd])
+        return tuple(found if n == self.odd_planet else plain for n in range(self.asked.model.count))
+
+
+def odd_gears_of_set(scene: Scene, name: str) -> tuple[str, ...]:
     """Gears of a set with odd teeth, in meshes that are solved."""
     pairs = (set_pair(name, mesh) for mesh in solved_meshes(scene, name))
     return tuple(dict.fromkeys(gear for pair in pairs for gear in odd_gears_of(scene, pair)))
 
 
-def _inputs(scene: Scene, name: str) -> SetRevolutionInputs:
-    part, odd = planetary_part(scene, name), _odd_gears(scene, name)
+def revolution_inputs(scene: Scene, name: str) -> SetRevolutionInputs:
+    """Collect what a case says of a set and of its teeth that differ."""
+    part, odd = planetary_part(scene, name), odd_gears_of_set(scene, name)
     planet: dict[Mesh, Member] = {}
     for mesh in solved_meshes(scene, name):
         pair = scene.case.pair[set_pair(name, mesh)]
@@ -102,19 +141,18 @@ def _compute(inputs: SetRevolutionInputs, upstream: Upstream, work: Work) -> Set
     from fegear.dynamics.planetary.set_revolution import SetRevolution
 
     asked = inputs.asked
-    run, clockwise = asked.run, asked.run.sun_turns < 0.0
+    run = asked.run
     laws = _laws(inputs, "sun", upstream), _laws(inputs, "ring", upstream)
-    delays = whole_delays(asked.found, asked.phases, inputs.odd_planet, clockwise=clockwise, sun_drives=run.sun_drives)
-    cycle = set_cycle(asked.model, laws, asked.phases, asked.sun_torque, run.input, delays)
+    cycle = set_cycle(asked.model, laws, asked.phases, asked.sun_torque, run.input, inputs.delays)
     work.progress(0.8)
     frequency = run.mesh_frequency if asked.at_speed else math.nan
-    return SetRevolution(planet_loads(cycle, inputs.errors), inputs.odd_planet, inputs.teeth, frequency, clockwise)
+    loads = planet_loads(cycle, inputs.errors)
+    return SetRevolution(loads, inputs.odd_planet, inputs.teeth, frequency, inputs.clockwise)
 
 
-def _laws(inputs: SetRevolutionInputs, mesh: Mesh, upstream: Upstream) -> list[MeshTeeth]:
-    """Teeth of a mesh of every planet: the odd ones of planets are those of one of them."""
+def _laws(inputs: SetRevolutionInputs, mesh: Mesh, upstream: Upstream) -> Sequence[MeshTeeth]:
+    """Teeth of a mesh of every planet."""
     from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
-    from fegear.dynamics.planetary.set_revolution import with_ordinary_teeth
 
     asked, given = inputs.asked, inputs.asked.given[mesh]
     count, name = asked.model.count, set_pair(asked.name, mesh)
@@ -126,12 +164,8 @@ def _laws(inputs: SetRevolutionInputs, mesh: Mesh, upstream: Upstream) -> list[M
 
         return [FlankSprings(loaded_flanks(upstream, name), load, count)] * count
     pair = pair_over_revolution(upstream, name)
-    odd = LawSprings(pair.engagement, pair.shifted, load, count)
-    if not inputs.of_planet:
-        return [odd] * count
-    own, *shifted = (with_ordinary_teeth(one, inputs.planet[mesh]) for one in (pair.engagement, *pair.shifted))
-    plain = LawSprings(own, tuple(shifted), load, count)
-    return [odd if n == inputs.odd_planet else plain for n in range(count)]
+    both = (pair.engagement, *pair.shifted)
+    return inputs.of_planets(mesh, both, lambda each: LawSprings(each[0], tuple(each[1:]), load, count))
 
 
 @dataclass(frozen=True)
@@ -181,6 +215,46 @@ def _shown(data: SetRevolution, _inputs: SetRevolutionInputs) -> ShownRevolution
     return ShownRevolution(data, loads.shift(lambda one: one.te) if known else None, planets)
 
 
+def orders_and_lines(result: str, of: str, what: str) -> tuple[tuple[Rows, ...], tuple[Chart, ...]]:
+    """Tables and figures of orders and of lines at the ring.
+
+    Parameters
+    ----------
+    result : str
+        Beginning of their names.
+    of : str
+        Where the orders are.
+    what : str
+        The transmission error in words.
+    """
+    orders, lines = f"{result}_orders_{{name}}", f"{result}_lines_{{name}}"
+    return (
+        Rows(
+            orders, f"Orders of the {what} and of the mesh force of set {{name}}",
+            ("n", "mesh_order", "frequency", "te", "load"), of=of,
+        ),
+        Rows(
+            lines, "Lines at the ring of set {name} as planets pass",
+            ("order", "frequency", "force_order", "passing", "force"), of="at_ring",
+        ),
+    ), (
+        Chart(
+            orders, f"Orders of the {what} of set {{name}}",
+            f"Set {{name}}: amplitudes of the {what} over the order of the tooth-mesh frequency; integers are mesh "
+            "harmonics, the others are due to teeth that differ.",
+            (Over("mesh_order", (Line("te", kind="stems"),)),),
+            of=of,
+        ),
+        Chart(
+            lines, "Sidebands at the ring of set {name}",
+            "Set {name}: amplitudes of the ring mesh forces, seen at the ring as planets pass, over the order of the "
+            "tooth-mesh frequency.",
+            (Over("order", (Line("force", kind="stems"),)),),
+            of="at_ring",
+        ),
+    )  # fmt: skip
+
+
 def _answer(seen: Seen) -> Iterator[str]:
     data: SetRevolution = seen.data.found
     if data.base_pitches > 1:
@@ -190,7 +264,27 @@ def _answer(seen: Seen) -> Iterator[str]:
         )
 
 
+ODD_REMARKS = (
+    Remark(
+        "Set {name}: ring mesh forces of the planets cancel as they pass (opposite planets have equal forces); no "
+        "lines at the ring.",
+        when=lambda seen: seen.data.found.base_pitches > 1 and seen.data.at_ring is None,
+    ),
+    Remark(
+        "Set {name}: all teeth are identical and all base pitches equal; describe [[gear.NAME.odd_tooth]] and set "
+        "odd_teeth = true under [effects] for teeth that differ.",
+        when=lambda seen: seen.data.found.base_pitches == 1,
+    ),
+    Remark(
+        assuming(
+            "Set {name}: tooth 0 of planet {d.odd_number} meshes with tooth 0 of the sun, and on its other flank "
+            "with tooth 0 of the ring; the teeth of the other planets are identical."
+        ),
+        when=lambda seen: seen.data.found.base_pitches > 1,
+    ),
+)  # fmt: skip
 _OVER = Axis("mesh cycle, in base pitches")
+_TABLES, _FIGURES = orders_and_lines("planet_revolution", "found.orders", "transmission error")
 _SHEET = Sheet(
     of=_shown,
     name=lambda inputs: inputs.name,
@@ -205,14 +299,7 @@ _SHEET = Sheet(
             ),
             matlab=True,
         ),
-        Rows(
-            "planet_revolution_orders_{name}", "Orders of the transmission error and of the mesh force of set {name}",
-            ("n", "mesh_order", "frequency", "te", "load"), of="found.orders",
-        ),
-        Rows(
-            "planet_revolution_lines_{name}", "Lines at the ring of set {name} as planets pass",
-            ("order", "frequency", "force_order", "passing", "force"), of="at_ring",
-        ),
+        *_TABLES,
     ),
     values=(
         *(
@@ -243,46 +330,18 @@ _SHEET = Sheet(
                 ),
             ),
         ),
-        Chart(
-            "planet_revolution_orders_{name}", "Orders of the transmission error of set {name}",
-            "Set {name}: amplitudes of the transmission error over the order of the tooth-mesh frequency; integers are "
-            "mesh harmonics, the others are due to teeth that differ.",
-            (Over("mesh_order", (Line("te", kind="stems"),)),),
-            of="found.orders",
-        ),
-        Chart(
-            "planet_revolution_lines_{name}", "Sidebands at the ring of set {name}",
-            "Set {name}: amplitudes of the ring mesh forces, seen at the ring as planets pass, over the order of the "
-            "tooth-mesh frequency.",
-            (Over("order", (Line("force", kind="stems"),)),),
-            of="at_ring",
-        ),
+        *_FIGURES,
     ),
     answer=Answer(_answer, figure="planet_revolution_{name}"),
     remarks=(
-        Remark(
-            "Set {name}: ring mesh forces of the planets cancel as they pass (opposite planets have equal forces); no "
-            "lines at the ring.",
-            when=lambda seen: seen.data.found.base_pitches > 1 and seen.data.at_ring is None,
-        ),
-        Remark(
-            "Set {name}: all teeth are identical and all base pitches equal; describe [[gear.NAME.odd_tooth]] and set "
-            "odd_teeth = true under [effects] for teeth that differ.",
-            when=lambda seen: seen.data.found.base_pitches == 1,
-        ),
-        Remark(
-            assuming(
-                "Set {name}: tooth 0 of planet {d.odd_number} meshes with tooth 0 of the sun, and on its other flank "
-                "with tooth 0 of the ring; the teeth of the other planets are identical."
-            ),
-            when=lambda seen: seen.data.found.base_pitches > 1,
-        ),
+        *ODD_REMARKS,
     ),
     settings={"base_pitches": "found.base_pitches", "odd_planet": "odd_number"},
 )  # fmt: skip
 
 
-def _check(scene: Scene, name: str) -> None:
+def check_revolution(scene: Scene, name: str) -> None:
+    """Refuse what is not available of sets with odd teeth."""
     check_set(scene, name)
     planet = planetary_part(scene, name).planet
     if scene.case.effects.spacing_errors and scene.case.gear[planet].spacing_errors is not None:
@@ -292,23 +351,24 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+def needs_revolution(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The tasks that make the teeth of its meshes, odd ones too."""
     return tuple(over_revolution_task(scene, set_pair(name, mesh)) for mesh in solved_meshes(scene, name))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    odd = [scene.gears[gear].teeth for gear in _odd_gears(scene, name)]
+    odd = [scene.gears[gear].teeth for gear in odd_gears_of_set(scene, name)]
     pitches = math.lcm(*odd) if odd else 1
     return Forecast({"base pitches": pitches}, _LAWS + _PITCH * pitches)
 
 
 PLANET_REVOLUTION = Stage(
     subjects=planetary_sets,
-    needs=_needs,
-    inputs=_inputs,
+    needs=needs_revolution,
+    inputs=revolution_inputs,
     compute=_compute,
     present=_SHEET.present,
-    check=_check,
+    check=check_revolution,
     effects_of=lambda scene, name: (*effects_of_set(scene, name), ODD_TEETH.name),
     cites=citing(
         Citation("mark", "load sharing of coupled tooth pairs", "App. A"),
