@@ -151,7 +151,7 @@ RELIEF = Effect(
     "`relief` on a gear; for 3D pairs also `lead`, `bias`, `topography`, and `modification` of the pair", "flanks",
     {"reliefs": "removal of a modified flank at many positions"},
     lambda pair: pair.has(
-        "relief", "coast_relief", *(("lead", "bias", "topography", "modification") if pair.wide else ())
+        "relief", "coast_relief", *(("lead", "coast_lead", "bias", "topography", "modification") if pair.wide else ())
     ),
     _LIN,
 )  # fmt: skip

@@ -13,7 +13,7 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.gear_checks import check_asymmetric, check_helical, check_internal, check_odd_teeth, check_web
 from fegear.case.gear_keys import GearKeys
 from fegear.case.part import at, refuse
-from fegear.case.relief import ReliefPart
+from fegear.case.relief import LeadPart, MeasuredPart, ReliefPart
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
@@ -63,17 +63,29 @@ class GearPart(GearKeys):
         """Profile modification of a flank of asymmetric teeth, or of both of equal ones (None)."""
         return self.coast_relief if flank == "coast" else self.relief
 
+    def lead_of(self, flank: Flank | None) -> tuple[LeadPart | None, str]:
+        """Lead modification as of `relief_of`, and its key: one for both flanks unless the coast flanks have theirs."""
+        if flank == "coast" and self.coast_lead is not None:
+            return self.coast_lead, "coast_lead"
+        return self.lead, "lead"
+
+    def measured_of(self, flank: Flank | None) -> tuple[MeasuredPart | None, str]:
+        """Measured flanks as of `relief_of`, and their key."""
+        return (self.coast_measured, "coast_measured") if flank == "coast" else (self.measured, "measured")
+
     @property
     def over_face(self) -> tuple[str, ...]:
         """Keys that say what is ground off over the face, of those that are given."""
-        given = tuple(key for key in ("lead", "bias", "topography") if getattr(self, key) is not None)
-        wide = self.measured is not None and (self.measured.lead or self.measured.topography)
-        return (*given, "measured") if wide else given
+        keys = ("lead", "coast_lead", "bias", "topography")
+        given = tuple(key for key in keys if getattr(self, key) is not None)
+        measured = {"measured": self.measured, "coast_measured": self.coast_measured}
+        wide = (key for key, part in measured.items() if part is not None and (part.lead or part.topography))
+        return (*given, *wide)
 
     @property
     def relieved(self) -> bool:
         """Whether its profile is drawn, or measured, to differ from an involute."""
-        measured = self.measured is not None and self.measured.profile is not None
+        measured = any(part is not None and part.profile for part in (self.measured, self.coast_measured))
         return measured or self.relief is not None or self.coast_relief is not None
 
     @model_validator(mode="after")

@@ -34,7 +34,6 @@ _SYMMETRIC_ONLY = {
     "odd_tooth": "remove it",
     "bias": "remove it",
     "topography": "remove it",
-    "measured": "remove it",
     "span_teeth": "remove it: no span can be measured over flanks of two base circles",
     **dict.fromkeys(MEASURES, "set profile_shift"),
 }
@@ -67,8 +66,10 @@ def check_asymmetric(part: GearKeys) -> None:
             value=part.rack.tip_radius,
         )  # fmt: skip
     if not part.asymmetric:
-        if part.coast_relief is not None:
-            raise refuse("requires asymmetric teeth", "specify relief (both flanks)", key="coast_relief")
+        for key in ("coast_relief", "coast_lead", "coast_measured"):
+            if getattr(part, key) is not None:
+                both = key.removeprefix("coast_")
+                raise refuse("requires asymmetric teeth", f"specify {both} (both flanks)", key=key)
         return
     for key, remedy in _SYMMETRIC_ONLY.items():
         if key in part.given:
@@ -76,31 +77,11 @@ def check_asymmetric(part: GearKeys) -> None:
     for key in ("protuberance", "grinding_allowance"):
         if getattr(part.rack, key):
             raise refuse("is not available for asymmetric teeth", "remove it", key=f"rack.{key}")
-    _check_even_lead(part)
     if isinstance(part.profile_shift, str):
         raise refuse(
             "is not available for asymmetric teeth", "give the profile shift as a number", key="profile_shift",
             value=shown(part.profile_shift),
         )  # fmt: skip
-
-
-def _check_even_lead(part: GearKeys) -> None:
-    """Refuse leads whose ends differ: both flanks of asymmetric teeth have the lead, and see the ends exchanged."""
-    lead = part.lead
-    if lead is None:
-        return
-    for key in ("slope", "file"):
-        if getattr(lead, key):
-            raise refuse(
-                "is not available for asymmetric teeth (equal ends only)", "set lead.crowning, or end_relief",
-                key=f"lead.{key}",
-            )  # fmt: skip
-    for i, end in enumerate(lead.end_relief):
-        if end.end != "both":
-            raise refuse(
-                "is not available for asymmetric teeth (equal ends only)", 'set end = "both"',
-                key=f"lead.end_relief[{i}].end", value=f'"{end.end}"',
-            )  # fmt: skip
 
 
 def check_odd_teeth(part: GearKeys) -> None:

@@ -129,6 +129,11 @@ class GearKeys(TeethPart):
         default=None,
         description="Flank line (lead) modification, the same at every tooth height; active with the effect `relief`.",
     )
+    coast_lead: Table[LeadPart] | None = Field(
+        default=None,
+        description="Flank line (lead) modification of the coast flanks of asymmetric teeth; `lead` is that of the "
+        "drive flanks then. Ends I and II are those of `lead`. Default: as `lead`.",
+    )
     bias: Table[BiasPart] | None = Field(
         default=None,
         description="Flank twist S_alpha: profile slope at end II minus that at end I; active with effects.relief.",
@@ -139,8 +144,13 @@ class GearKeys(TeethPart):
     )
     measured: Table[MeasuredPart] | None = Field(
         default=None,
-        description="Measured profiles, helices or flanks instead of the nominal ones; active with the effect "
-        "`relief`.",
+        description="Measured profiles, helices or flanks instead of the nominal ones (of asymmetric teeth: drive "
+        "flanks); active with the effect `relief`.",
+    )
+    coast_measured: Table[MeasuredPart] | None = Field(
+        default=None,
+        description="Measured profiles, helices or flanks of the coast flanks of asymmetric teeth; `z` as in "
+        "`measured`. Default: as specified by `coast_relief` and `coast_lead`.",
     )
     spacing_errors: Table[SpacingErrorsPart] | None = Field(
         default=None,

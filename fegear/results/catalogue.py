@@ -47,7 +47,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               "usual limits", internal=True),
         Entry("measured-flanks", "gear.measured_flanks.MEASURED_FLANKS", "Measured flanks", ("measured-flanks",),
               "profile and helix deviations (slope, form, total) of measured flanks, and their tolerance class",
-              internal=True, table="gear.NAME.measured"),
+              internal=True, asymmetric=True, table="gear.NAME.measured"),
         Entry("gear-solution", "gear.solved_gear.GEAR_SOLUTION", "Influence functions of a gear (2D)",
               internal=True, asymmetric=True),
         Entry("atlas-gear", "gear.solved_gear.ATLAS_GEAR", "Influence functions of a gear (2D) from an atlas"),

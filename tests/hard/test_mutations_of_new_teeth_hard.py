@@ -38,6 +38,10 @@ TURNED = {
            "rack": {"tip_radius": 0.15, "coast_tip_radius": 0.25}, "thickness_allowance": "40 um"}
     for name, teeth, hand in (("p", 23, "right"), ("w", 37, "left"))
 }  # fmt: skip
+TURNED["w"] |= {
+    "lead": {"slope": "8 um", "end_relief": [{"amount": "4 um", "length": "3 mm", "end": "I"}]},
+    "coast_lead": {"crowning": "3 um", "slope": "-5 um"},
+}
 SHAPED = {
     "p": {"teeth": 28, "module": "3 mm", "face_width": "10 mm",
           "fillet": {"kind": "ellipse", "form_diameter": "80 mm", "root_diameter": "76.6 mm"}},

@@ -121,8 +121,6 @@ def test_a_full_fillet_is_the_widest_of_both_angles():
         (case(profile_shift=None, span="23 mm", span_teeth=3), "gear.p.span"),
         (case(span_teeth=3), "no span can be measured"),
         (case(tooth_mesh="a.msh"), "gear.p.tooth_mesh"),
-        (case(lead={"crowning": "5 um", "slope": "3 um"}), "gear.p.lead.slope"),
-        (case(lead={"end_relief": {"amount": "5 um", "length": "2 mm", "end": "I"}}), 'set end = "both"'),
         (case(topography={"file": "t.csv"}), "gear.p.topography"),
         (case(coast_pressure_angle=None, rack={"tip_radius": 0.1}, coast_relief=TIP), "requires asymmetric teeth"),
         (case(odd_tooth=[{"tooth": 0, "crack": {"depth": "1 mm"}}]), "gear.p.odd_tooth"),

@@ -24,9 +24,11 @@ from fegear.geometry.flank_modification import (
     LeadCrowning,
     LeadEndRelief,
     LeadTable,
+    MirroredModification,
     Topography,
 )
 from fegear.geometry.gear import Gear
+from fegear.geometry.involute_side import Flank
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import Relief, roll_of_radius
 from fegear.geometry.relief_spec import BiasSpec
@@ -59,12 +61,27 @@ def with_face(scene: Scene, flank: FlankSpec, *, drawn: bool = False) -> FlankSp
 
 def _whole_flank(scene: Scene, name: str, *, drawn: bool) -> tuple[FlankModification, ...]:
     """The measured topography of a gear, which stands for all that is drawn."""
-    if scene.case.gear[name].measured is None or drawn:
+    if drawn or scene.case.gear[name].measured_of(_flank(scene, name))[0] is None:
         return ()
     from fegear.case.built.measured_flanks import measured_gear
 
     found = measured_gear(scene, name).topography
-    return () if found is None else (found,)
+    return () if found is None else _as_seen(scene, name, [found])
+
+
+def _flank(scene: Scene, name: str) -> Flank | None:
+    """Flank of asymmetric teeth that a gear is seen from."""
+    return scene.gears[name].tooth.working_flank
+
+
+def _as_seen(scene: Scene, name: str, found: list[FlankModification]) -> tuple[FlankModification, ...]:
+    """Modifications whose ends are those of the drive flanks, as the flank that is seen has them.
+
+    A flank counts its ends from where it is seen on the right of an upright tooth: the coast flank from the other end.
+    """
+    if _flank(scene, name) != "coast":
+        return tuple(found)
+    return tuple(one if isinstance(one, LeadCrowning) else MirroredModification(one) for one in found)
 
 
 def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> tuple[FlankModification, ...]:
@@ -73,19 +90,20 @@ def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> tuple[FlankMod
     if whole := _whole_flank(scene, name, drawn=drawn):
         return whole
     found: list[FlankModification] = []
-    if part.measured is not None and not drawn:
+    if not drawn and part.measured_of(_flank(scene, name))[0] is not None:
         from fegear.case.built.measured_flanks import measured_gear
 
         lead = measured_gear(scene, name).lead
         found += [] if lead is None else [lead]
-    if part.lead is not None and not found:
-        found += _lead(scene, name, part.lead, gear.face_width)
+    modified, key = part.lead_of(_flank(scene, name))
+    if modified is not None and not found:
+        found += _lead(scene, modified, f"gear.{scene.written.get(name, name)}.{key}", gear.face_width)
     if part.topography is not None:
         found.append(_topography(scene, name, part.topography))
-    return tuple(found)
+    return _as_seen(scene, name, found)
 
 
-def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankModification]:
+def _lead(scene: Scene, part: LeadPart, prefix: str, width: float) -> list[FlankModification]:
     found: list[FlankModification] = []
     if part.crowning:
         found.append(LeadCrowning(part.crowning, width))
@@ -96,10 +114,10 @@ def _lead(scene: Scene, name: str, part: LeadPart, width: float) -> list[FlankMo
         try:
             found.append(LeadEndRelief(end.amount, end.length, width, end.end, power))
         except InputError as error:
-            key = f"gear.{scene.written.get(name, name)}.lead.end_relief[{i}].length"
+            key = f"{prefix}.end_relief[{i}].length"
             raise InputError(key, error.value, error.rule, error.remedy) from None
     if part.file is not None:
-        key = f"gear.{name}.lead.file"
+        key = f"{prefix}.file"
         columns = read_columns(scene.file(part.file, key), key, {"z": "length", "removal": "length"})
         if not {"z", "removal"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
             rule = f"requires the columns z [mm], ascending, and removal [um]; it has {columns.has}"

@@ -49,7 +49,7 @@ def gear_flanks(scene: Scene, gear: str, *, drawn: bool = False, back: bool = Fa
     if given is not None:
         relief = _ends(given)
     try:
-        if part.measured is not None and not drawn:
+        if not drawn and part.measured_of(seen.tooth.working_flank)[0] is not None:
             from fegear.case.built.measured_flanks import measured_gear
 
             found = measured_gear(scene, gear)

@@ -104,6 +104,12 @@ class MeasuredGear:
         return None if self.helix is None else LeadTable(self.helix.x, self.helix.removal)
 
 
+def _given(scene: Scene, name: str) -> tuple[MeasuredPart | None, str]:
+    """What a case says of the flanks that a gear is seen from, and where."""
+    part, key = scene.case.gear[name].measured_of(scene.gears[name].tooth.working_flank)
+    return part, f"gear.{scene.written.get(name, name)}.{key}"
+
+
 def measured_gear(scene: Scene, name: str) -> MeasuredGear:
     """Read the measured flanks of a gear.
 
@@ -112,8 +118,8 @@ def measured_gear(scene: Scene, name: str) -> MeasuredGear:
     InputError
         If a file has not the columns, or traces do not cover their evaluation range.
     """
-    part, gear = scene.case.gear[name].measured or MeasuredPart(profile=""), scene.gears[name]
-    key = f"gear.{name}.measured"
+    gear, (given, key) = scene.gears[name], _given(scene, name)
+    part = given or MeasuredPart(profile="")
     profile = helix = topography = None
     over_profile, over_face = _profile_ends(scene, name), _lead_ends(scene, name)
     if part.profile is not None:
@@ -129,11 +135,11 @@ def measured_gear(scene: Scene, name: str) -> MeasuredGear:
 
 def _profile_ends(scene: Scene, name: str) -> tuple[float, float]:
     """Evaluation range in lengths of roll: as given, else from where contact starts in a pair toward the tip."""
-    gear, part = scene.gears[name], scene.case.gear[name].measured
+    gear, (part, key) = scene.gears[name], _given(scene, name)
     given = None if part is None else part.profile_range
     if given is not None:
         if min(given) < gear.base_radius:
-            raise InputError(f"gear.{name}.measured.profile_range", "(a list)", "extends inside the base circle")
+            raise InputError(f"{key}.profile_range", "(a list)", "extends inside the base circle")
         ends = gear.base_radius * roll_of_radius(gear, np.array(given))
         return float(ends.min()), float(ends.max())
     involute = gear.tooth.involute
@@ -153,7 +159,7 @@ def _profile_ends(scene: Scene, name: str) -> tuple[float, float]:
 
 
 def _lead_ends(scene: Scene, name: str) -> tuple[float, float]:
-    part, gear = scene.case.gear[name].measured, scene.gears[name]
+    gear, (part, _) = scene.gears[name], _given(scene, name)
     if part is not None and part.lead_range is not None:
         return part.lead_range[0], part.lead_range[1]
     return helix_range(gear.face_width, gear.module)
@@ -227,7 +233,7 @@ def _flank(
     scene: Scene, name: str, part: MeasuredPart, over_profile: tuple[float, float], over_face: tuple[float, float]
 ) -> tuple[Traces, Traces, Topography]:
     """Profile and helix through the middle of a topography, and its mean as a removal."""
-    gear, key = scene.gears[name], f"gear.{name}.measured.topography"
+    gear, key = scene.gears[name], f"{_given(scene, name)[1]}.topography"
     file = part.topography or ""
     rows = _columns(scene, file, key, gear)
     if "z" not in rows:

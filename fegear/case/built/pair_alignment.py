@@ -67,7 +67,8 @@ def _of_computed_shafts(scene: Scene, name: str) -> float:
 
 def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixModification:
     """What lead of the gears makes of the flanks, in the rows of the standard's table."""
-    leads = [lead for gear in gears if (lead := scene.case.gear[gear].lead) is not None]
+    each = (scene.case.gear[gear].lead_of(scene.gears[gear].tooth.working_flank)[0] for gear in gears)
+    leads = [lead for lead in each if lead is not None]
     if not leads:
         return "none"
     if not scene.case.effects.relief:

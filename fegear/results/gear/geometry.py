@@ -233,10 +233,11 @@ def ground_off(part: GearPart, flank: Flank | None) -> dict[str, float]:
                 add(key, end.amount)
         for crown in profile.crowning:
             add("profile_crowning", crown.amount)
-    if part.lead is not None:
-        add("crowning", part.lead.crowning)
-        add("helix_slope", part.lead.slope)
-        for relief in part.lead.end_relief:
+    lead, _ = part.lead_of(flank)
+    if lead is not None:
+        add("crowning", lead.crowning)
+        add("helix_slope", lead.slope)
+        for relief in lead.end_relief:
             for side in ("I", "II"):
                 if relief.end in (side, "both"):
                     add(f"end_relief_{side}", relief.amount)

@@ -64,6 +64,11 @@ class FlanksToEvaluate:
         return tuple(one for one in (self.measured.profile, self.measured.helix) if one is not None)
 
 
+def _is_measured(scene: Scene, name: str) -> bool:
+    """Whether a case says how the flanks were measured that a gear is seen from."""
+    return scene.case.gear[name].measured_of(scene.gears[name].tooth.working_flank)[0] is not None
+
+
 def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
     measured, gear = measured_gear(scene, name), scene.gears[name]
     design: dict[str, Array] = {}
@@ -400,7 +405,7 @@ _SHEET = Sheet(
 
 
 MEASURED_FLANKS = Stage(
-    subjects=lambda scene: tuple(name for name, part in scene.case.gear.items() if part.measured is not None),
+    subjects=lambda scene: tuple(name for name in scene.case.gear if _is_measured(scene, name)),
     inputs=_inputs,
     compute=_compute,
     present=_SHEET.present,
