@@ -150,7 +150,7 @@ class GearKeys(TeethPart):
     coast_measured: Table[MeasuredPart] | None = Field(
         default=None,
         description="Measured profiles, helices or flanks of the coast flanks of asymmetric teeth; `z` as in "
-        "`measured`. Default: as specified by `coast_relief` and `coast_lead`.",
+        "`measured`.",
     )
     spacing_errors: Table[SpacingErrorsPart] | None = Field(
         default=None,

@@ -118,6 +118,9 @@ ROWS = {
     "GearPart.tip_diameter": (LOADED, "gear.b.tip_diameter", f"{3.0 * 34 + 2.0 * 1.2 * 3.0!r} mm"),
     "GearPart.bore_radius": (
         joined(PAIR, {"results": ["geometry"]}), "gear.a.bore_radius", _root),
+    "GearPart.coast_lead": (
+        joined(ASYMMETRIC, {"gear.a.lead": {"slope": "5 um"}, "pair.I.flank": "coast", "pair.I.width": "slices"}),
+        "gear.a.coast_lead", {"slope": "5 um"}),
     "GearPart.coast_pressure_angle": (
         joined(PAIR, {"results": ["geometry"]}), "gear.a.coast_pressure_angle", "20 deg"),
     "FilletDesignPart.pair": (FILLET, "fillet_design.pair", "I"),

@@ -113,6 +113,23 @@ def test_measured_profiles_count_from_the_base_circle_of_their_flank(tmp_path):
     assert gear_flanks(built(case(coast_measured={"profile": "coast.csv"}), tmp_path), "p").relief is None
 
 
+@pytest.mark.parametrize("flank", ["drive", "coast"])
+def test_measured_flanks_are_compared_with_the_design_of_their_flank(tmp_path, flank):
+    z = np.linspace(-4.0, 4.0, 81)
+    written(tmp_path, "drive.csv", z, -(z + 4.0), "deviation")
+    written(tmp_path, "coast.csv", z, 2.0 * (z + 4.0), "deviation")
+    scene = built(
+        case(
+            flank, ("measured-flanks",), lead={"slope": "8 um"}, coast_lead={"slope": "-16 um"},
+            measured={"lead": "drive.csv"}, coast_measured={"lead": "coast.csv"},
+        ),
+        tmp_path,
+    )  # fmt: skip
+    values = {one.name: one.si for one in run_plan(scene, make_plan(scene, STAGES)).values}
+    assert values["p.helix_slope"] == pytest.approx(0.0, abs=1e-9)
+    assert values["p.helix_total"] == pytest.approx(0.0, abs=1e-7)
+
+
 @pytest.mark.parametrize("key", ["coast_lead", "coast_measured"])
 def test_equal_flanks_have_one_lead(key):
     equal = case(**{key: {"lead": "a.csv"} if key == "coast_measured" else {"slope": "3 um"}})

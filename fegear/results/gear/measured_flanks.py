@@ -84,7 +84,8 @@ def _inputs(scene: Scene, name: str) -> FlanksToEvaluate:
     if measured.helix is not None:
         over = gear_face(scene, name, drawn=True)
         middle = 0.5 * (gear.tooth.involute.start + gear.tooth.involute.end)
-        z = measured.helix.x
+        # traces count z as the drive flanks do, modifications as the flank that is seen
+        z = -measured.helix.x if gear.tooth.working_flank == "coast" else measured.helix.x
         design["helix"] = -sum((part.removal(middle, z) for part in over), np.zeros(z.size))
     part = scene.case.gear[name]
     if part.spacing_errors is None and any(len(one.teeth) > 1 for one in (measured.profile, measured.helix) if one):
