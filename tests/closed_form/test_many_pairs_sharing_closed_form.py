@@ -53,7 +53,7 @@ def test_transmission_error_and_shares_are_those_of_each_pair(pairs, corners):
     for i, one in enumerate(each):
         for k, load in enumerate(LOADS.tolist()):
             known = transmission_error(one, load, 8, order=16)
-            assert found.mean[i, k] == pytest.approx(known.mean, rel=1e-11 if corners else 1e-13)
+            assert found.mean[i, k] == pytest.approx(known.mean, rel=1e-12 if corners else 1e-13)
             # changes of contact are found to 1e-9 of a base pitch here, to 3e-8 there
             assert abs(found.peak_to_peak[i, k] - known.peak_to_peak) < (1e-6 if corners else 1e-13) * known.mean
         x = one.pair.x_start + one.pair.base_pitch * at
@@ -61,7 +61,7 @@ def test_transmission_error_and_shares_are_those_of_each_pair(pairs, corners):
         pairs_here = known.grid.contacts.number - shared.first[i]
         shares = np.zeros_like(shared.shares[i])
         shares[:, pairs_here] = known.shared.shares[:, :, 0].T
-        tolerance = 3e-12 if corners else 1e-13  # round-off, that of other processors too
+        tolerance = 4e-13 if corners else 1e-13  # round-off, that of other processors too
         np.testing.assert_allclose(shared.shares[i], shares, atol=tolerance)
         np.testing.assert_allclose(shared.transmission_error[i], known.transmission_error[:, 0], rtol=tolerance)
     # what is taken by itself is within the errors that its page states

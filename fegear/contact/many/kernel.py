@@ -95,27 +95,40 @@ def triangle_angle(s, a, own, other):
     return 2.0 * math.atan2(across, math.sqrt(max(s * (s - other), 0.0)))
 
 
-def turned(place, a, r, base):
-    """Angles of the tip's and the flank's gear with the corner at a roll length of the flank, and their slopes.
+def difference(of_cosines, total):
+    """Difference of two angles by that of their cosines and by their sum; as `corner._difference`."""
+    sine = math.sin(0.5 * total)
+    return 2.0 * math.asin(min(max(-of_cosines / (2.0 * sine), -1.0), 1.0)) if sine > 0.0 else 0.0
 
-    As `corner._place`.
+
+def turned(place, start, way, a, r, base):
+    """By how much the tip's and the flank's gear have turned with the corner at a roll length of the flank, and slopes.
+
+    As `corner._turned`; with the roll length where the way begins, and both angles there.
     """
-    rho = math.hypot(base, place)
+    rho, first = math.hypot(base, place), math.hypot(base, start)
     s = 0.5 * (a + r + rho)
-    of_tip, of_flank, t = triangle_angle(s, a, r, rho), triangle_angle(s, a, rho, r), place / base
+    at_tip, at_flank, t = triangle_angle(s, a, r, rho), triangle_angle(s, a, rho, r), place / base
+    farther = (place - start) * (place + start)
+    of_tip = difference(-farther / (2.0 * a * r), at_tip + way[0])
+    bent = 1.0 - (a - r) * (a + r) / (rho * first)
+    of_flank = difference(farther / (rho + first) / (2.0 * a) * bent, at_flank + way[1])
+    step = (place - start) / base
+    of_flank -= step - math.atan(step / (1.0 + place * start / (base * base)))
     along = place / rho
-    tip_grows = rho * along / (a * r * math.sin(of_tip))
-    flank_grows = -0.5 * (1.0 - (a * a - r * r) / (rho * rho)) / a * along / math.sin(of_flank)
-    return of_tip, of_flank - (t - math.atan(t)), tip_grows, flank_grows - t * t / (1.0 + t * t) / base
+    tip_grows = rho * along / (a * r * math.sin(at_tip))
+    flank_grows = -0.5 * (1.0 - (a * a - r * r) / (rho * rho)) / a * along / math.sin(at_flank)
+    return of_tip, of_flank, tip_grows, flank_grows - t * t / (1.0 + t * t) / base
 
 
 def corner_way(start, top, a, r, base_tip, base, out):
     """What is the same for all places of a corner's way: both angles where it begins, and how far it reaches."""
-    first = turned(start, a, r, base)
-    out[0], out[1], out[2] = first[0], first[1], 0.0
+    rho = math.hypot(base, start)
+    s = 0.5 * (a + r + rho)
+    out[0], out[1], out[2] = triangle_angle(s, a, r, rho), triangle_angle(s, a, rho, r), 0.0
     if top > start:
-        end = turned(top, a, r, base)
-        out[2] = 0.5 * (base_tip * (end[0] - first[0]) + base * (end[1] - first[1]))
+        end = turned(top, start, out, a, r, base)
+        out[2] = 0.5 * (base_tip * end[0] + base * end[1])
 
 
 def corner_limit(deepest, way, start, top, a, r, base_tip, base):
@@ -144,8 +157,8 @@ def corner_at(beyond, way, start, top, a, r, base_tip, base):
     place = start + (top - start) * beyond / reach
     gap = 0.0
     for _ in range(60):
-        now = turned(place, a, r, base)
-        u_t, u_f = base_tip * (now[0] - way[0]), base * (now[1] - way[1])
+        now = turned(place, start, way, a, r, base)
+        u_t, u_f = base_tip * now[0], base * now[1]
         u, gap = 0.5 * (u_t + u_f), u_t - u_f
         if u < beyond:
             low = place

@@ -7,9 +7,11 @@ from the end of the path outward:
 
     u_T = r_bT [A_T(rho) - A_T(rho_0)],    u_F = r_bF [A_F(rho) - A_F(rho_0) - inv(rho) + inv(rho_0)],
 
-A_T and A_F the triangle's angles at the centres. The gap along the line of action is u_T - u_F; the position is taken
-midway, u = (u_T + u_F)/2, so that a pair and its reverse see the same. The rounding is an offset curve: the same
-formulas hold for its centre and the offset involute, which is an involute of the same base circle.
+A_T and A_F the triangle's angles at the centres. Their differences follow from those of their cosines (`_turned`):
+angles of order one, subtracted, would leave errors of 1e-12 of a deflection. The gap along the line of action is
+u_T - u_F; the position is taken midway, u = (u_T + u_F)/2, so that a pair and its reverse see the same. The rounding is
+an offset curve: the same formulas hold for its centre and the offset involute, which is an involute of the same base
+circle.
 
 In an internal pair the path may end beyond the pitch point: rho then falls before it rises, and it is the angle of the
 corner from the centre line that both positions follow from. The ring's roll lengths are negative, and so is its inv.
@@ -109,16 +111,29 @@ class CornerContact:
         s = 0.5 * (a + r + rho)
         return _triangle_angle(s, a, r, rho), _triangle_angle(s, a, rho, r) - polar_angle(at / rbf), at
 
-    @cached_property
-    def _start(self) -> tuple[Array, Array, Array]:
-        """Where the path ends."""
-        return self._place(np.asarray(self._span[0]))
+    def _turned(self, at: Array) -> tuple[Array, Array]:
+        """By how much the tip's and the flank's gear have turned since the path's end [rad].
+
+        cos(A) - cos(A_0) by the law of cosines has the factor rho^2 - rho_0^2, which roll lengths give without loss.
+        """
+        a, r, rb = self.pair.centre_distance, self._corner_radius, self.pair.gear(self.flank_of).base_radius
+        start = self._span[0]
+        first, rho = math.hypot(rb, start), np.hypot(rb, at)
+        farther = (at - start) * (at + start)
+        s, s_0 = 0.5 * (a + r + rho), 0.5 * (a + r + first)
+        tips = _triangle_angle(s, a, r, rho) + _triangle_angle(s_0, a, r, first)
+        flanks = _triangle_angle(s, a, rho, r) + _triangle_angle(s_0, a, first, r)
+        of_tip = _difference(-farther / (2.0 * a * r), tips)
+        bent = 1.0 - (a - r) * (a + r) / (rho * first)
+        of_flank = _difference(farther / (rho + first) / (2.0 * a) * bent, flanks)
+        step = (at - start) / rb
+        return of_tip, of_flank - (step - np.arctan(step / (1.0 + at * start / (rb * rb))))
 
     def _rolled(self, at: Array) -> tuple[Array, Array]:
         """Both gears' rolled lengths u_T, u_F at a place on the corner's way."""
-        (start_t, start_f, _), (now_t, now_f, _) = self._start, self._place(at)
+        tip_turned, flank_turned = self._turned(at)
         of_tip, of_flank = self.pair.gear(self.tip_of), self.pair.gear(self.flank_of)
-        return of_tip.base_radius * (now_t - start_t), of_flank.base_radius * (now_f - start_f)
+        return of_tip.base_radius * tip_turned, of_flank.base_radius * flank_turned
 
     @cached_property
     def reach(self) -> float:
@@ -201,6 +216,15 @@ class InternalCornerContact(CornerContact):
         length = flank.tooth.side * np.sqrt(np.maximum((rho - rb) * (rho + rb), 0.0))
         return at, np.arctan2(across, along) - polar_angle(length / rb), length
 
+    @cached_property
+    def _start(self) -> tuple[Array, Array, Array]:
+        """Where the path ends."""
+        return self._place(np.asarray(self._span[0]))
+
+    def _turned(self, at: Array) -> tuple[Array, Array]:
+        (start_t, start_f, _), (now_t, now_f, _) = self._start, self._place(at)
+        return now_t - start_t, now_f - start_f
+
     def _tilt(self, at: Array) -> Array:
         """By how far both normals have turned since the path's end: the flank's along its involute, too [rad]."""
         u_t, u_f = self._rolled(at)
@@ -221,6 +245,13 @@ def _triangle_angle(s: ArrayLike, a: float, own: ArrayLike, other: ArrayLike) ->
     s, own, other = (np.asarray(one) for one in (s, own, other))
     across, along = np.sqrt(np.maximum((s - a) * (s - own), 0)), np.sqrt(np.maximum(s * (s - other), 0))
     return np.asarray(2.0 * np.arctan2(across, along))
+
+
+def _difference(of_cosines: Array, total: Array) -> Array:
+    """Difference of two angles from 0 to pi, by that of their cosines and by their sum."""
+    sine = np.sin(0.5 * total)
+    half = np.divide(-of_cosines, 2.0 * sine, out=np.zeros(np.shape(total)), where=sine > 0.0)
+    return np.asarray(2.0 * np.arcsin(np.clip(half, -1.0, 1.0)))
 
 
 def _roll_length(gear: Gear, radius: float) -> float:
