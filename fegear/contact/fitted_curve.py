@@ -4,17 +4,20 @@ measured = offset + drift * turns + scale * computed(angle - shift) + residual, 
 else offset, drift and shift are zero and the scale is one. Angles count modulo one turn: a trace of many revolutions is
 one engagement many times. Turns count along the trace, from the middle of its compared samples. Where the computed
 curve ends there is nothing to compare with; while the shift is searched for the tooth counts as unstrained there.
+Spikes, dropouts and saturated samples (`fegear.contact.trace_outliers`) are left out and counted.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from fegear.base.shown import shown, shows
+from fegear.contact.trace_outliers import Beside, outliers, suspected
+from fegear.contact.trace_scatter import gain_by_turns, noise_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -30,6 +33,8 @@ FEWEST = 8
 _TURN = 2.0 * math.pi
 #: Steps of the first search over the length of the computed curve.
 _STEPS = 400
+#: Steps by which a refined shift differs from the first one at most.
+_BEYOND = 3
 #: Share of the curve's length over which its slope is taken: at a jump it has none.
 _SLOPE = 1.0 / 500.0
 #: A jump: points of the curve nearer than this share of its length, and values farther apart than this of its range.
@@ -38,6 +43,12 @@ _JUMP_WITHIN, _JUMP_OF = 1e-5, 0.02
 _DRIFT_ERRORS, _DRIFT_PART = 4.0, 0.01
 #: Turns from which on an angle is one that goes on, and is taken as it is.
 _GOES_ON = 1.1
+#: Fits at most, each without what is an outlier beside the last.
+_ROUNDS = 5
+#: Least uncertainty of a place, over the length of the curve; half of the step of the samples if that is more.
+_PLACE = 1.0 / 500.0
+#: Part of the variance of a trace from which on it is noise, with no shape to be told.
+_ALL_NOISE = 0.9
 #: Largest correlation of neighbouring residuals with which standard errors are counted.
 _MOST_CORRELATED = 0.99
 
@@ -74,6 +85,11 @@ class FittedCurve:
         trace that has no place of the curve twice.
     turns : float
         From the first to the last compared sample.
+    gain_scatter : float
+        Standard error of the gain by what does not repeat at the same place (noise, torque from turn to turn): without
+        the difference of shape, which `gain_error` has.
+    left_out_angle, left_out : ndarray, shape (J,)
+        Spikes, dropouts and saturated samples within the computed curve, as `angle` and `measured`.
     """
 
     fit: tuple[Fitted, ...]
@@ -96,6 +112,19 @@ class FittedCurve:
     trend: float | None = None
     trend_error: float | None = None
     turns: float = 0.0
+    gain_scatter: float = 0.0
+    noise: float = shown(
+        "um/m", "standard deviation of the measured strain from what repeats at the same place", name="measured_noise",
+        default=0.0,
+    )  # fmt: skip
+    left_out_angle: Array = shown(
+        "deg", "rotation of the gear at a sample left out", label="rotation of the gear",
+        default_factory=lambda: np.zeros(0),
+    )  # fmt: skip
+    left_out: Array = shown("um/m", "sample left out", label="strain", default_factory=lambda: np.zeros(0))
+    spikes: int = shown("", "spikes and dropouts left out", name="measured_spikes", default=0)
+    saturated: int = shown("", "saturated samples left out", name="measured_saturated", default=0)
+    saturated_at: float | None = None
 
     @property
     def unfitted_drift(self) -> float | None:
@@ -150,6 +179,13 @@ class FittedCurve:
         return float(one @ other) / size if size else 0.0
 
     @property
+    def likeness(self) -> float:
+        """Correlation of the shapes: that of Pearson, had the trace no noise; at most 1."""
+        power = float(self.measured.var())
+        noise = self.noise**2 / power if power else 0.0
+        return min(self.correlation / math.sqrt(1.0 - noise), 1.0) if noise < _ALL_NOISE else self.correlation
+
+    @property
     @shows("", "samples compared", name="measured_samples")
     def samples(self) -> int:
         """K."""
@@ -188,51 +224,134 @@ def fit_curve(
     NothingToCompareError
         If fewer than `FEWEST` samples, beside the fitted numbers, lie within the computed curve.
     """
-    middle = 0.5 * (curve_angle[0] + curve_angle[-1])
-    half = 0.5 * (curve_angle[-1] - curve_angle[0])
-
-    def within(shift: float, of: Array = angle) -> Array:
-        return np.asarray(np.mod(of - shift - middle + math.pi, _TURN) - math.pi + middle)
-
-    def computed(places: Array) -> Array:
-        return np.interp(places, curve_angle, curve)
-
+    known, turns = _Computed(curve_angle, curve), turns_along(angle)
     asked: tuple[Fitted, ...] = tuple(one for one in FITTED if one in fit)
-    turns, shift = turns_along(angle), 0.0
-    if "shift" in asked:
-        steady = measured - _drift_by_places(angle, turns, measured) * turns if "drift" in asked else measured
-        shift = _searched(angle, steady, computed, half, middle, asked)
-    inside = np.abs(within(shift) - middle) <= half
-    if np.count_nonzero(inside) < FEWEST + len(asked):
-        raise NothingToCompareError
-    a, y, turn = angle[inside], measured[inside], turns[inside]
-    spanned, turn = float(np.ptp(turn)), turn - turn.mean()
-    if "shift" in asked:
-        shift = _refined(lambda at: _squares(computed(within(at, a)), y, turn, asked), shift, 2.0 * half / _STEPS)
-    places = within(shift, a)
-    found = computed(places)
-    line = _linear(found, y, turn, asked)
-    reach = 2.0 * half * _SLOPE
-    slope = (computed(places + reach) - computed(places - reach)) / (2.0 * reach)
-
-    def with_errors(*more: Fitted) -> tuple[_Line, dict[Fitted, float]]:
-        these: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one in more)
-        fitted = _linear(found, y, turn, these)
-        residual = fitted.less(y, turn) - fitted.scale * found
-        return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn)
-
-    errors = with_errors()[1]
-    if "shift" in asked and _jumps(curve_angle, curve):  # between two samples the jump may be anywhere
-        spacing = float(np.median(np.diff(np.sort(places))))
-        errors["shift"] = math.hypot(errors["shift"], spacing / math.sqrt(12.0))
-    gain, of_gain = with_errors("scale")
-    drifting = with_errors("offset", "drift") if spanned > 1.0 else None
-    return FittedCurve(
-        asked, {one: errors.get(one, 0.0) for one in FITTED}, int(angle.size - a.size), line.offset, line.scale,
-        float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
-        line.less(y, turn) / line.scale, found, line.drift, drifting and drifting[0].drift,
-        drifting and drifting[1]["drift"], spanned,
+    spikes, saturated = suspected(measured)
+    found = known.fitted(angle, measured, turns, asked, ~(spikes | saturated))
+    for _ in range(_ROUNDS):
+        again = outliers(measured, known.beside(found, angle, turns))
+        if np.array_equal(again[0], spikes) and np.array_equal(again[1], saturated):
+            break
+        spikes, saturated = again
+        found = known.fitted(angle, measured, turns, asked, ~(spikes | saturated))
+    made = known.described(found, angle, measured, turns, asked)
+    inside = found.inside
+    spikes, saturated = spikes & inside, saturated & inside
+    out = spikes | saturated
+    return replace(
+        made, outside=int(angle.size - np.count_nonzero(inside)), spikes=int(np.count_nonzero(spikes)),
+        saturated=int(np.count_nonzero(saturated)), left_out_angle=known.within(found.shift, angle[out]),
+        left_out=found.line.less(measured[out], turns[out] - found.middle_turn) / found.line.scale,
+        saturated_at=float(np.median(measured[saturated])) if saturated.any() else None,
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Shift [rad] and line of a fit, the turns that its drift counts from, samples on the curve, and those that count.
+
+    Parameters
+    ----------
+    inside, used : ndarray of bool, shape (N,)
+    """
+
+    shift: float
+    line: _Line
+    middle_turn: float
+    inside: Array
+    used: Array
+
+
+class _Computed:
+    """A computed curve over its places, ascending [rad], that traces are laid over."""
+
+    def __init__(self, angle: Array, curve: Array) -> None:
+        self._angle, self._curve = angle, curve
+        self._middle, self._half = 0.5 * (angle[0] + angle[-1]), 0.5 * (angle[-1] - angle[0])
+
+    def within(self, shift: float, of: Array) -> Array:
+        """Places of samples on the curve, one turn about its middle [rad]."""
+        return np.asarray(np.mod(of - shift - self._middle + math.pi, _TURN) - math.pi + self._middle)
+
+    def at(self, places: Array) -> Array:
+        """The curve there."""
+        return np.interp(places, self._angle, self._curve)
+
+    def fitted(self, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...], kept: Array) -> _Fit:
+        """Least squares over the samples that are kept.
+
+        Raises
+        ------
+        NothingToCompareError
+        """
+        shift = 0.0
+        if "shift" in asked:
+            a, y, along = angle[kept], measured[kept], turns[kept]
+            steady = y - _drift_by_places(a, along, y) * along if "drift" in asked else y
+            shift = _searched(a, steady, self.at, self._half, self._middle, asked)
+        used = kept & (np.abs(self.within(shift, angle) - self._middle) <= self._half)
+        if np.count_nonzero(used) < FEWEST + len(asked):
+            raise NothingToCompareError
+        a, y, turn = angle[used], measured[used], turns[used]
+        middle_turn = float(turn.mean())
+        turn = turn - middle_turn
+        if "shift" in asked:
+            step = 2.0 * self._half / _STEPS
+            shift = _refined(lambda at: _squares(self.at(self.within(at, a)), y, turn, asked), shift, step)
+        line = _linear(self.at(self.within(shift, a)), y, turn, asked)
+        inside = np.abs(self.within(shift, angle) - self._middle) <= self._half
+        return _Fit(shift, line, middle_turn, inside, used)
+
+    def beside(self, found: _Fit, angle: Array, turns: Array) -> Beside:
+        """All samples beside what was fitted to some of them."""
+        place, line = self.within(found.shift, angle), found.line
+        step = float(np.median(np.abs(np.diff(turns)))) * _TURN if turns.size > 1 else 0.0
+        reach = max(0.5 * step, 2.0 * self._half * _PLACE)
+        around = np.stack([self.at(place - reach), self.at(place), self.at(place + reach)])
+        fitted = line.scale * around[1] + line.offset + line.drift * (turns - found.middle_turn)
+        # samples that the search counted in, before its shift was refined, may lie a little beyond the ends
+        near = np.abs(place - self._middle) <= self._half * (1.0 + 2.0 * _BEYOND / _STEPS)
+        return Beside(
+            place, near, fitted, abs(line.scale) * np.ptp(around, axis=0),
+            abs(line.scale) * float(np.ptp(self._curve)), float(np.ptp(turns)),
+        )  # fmt: skip
+
+    def described(
+        self, fit: _Fit, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...]
+    ) -> FittedCurve:
+        """A fit with its standard errors and its scatter."""
+        used, shift, line = fit.used, fit.shift, fit.line
+        y, turn = measured[used], turns[used]
+        spanned, turn = float(np.ptp(turn)), turn - fit.middle_turn
+        places = self.within(shift, angle[used])
+        found = self.at(places)
+        reach = 2.0 * self._half * _SLOPE
+        slope = (self.at(places + reach) - self.at(places - reach)) / (2.0 * reach)
+
+        def with_errors(*more: Fitted, noise: float | None = None) -> tuple[_Line, dict[Fitted, float]]:
+            these: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one in more)
+            fitted = _linear(found, y, turn, these)
+            residual = fitted.less(y, turn) - fitted.scale * found
+            return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn, noise)
+
+        errors = with_errors()[1]
+        if "shift" in asked and _jumps(self._angle, self._curve):  # between two samples the jump may be anywhere
+            spacing = float(np.median(np.diff(np.sort(places))))
+            errors["shift"] = math.hypot(errors["shift"], spacing / math.sqrt(12.0))
+        gain, of_gain = with_errors("scale")
+        rest = gain.less(y, turn)
+        noise = noise_of(places, rest - gain.scale * found)
+        scatter = max(
+            with_errors("scale", noise=noise)[1]["scale"],
+            gain_by_turns(turn, found, rest, gain.scale, free="offset" in asked),
+        )
+        drifting = with_errors("offset", "drift") if spanned > 1.0 else None
+        return FittedCurve(
+            asked, {one: errors.get(one, 0.0) for one in FITTED}, 0, line.offset, line.scale,
+            float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
+            line.less(y, turn) / line.scale, found, line.drift, drifting and drifting[0].drift,
+            drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,
+        )  # fmt: skip
 
 
 def turns_along(angle: Array) -> Array:
@@ -321,9 +440,10 @@ def _squares(curve: Array, measured: Array, turn: Array, asked: tuple[Fitted, ..
 
 
 def _standard_errors(
-    curve: Array, slope: Array, scale: float, residual: Array, asked: tuple[Fitted, ...], turn: Array | None = None
-) -> dict[Fitted, float]:
-    """Of what is fitted; neighbouring residuals that go together count as fewer samples."""
+    curve: Array, slope: Array, scale: float, residual: Array, asked: tuple[Fitted, ...], turn: Array | None = None,
+    noise: float | None = None,
+) -> dict[Fitted, float]:  # fmt: skip
+    """Of what is fitted; neighbouring residuals that go together count as fewer samples, unless the noise is given."""
     columns: dict[Fitted, Array] = {"offset": np.ones(curve.size), "scale": curve, "shift": -scale * slope}
     if turn is not None:
         columns["drift"] = turn
@@ -337,5 +457,7 @@ def _standard_errors(
     follows = float(residual[1:] @ residual[:-1]) / squares if squares else 0.0
     follows = min(max(follows, 0.0), _MOST_CORRELATED)
     variance *= (1.0 + follows) / (1.0 - follows)
+    if noise is not None:
+        variance = noise**2
     spread = np.diag(np.linalg.pinv((matrix / size).T @ (matrix / size))) * variance
     return {one: float(math.sqrt(max(spread[i], 0.0)) / size[i]) for i, one in enumerate(asked)}

@@ -10,7 +10,7 @@ away and nothing of the mesh, averaged over all teeth.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,14 +18,17 @@ import numpy as np
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve, fit_curve
+from fegear.contact.trace_alternatives import alternatives
+from fegear.contact.trace_outliers import suspected
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.fitted_curve import Fitted
+    from fegear.contact.trace_alternatives import Alternative
 
 #: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
 FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
@@ -37,6 +40,8 @@ _GOES_ON = 1.1
 _SLACK = 1e-3
 #: Harmonics of the mesh that are compared at most.
 _HARMONICS = 12
+#: Largest part of the samples that are spikes; groups of teeth whose gains are compared, and fewest of them.
+_MOST_SPIKES, _GROUPS, _FEW_GROUPS = 0.1, 24, 3
 #: Orders of each gear that are fitted together, and periods over the trace that tell two of them apart.
 _LINES, _APART = 3, 0.35
 _TURN = 2.0 * math.pi
@@ -122,6 +127,10 @@ class MeasuredError(ReadOnlyArrays):
         Harmonics of the mesh.
     amplitude, phase : ndarray, shape (H,)
         Of these [m], [rad].
+    by_teeth : ndarray, shape (G, B)
+        The same curve of groups of neighbouring teeth, each less its mean.
+    spikes : int
+        Samples that stick out of those around them, left out.
     mate_order : float
         Order of one revolution of the mating gear, with its multiples a part of the spectrum; 0 where the trace is too
         short to tell it from those of the shaft.
@@ -136,6 +145,8 @@ class MeasuredError(ReadOnlyArrays):
     n: NDArray[np.int64]
     amplitude: Array
     phase: Array
+    by_teeth: Array
+    spikes: int = 0
     mate_order: float = 0.0
 
 
@@ -203,6 +214,10 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     from scipy.interpolate import CubicSpline
 
     pitch = _TURN / teeth
+    spikes = suspected(te)[0]
+    if spikes.mean() > _MOST_SPIKES:
+        spikes[:] = False
+    angle, te = angle[~spikes], te[~spikes]
     going = angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
     turned, te = _one_way(going, te, _GAP * pitch)
     length = float(turned[-1] - turned[0])
@@ -227,13 +242,16 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
     mate = _of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
     spectrum = _spectrum(values - sum((one.at(even) for one in mate), np.zeros(even.size)), cycles / teeth, start)
-    curve, spread, averaged = _over_pitch(values, places)
+    by_tooth = _over_pitch(values, places)
+    curve, spread, averaged = by_tooth.mean(axis=0) + values.mean(), float(by_tooth.std(axis=0).mean()), len(by_tooth)
+    groups = np.array_split(by_tooth, min(averaged, _GROUPS))
     n = 1 + np.arange(min(_HARMONICS, places // 2 - 1))
     at = n * cycles - 1  # the record has `cycles` tooth pitches: harmonic n of the mesh is its n-th multiple
     at = at[at < spectrum.order.size]
     return MeasuredError(
         teeth, spectrum.beside(mate), np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size],
-        spectrum.amplitude[at], spectrum.phase[at], mate[0].order if mate else 0.0,
+        spectrum.amplitude[at], spectrum.phase[at], np.stack([one.mean(axis=0) for one in groups]),
+        int(np.count_nonzero(spikes)), mate[0].order if mate else 0.0,
     )  # fmt: skip
 
 
@@ -301,17 +319,15 @@ def _of_mate(values: Array, angle: Array, turns: float, ratio: float) -> tuple[O
     )
 
 
-def _over_pitch(values: Array, places: int) -> tuple[Array, float, int]:
-    """Curve over one tooth pitch, from the first value on; spread between teeth, and how many there are of each."""
+def _over_pitch(values: Array, places: int) -> Array:
+    """Curve over one tooth pitch of each tooth, from the first value on and without slow parts, shape (teeth, B)."""
     total = np.concatenate([[0.0], np.cumsum(values)])
     mean = (total[places:] - total[:-places]) / places  # of each run of one pitch
     half = places // 2
     slow = mean if places % 2 else 0.5 * (mean[1:] + mean[:-1])
     quick = values[half : half + slow.size] - slow
     whole = quick.size // places
-    by_tooth = np.roll(quick[: whole * places].reshape(whole, places), half, axis=1)
-    spread = float(by_tooth.std(axis=0).mean())
-    return by_tooth.mean(axis=0) + values.mean(), spread, whole
+    return np.roll(quick[: whole * places].reshape(whole, places), half, axis=1)
 
 
 def beside_computed(
@@ -329,16 +345,64 @@ def beside_computed(
     fit : collection of {"offset", "scale", "shift"}
         A shift is within half a tooth pitch to either side.
     """
-    phase = _TURN * (x - x[0]) / base_pitch
-    inside = phase < _TURN
-    curve_angle, curve = np.append(phase[inside], _TURN), np.append(te[inside], te[0])
-    begin = _TURN * x[0] / base_pitch
-    # Zero of both angles is where a tooth pair is at the pitch point.
-    one = fit_curve(found.teeth * found.angle - begin, found.te, curve_angle, curve, fit)
+    over = _Over(x, base_pitch)
+    curve = over.closed(te)
+    one = fit_curve(found.teeth * found.angle, found.te, over.angle, curve, fit)
     turn = 1.0 / found.teeth
-    angle = np.mod((one.angle + begin) * turn, _TURN * turn)
+    angle = np.mod(one.angle * turn, _TURN * turn)
     order = np.argsort(angle, kind="stable")
     return FittedError(
         one.fit, {**one.errors, "shift": one.errors["shift"] * turn}, one.outside, one.offset, one.scale,
         one.shift * turn, one.gain, one.gain_error, angle[order], one.measured[order], one.computed[order],
+        gain_scatter=_of_gain(found, one, over, curve), noise=one.noise,
     )  # fmt: skip
+
+
+def better_described(
+    found: MeasuredError, fitted: FittedError, x: Array, curves: Mapping[str, Array], base_pitch: float,
+    fit: Collection[Fitted],
+) -> tuple[Alternative, ...]:  # fmt: skip
+    """Descriptions of a trace that fit clearly better, shifts in angles of the shaft.
+
+    Parameters
+    ----------
+    found : MeasuredError
+    fitted : FittedError
+        As it is described.
+    x : ndarray, shape (P,)
+    curves : mapping of str to ndarray, shape (P,)
+        Computed transmission error: under the empty name that beside which it is, and others.
+    base_pitch : float
+    fit : collection of {"offset", "scale", "shift"}
+    """
+    over = _Over(x, base_pitch)
+    better = alternatives(
+        fitted, found.teeth * found.angle, found.te, over.angle, {name: over.closed(te) for name, te in curves.items()},
+        fit,
+    )  # fmt: skip
+    return tuple(replace(one, fitted=replace(one.fitted, shift=one.fitted.shift / found.teeth)) for one in better)
+
+
+class _Over:
+    """One base pitch as a turn: the computed curve over the number of teeth times the angle."""
+
+    def __init__(self, x: Array, base_pitch: float) -> None:
+        phase = _TURN * (x - x[0]) / base_pitch
+        self._inside = phase < _TURN
+        # Zero of both angles is where a tooth pair is at the pitch point.
+        self.angle = _TURN * x[0] / base_pitch + np.append(phase[self._inside], _TURN)
+
+    def closed(self, te: Array) -> Array:
+        """Transmission error over these angles."""
+        return np.append(te[self._inside], te[0])
+
+
+def _of_gain(found: MeasuredError, one: FittedCurve, over: _Over, curve: Array) -> float:
+    """Standard error of the gain by how it differs between groups of teeth; of one group, by the noise of the curve."""
+    if len(found.by_teeth) < _FEW_GROUPS:
+        return one.gain_scatter
+    begin = over.angle[0]
+    at = np.interp(np.mod(found.teeth * found.angle - one.shift - begin, _TURN) + begin, over.angle, curve)
+    own = at - at.mean()
+    gains = found.by_teeth @ own / (own @ own)
+    return float(gains.std(ddof=1)) / math.sqrt(gains.size)

@@ -41,6 +41,8 @@ class ErrorTrace:
         What had to be understood in the file: decimal commas, lines that were passed over.
     key, file : str
         Where the case names it.
+    of_angle : bool
+        Whether the transmission error is given as an angle.
     """
 
     angle: Array
@@ -49,6 +51,7 @@ class ErrorTrace:
     reading: str
     key: str = field(compare=False)
     file: str = field(compare=False)
+    of_angle: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     part, pair = scene.case.encoders[name], pair_of_encoders(scene, name)
     placed, mesh = scene.pairs[pair], scene.case.pair[pair]
     loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
-    lever, traces = placed.driver.base_radius, []
+    lever, traces, of_angle = placed.driver.base_radius, [], part.te_at != "line-of-action"
     said = f"pair {pair} ({', '.join(f'{load * lever:.5g}' for load in loads)} N m)"
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
@@ -134,7 +137,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
             reading = [read.reading] if read.reading else []
             reading += [f"{rest} samples at other torques left out"] if rest else []
             traces += [
-                ErrorTrace(read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file)
+                ErrorTrace(read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file, of_angle)
                 for k, run in found.items()
             ]
             continue
@@ -145,7 +148,8 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
                 _of_driven(wanted * lever, np.array(loads) * lever, placed.ratio, _ABOUT)
                 or f"add it to pair.{pair}.torques",
             )  # fmt: skip
-        traces.append(ErrorTrace(read.angle, read.te, known[0] if known else 0.0, read.reading, key, one.file))
+        load = known[0] if known else 0.0
+        traces.append(ErrorTrace(read.angle, read.te, load, read.reading, key, one.file, of_angle))
     traces.sort(key=lambda one: one.load)
     same = [two for two in pairwise(traces) if two[0].load == two[1].load]
     if same:

@@ -23,8 +23,10 @@ from fegear.results.pair.gauge_data import GaugeData
 from fegear.results.pair.loaded_teeth import OVER_LOADS, check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     DASHED,
+    LEFT_OUT,
     MEASURED,
     RESIDUAL,
+    better_described,
     compared,
     comparison_table,
     comparison_values,
@@ -32,9 +34,10 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
+from fegear.results.pair.trace_verdict import Otherwise
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from fegear.case.reading import Scene
     from fegear.contact.gauge_strain import GaugeHistory
@@ -93,11 +96,21 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
     place, history, clearance = (_on_face if asked.wide else _in_plane)(asked, upstream)
     at = teeth.loads.index(teeth.nominal)
+    strain, opposite = history.strain[:, at], history.strain_opposite[:, at]
+    found = compared(gauge, history.angle, strain)
+    better = better_described(gauge, found, history.angle, strain, opposite)
     return GaugeData(
         teeth.loads, at, history, place.place, clearance, place.clipped, gauge.load_tolerance, asked.speed,
-        compared(gauge, history.angle, history.strain[:, at]), gauge.measured.reading if gauge.measured else "",
-        asked.estimates, asked.sharper,
+        found, Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, _torques(history, teeth.loads, at)),
+        gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
     )  # fmt: skip
+
+
+def _torques(history: GaugeHistory, loads: Sequence[float], at: int) -> dict[str, float]:
+    """Peak under each other load of the pair over that under the nominal one, by its torque on the driver."""
+    peaks = [float(history.strain[history.peak_position(i), i]) for i in range(len(loads))]
+    lever = history.pair.driver.base_radius
+    return {f"{figures(loads[i] * lever, 5)} N m": peak / peaks[at] for i, peak in enumerate(peaks) if i != at}
 
 
 def _in_plane(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
@@ -197,7 +210,7 @@ _SHEET = Sheet(
                 Over(
                     "angle",
                     (
-                        MEASURED,
+                        MEASURED, LEFT_OUT,
                         Line("strain", "computed", error="history.strain_error", look={"markers": False}),
                         Line("strain_towards_root", "grid towards the root", "grey", look=DASHED),
                         Line("strain_towards_tip", "grid towards the tip", "grey", look=DASHED),
@@ -226,6 +239,7 @@ _SHEET = Sheet(
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}: {d.drifts}.", when="drifts"),
+        Remark("Gauge {name}: {d.without}.", when="without"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(
             lambda seen: f"Gauge {seen.name}: the contact comes within {seen.data.clearance:.2f} modules of the grid; "

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.contact.measured_error import FittedError, MeasuredError
+from fegear.contact.trace_alternatives import Alternative, Change
+from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
@@ -21,8 +23,60 @@ _CERTAIN = 2.0
 _ALIKE = 0.98
 #: Estimated error of the computed value above which it judges no measurement within it, relative.
 _JUDGES = 0.1
+#: Difference from the ratio of the teeth within which it is named.
+_AT_SHAFT = 0.05
+#: Mesh orders that are looked at, and times by which those of the other gear are larger where the shaft is wrong.
+_ORDERS, _OF_MATE = 3, 4.0
 #: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
 _DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
+
+
+@dataclass(frozen=True)
+class OtherwiseError(BetterDescribed):
+    """What else may explain a trace of encoders.
+
+    Parameters
+    ----------
+    mate_teeth : int
+        Teeth of the other gear where the orders of the trace are its multiples; 0 where they are not.
+    ratio : float
+        Number of teeth of the driven gear over that of the driver, where the trace is an angle; else 0.
+    """
+
+    mate_teeth: int = 0
+    ratio: float = 0.0
+
+    def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
+        """How each change is said, and what to check."""
+        return {
+            "curve": (f"as computed at {one.curve}", "the torque of the trace"),
+            "sign": ("with its sign reversed", "positive"),
+            "reverse": ("with its angle reversed", "reverse"),
+            "shift": (f"shifted by {degrees(one)}", 'the zero of the angle (add "shift" to fit)'),
+        }
+
+    def of_ratio(self, found: float) -> str:
+        """Reason that a ratio of measured to computed has, with the sign before it; empty for none."""
+        if unit := of_unit(found, "the transmission error"):
+            return unit
+        for ratio in (self.ratio, 1.0 / self.ratio) if self.ratio else ():
+            if abs(ratio - 1.0) > _AT_SHAFT and abs(found / ratio - 1.0) <= _AT_SHAFT:
+                return f", the ratio of the teeth being {figures(ratio)}; check te_at"
+        return ""
+
+
+def orders_of_mate(found: MeasuredError, mate_teeth: int) -> bool:
+    """Whether the mesh orders of a trace are those of the mating gear: its angle is that of the other shaft."""
+    spectrum = found.spectrum
+    if spectrum.turns < 1.0:
+        return False
+
+    def largest(teeth: int, other: int) -> float:
+        orders = [float(n * teeth) for n in range(1, _ORDERS + 1) if (n * teeth) % other]
+        near = [np.abs(spectrum.order - order).argmin() for order in orders if order <= spectrum.order[-1]]
+        return float(spectrum.amplitude[near].max(initial=0.0))
+
+    return largest(mate_teeth, found.teeth) > _OF_MATE * largest(found.teeth, mate_teeth) > 0.0
 
 
 @dataclass(frozen=True)
@@ -42,6 +96,8 @@ class TraceBeside:
         What had to be understood in the file.
     estimated : bool
         Whether errors were estimated: a draft, which does not know its own, judges no measurement.
+    otherwise : OtherwiseError
+        What else may explain the trace.
     """
 
     found: MeasuredError
@@ -54,6 +110,7 @@ class TraceBeside:
     load_tolerance: float = 0.01
     reading: str = ""
     estimated: bool = True
+    otherwise: OtherwiseError = field(default_factory=lambda: OtherwiseError())
 
     @property
     @shows("", "harmonic of the tooth-mesh frequency")
@@ -146,11 +203,18 @@ class TraceBeside:
         if not self.estimated:
             return ""
         fitted, computed = self.fitted, self.computed_peak_to_peak
+        if self.otherwise.mate_teeth:
+            return (
+                f"the mesh order of the trace is {self.otherwise.mate_teeth}, the number of teeth of the other gear: "
+                "check shaft"
+            )
+        if better := self.otherwise.said(fitted, computed, "the peak-to-peak value"):
+            return better
         if fitted.gain <= 0.0:
             return "measured and computed curve go against each other; check positive, reverse and fit"
         parts = {
             "torque": self.load_tolerance, "computation": (self.computed_error or 0.0) / computed,
-            "scatter": _CERTAIN * fitted.gain_error,
+            "scatter": _CERTAIN * fitted.gain_scatter,
         }  # fmt: skip
         together = math.hypot(*parts.values())
         off = fitted.gain - 1.0
@@ -165,16 +229,20 @@ class TraceBeside:
                 'set width = "solid" or reduce accuracy.tolerance'
             )
         limit = ", ".join(f"{name} {percent(part)}" for name, part in parts.items())
-        if fitted.correlation < _ALIKE:  # scatter holds the difference of shape: being within it proves nothing
+        if fitted.likeness < _ALIKE:  # a gain of another shape proves nothing
             said = (
-                f"the curves differ in shape (correlation {fitted.correlation:.3f}, limit {_ALIKE:g}): check relief, "
+                f"the curves differ in shape (correlation {fitted.likeness:.3f}, limit {_ALIKE:g}): check relief, "
                 f"profile deviations and misalignment{'' if 'shift' in fitted.fit else ', or fit shift'}; {said} "
                 f"({limit})"
             )
+        elif reason := self.otherwise.of_ratio(fitted.gain):
+            said = (
+                f"fitted over the whole curve, the measured transmission error is {figures(fitted.gain)} times the "
+                f"computed one{reason}"
+            )
         else:
             said += f", {'within' if within else 'beyond'} ±{percent(together)} ({limit})"
-        if fitted.correlation >= _ALIKE and not within:
-            said += "; check torque, relief and the unit of the trace"
+            said += "" if within else "; check torque, relief and the unit of the trace"
         return f"{said}; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.base.printed import figures
 from fegear.case.built.encoders import Encoders, encoders_of, pair_of_encoders
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
@@ -17,7 +18,12 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.pair.measured_error_data import MeasuredErrorData, TraceBeside
+from fegear.results.pair.measured_error_data import (
+    MeasuredErrorData,
+    OtherwiseError,
+    TraceBeside,
+    orders_of_mate,
+)
 from fegear.results.pair.placed_gauge import comparison_values
 
 if TYPE_CHECKING:
@@ -65,7 +71,7 @@ def _measured(trace: ErrorTrace, teeth: int, mate_teeth: int) -> MeasuredError:
 
 
 def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorData:
-    from fegear.contact.measured_error import beside_computed
+    from fegear.contact.measured_error import beside_computed, better_described
 
     found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
     pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
@@ -77,13 +83,20 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         at = min(range(len(found.loads)), key=lambda i: abs(found.loads[i] - trace.load))
         measured = _measured(trace, *teeth)
         fitted = beside_computed(measured, found.x, found.te[:, at], pair.base_pitch, asked.fit)
+        others = {
+            "" if i == at else f"{figures(load * pair.driver.base_radius, 5)} N m": found.te[:, i]
+            for i, load in enumerate(found.loads)
+        }
+        better = better_described(measured, fitted, found.x, others, pair.base_pitch, asked.fit)
+        of_mate = teeth[1] if orders_of_mate(measured, teeth[1]) else 0
+        otherwise = OtherwiseError(better, of_mate, pair.ratio if trace.of_angle else 0.0)
         amplitude: Array = found.series[at].amplitude[: measured.n.size]
         size = float(found.te_peak_to_peak[at])
         traces.append(
             TraceBeside(
                 measured, fitted, amplitude, None if relative is None else relative * size,
                 trace.load * pair.driver.base_radius, trace.load, size, asked.load_tolerance,
-                trace.reading, asked.estimates,
+                trace.reading, asked.estimates, otherwise,
             )
         )  # fmt: skip
     return MeasuredErrorData(traces, asked.member)
@@ -203,6 +216,11 @@ _SHEET = Sheet(
         Remark(
             lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: file read with {seen.one.reading}.",
             each="traces", when=lambda seen: bool(seen.one.reading),
+        ),
+        Remark(
+            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.found.spikes} samples are spikes "
+            "and left out.",
+            each="traces", when=lambda seen: seen.one.found.spikes > 0,
         ),
     ),
     sharper_by="",

@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, place_gauge
 from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve
+from fegear.contact.trace_alternatives import alternatives
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
 from fegear.engine.sheet.each import Each
@@ -22,6 +23,7 @@ from fegear.results.pair.gauge_data import GaugePlace
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.fitted_curve import Fitted, FittedCurve
+    from fegear.contact.trace_alternatives import Alternative
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
     from fegear.fem.plane.trace import LoadedFlank
@@ -142,11 +144,34 @@ def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
         ) from None  # fmt: skip
 
 
+def better_described(
+    gauge: Gauge, found: FittedCurve | None, angle: Array, strain: Array, opposite: Array | None = None
+) -> tuple[Alternative, ...]:
+    """Descriptions of a trace that fit clearly better than the given one; none without a trace.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    found : FittedCurve or None
+        Its trace as described.
+    angle, strain : ndarray, shape (P,)
+        Computed.
+    opposite : ndarray, shape (P,), optional
+        Of an equal gauge in the other fillet.
+    """
+    measured = gauge.measured
+    if measured is None or found is None:
+        return ()
+    curves = {"": strain} if opposite is None else {"": strain, "opposite": opposite}
+    return alternatives(found, measured.angle, measured.strain, angle, curves, measured.fit)
+
+
 def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | Each, ...]:
     """Values of a comparison, which stands there; their names begin with the prefix."""
     names = {
         "offset": "measured_offset", "scale": "measured_scale", "shift": "measured_shift", "gain": "measured_gain",
         "drift": "measured_drift", "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
+        "noise": "measured_noise", "spikes": "measured_spikes", "saturated": "measured_saturated",
     }  # fmt: skip
 
     def name(quantity: str) -> str:
@@ -160,11 +185,19 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
             when=lambda seen: seen.one is not None and quantity in seen.one.fit,
         )  # fmt: skip
 
+    def counted(quantity: str) -> Number:
+        return Number(
+            quantity, exact, of=at, name=name(quantity),
+            when=lambda seen: (found := seen.find(at)) is not None and getattr(found, quantity) > 0,
+        )  # fmt: skip
+
     others = ("gain", "gain_error", "rms", "correlation")
     return (
         *map(fitted, FITTED),
         *(Number(one, of=at, name=name(one)) for one in others),
         Number("samples", exact, of=at, name=name("samples")),
+        counted("spikes"),
+        counted("saturated"),
     )
 
 
@@ -173,7 +206,12 @@ def comparison_table(name: str, title: str) -> Rows:
     return Rows(name, title, ("angle", "measured", "computed", "residual"), of="compared")
 
 
-#: Samples of a comparison, which stands thinned at `drawn`, over the computed curve, and a panel of their residuals.
+#: Samples of a comparison, which stands thinned at `drawn`, over the computed curve, those that are left out, and a
+#: panel of their residuals.
+LEFT_OUT = Line(
+    "left_out", "left out", "series:3", x="left_out_angle", of="drawn", kind="points",
+    look={"size": 6.0, "symbol": "x"}, when=lambda seen: bool(seen.data.without),
+)  # fmt: skip
 MEASURED = Line("measured", "measured", "series:1", of="drawn", kind="points", look=_DOTS)
 RESIDUAL = Over(
     "angle", (Line("residual", "measured less computed", "series:1", kind="points", look=_DOTS),), of="drawn",

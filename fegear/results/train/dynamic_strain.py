@@ -21,11 +21,12 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
-from fegear.results.pair.gauge_data import BesideTrace, verdict
 from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
+    LEFT_OUT,
     MEASURED,
     RESIDUAL,
+    better_described,
     compared,
     comparison_table,
     comparison_values,
@@ -33,6 +34,7 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
+from fegear.results.pair.trace_verdict import BesideTrace, Otherwise, verdict
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
@@ -99,6 +101,8 @@ class DynamicStrain(BesideTrace):
         Whether nothing but the own mesh excites the train.
     load_tolerance : float
     compared : FittedCurve or None
+    otherwise : Otherwise
+        What else may explain the trace.
     sharper : str
         The setting that makes the computed strain of 3D gears more accurate; empty of plane ones.
     """
@@ -107,6 +111,7 @@ class DynamicStrain(BesideTrace):
     alone: bool
     load_tolerance: float
     compared: FittedCurve | None
+    otherwise: Otherwise
     sharper: str = ""
 
     @property
@@ -125,7 +130,7 @@ class DynamicStrain(BesideTrace):
             return ""
         return verdict(
             self.compared, found.peak, found.change_by_placement, found.peak_error or 0.0, self.load_tolerance,
-            brief=brief, sharper=self.sharper,
+            self.otherwise, brief=brief, sharper=self.sharper,
         )  # fmt: skip
 
 
@@ -171,7 +176,9 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
     found = (_on_face if asked.wide else _in_plane)(asked, upstream, force)
     alone = len(force.train.exciters) == 1
     measured = compared(gauge, found.angle, found.total)
-    return DynamicStrain(found, alone, gauge.load_tolerance, measured, asked.sharper if asked.wide else "")
+    better = better_described(gauge, measured, found.angle, found.total)
+    otherwise = Otherwise(better, gauge.side, found.pair.gear(found.member).teeth)
+    return DynamicStrain(found, alone, gauge.load_tolerance, measured, otherwise, asked.sharper if asked.wide else "")
 
 
 def _in_plane(asked: DynamicStrainInputs, upstream: Upstream, force: ToothForceData) -> ToothStrain:
@@ -240,7 +247,7 @@ _SHEET = Sheet(
                 Over(
                     "angle",
                     (
-                        MEASURED,
+                        MEASURED, LEFT_OUT,
                         Line("own", "static and own increment", look={"markers": False}),
                         Line("total", "with other meshes", "with other meshes", look={"width": 1.2}, when="others"),
                         Line("static", "quasi-static", "static"),
@@ -264,6 +271,7 @@ _SHEET = Sheet(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
         Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
+        Remark("Gauge {name}, in motion: {d.without}.", when="without"),
     ),
     sharper_by="",
 )  # fmt: skip

@@ -1,0 +1,139 @@
+"""What would explain a trace clearly better: another sign, direction of the angle, fillet, zero of the angle or torque.
+
+Each alternative is fitted as the trace itself is, its scale always free: what is compared is the part of the variance
+that a curve leaves unexplained, 1 - r^2 with the correlation r of the shapes, noise aside (1 where the fitted scale is
+not positive). An alternative is stated where it leaves far less than the trace as it is described, fits in shape, and
+noise cannot be the reason; of several the one that changes least.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Literal
+
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fitted_curve import Fitted, FittedCurve
+
+#: What may be otherwise than described.
+Change = Literal["sign", "reverse", "curve", "shift"]
+#: Least correlation of an alternative that is stated.
+_FITS = 0.9
+#: Times less that it leaves unexplained; where the trace fits in shape already, that many times.
+_LESS, _LESS_OF_ALIKE, _ALIKE = 4.0, 9.0, 0.98
+#: Least gain of the fit, as chi squared by the residual of the alternative.
+_CERTAIN = 50.0
+#: Part of the variance left unexplained below which nothing better is looked for.
+_EXPLAINED = 2e-3
+#: Alternatives that leave at most that many times what the best one leaves are as good.
+_AS_GOOD = 2.0
+#: Standard errors of what noise leaves unexplained.
+_BY_NOISE = 3.0
+#: Tooth pitches by which one miscounts at most, and how near to them a shift is.
+_PITCHES, _NEAR = 2, 0.1
+#: Samples that are fitted at most.
+_MOST = 20_000
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A description of a trace that fits clearly better.
+
+    Parameters
+    ----------
+    changes : tuple of {"sign", "reverse", "curve", "shift"}
+        In what it differs: measured with the other sign, angle counted the other way, another computed curve, zero of
+        the angle elsewhere.
+    curve : str
+        Name of the other curve; empty for the trace's own.
+    fitted : FittedCurve
+    """
+
+    changes: tuple[Change, ...]
+    curve: str
+    fitted: FittedCurve
+
+
+def unexplained(found: FittedCurve) -> float:
+    """Part of the variance of a trace, less its noise, that its curve leaves, 0 to 1."""
+    return 1.0 - found.likeness**2 if found.gain > 0.0 and found.likeness > 0.0 else 1.0
+
+
+def _left(found: FittedCurve) -> float:
+    """The same with the noise."""
+    return 1.0 - found.correlation**2 if found.gain > 0.0 and found.correlation > 0.0 else 1.0
+
+
+def alternatives(
+    found: FittedCurve, angle: Array, measured: Array, curve_angle: Array, curves: Mapping[str, Array],
+    fit: Collection[Fitted], *, shifts: bool = True,
+) -> tuple[Alternative, ...]:  # fmt: skip
+    """Descriptions of a trace that fit it clearly better, the likeliest first; none where it fits as described.
+
+    Parameters
+    ----------
+    found : FittedCurve
+        The trace as it is described.
+    angle, measured : ndarray, shape (N,)
+    curve_angle : ndarray, shape (Q,)
+    curves : mapping of str to ndarray, shape (Q,)
+        Computed: under the empty name the trace's own, and others by their names.
+    fit : collection of str
+        What was asked for.
+    shifts : bool
+        Whether the zero of the angle may be elsewhere, if it is not fitted.
+    """
+    left = unexplained(found)
+    if left < _EXPLAINED:
+        return ()
+    some = slice(None, None, -(-angle.size // _MOST))
+    angle, measured = angle[some], measured[some]
+    likely: list[Alternative] = []
+    for changes, name, sign, sense, more in _descriptions(curves, shifts=shifts and "shift" not in fit):
+        try:
+            again = fit_curve(sense * angle, sign * measured, curve_angle, curves[name], {*fit, "scale", *more})
+        except NothingToCompareError:
+            continue
+        likely.append(Alternative(changes, name, again))
+    good = [one for one in likely if _clearly_better(one.fitted, found)]
+    if not good:
+        return ()
+    best = min((one.fitted for one in good), key=_left)
+    by_noise = _BY_NOISE * _left(best) * math.sqrt(2.0 / best.samples)
+    most = _AS_GOOD * max(unexplained(best), by_noise)
+    alike = [one for one in good if unexplained(one.fitted) <= most]
+    fewest = min(len(one.changes) for one in alike)
+    return tuple(sorted((one for one in alike if len(one.changes) == fewest), key=lambda one: unexplained(one.fitted)))
+
+
+def _descriptions(
+    curves: Collection[str], *, shifts: bool
+) -> Iterator[tuple[tuple[Change, ...], str, float, float, tuple[Fitted, ...]]]:
+    """Changes, curve, sign and sense of the angle of each other description, and what it fits besides."""
+    for name, sign, sense, shifted in product(curves, (1.0, -1.0), (1.0, -1.0), (False, True)[: 1 + shifts]):
+        wrong: tuple[tuple[Change, bool], ...] = (
+            ("sign", sign < 0.0), ("reverse", sense < 0.0), ("curve", bool(name)), ("shift", shifted),
+        )  # fmt: skip
+        changes = tuple(change for change, is_so in wrong if is_so)
+        if changes:
+            yield changes, name, sign, sense, ("shift",) if shifted else ()
+
+
+def _clearly_better(one: FittedCurve, than: FittedCurve) -> bool:
+    of, left = unexplained(one), unexplained(than)
+    times = _LESS_OF_ALIKE if left < 1.0 - _ALIKE**2 else _LESS
+    chi_squared = one.samples * (_left(than) - _left(one)) / max(_left(one), 1e-12)
+    return of <= min(left / times, 1.0 - _FITS**2) and chi_squared > _CERTAIN
+
+
+def whole_pitches(shift: float, teeth: int) -> int:
+    """Tooth pitches that a shift [rad] is, 0 where it is not close to a few of them."""
+    pitch = 2.0 * math.pi / abs(teeth)
+    count = round(shift / pitch)
+    return count if 0 < abs(count) <= _PITCHES and abs(shift / pitch - count) < _NEAR else 0

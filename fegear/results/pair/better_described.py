@@ -1,0 +1,77 @@
+"""The sentence on a trace that fits clearly better with another description: how it fits, and what to check."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.base.printed import figures, percent
+from fegear.contact.trace_alternatives import Alternative
+
+if TYPE_CHECKING:
+    from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.trace_alternatives import Change
+
+#: Ratios of measured to computed that a wrong unit has, and how near to one of them a ratio is.
+_UNITS, _OF_UNIT = (1e-6, 1e-3, 1e3, 1e6), 0.2
+#: The changes in the order in which they are said.
+_ORDER: tuple[Change, ...] = ("curve", "sign", "reverse", "shift")
+
+
+@dataclass(frozen=True)
+class BetterDescribed:
+    """Descriptions of a trace that fit clearly better; heirs have the words of what is measured.
+
+    Parameters
+    ----------
+    better : tuple of Alternative
+        The likeliest first.
+    """
+
+    better: tuple[Alternative, ...] = ()
+
+    def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
+        """How each change is said, and what to check."""
+        raise NotImplementedError
+
+    def said(self, found: FittedCurve, size: float, of: str = "the peak") -> str:
+        """The better descriptions beside the given one, a clause; empty for none.
+
+        Parameters
+        ----------
+        found : FittedCurve
+            The trace as it is described.
+        size : float
+            Computed, of which residuals are parts.
+        of : str
+            How this is called.
+        """
+        if not self.better:
+            return ""
+        ways, remedies = (
+            " or ".join(dict.fromkeys(
+                " and ".join(self.words(one)[change][i] for change in _ORDER if change in one.changes)
+                for one in self.better
+            ))
+            for i in range(2)
+        )  # fmt: skip
+        likeliest = self.better[0].fitted
+        return (
+            f"the trace fits {ways}: RMS of the residual {percent(likeliest.rms / size)} of {of} instead of "
+            f"{percent(found.rms / size)}, measured / computed {figures(likeliest.gain)}; check {remedies}"
+        )
+
+
+def degrees(one: Alternative) -> str:
+    """Shift of an alternative."""
+    return f"{math.degrees(one.fitted.shift):.3g}°"
+
+
+def of_unit(ratio: float, what: str) -> str:
+    """Reason of a ratio of measured to computed that a wrong unit has, a clause; empty for none."""
+    for unit in _UNITS:
+        if abs(ratio / unit - 1.0) <= _OF_UNIT:
+            size = f"{1.0 / unit:g} times larger" if unit < 1.0 else f"{unit:g} times smaller"
+            return f"; with a unit {size} it is {figures(ratio / unit)} times: check the unit of {what}"
+    return ""
