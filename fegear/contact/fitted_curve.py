@@ -22,7 +22,7 @@ from fegear.contact.trace_scatter import gain_by_turns, noise_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
 
 Fitted = Literal["offset", "scale", "shift", "drift"]
 FITTED: tuple[Fitted, ...] = ("offset", "scale", "shift", "drift")
@@ -241,7 +241,7 @@ def fit_curve(
     return replace(
         made, outside=int(angle.size - np.count_nonzero(inside)), spikes=int(np.count_nonzero(spikes)),
         saturated=int(np.count_nonzero(saturated)), left_out_angle=known.within(found.shift, angle[out]),
-        left_out=found.line.less(measured[out], turns[out] - found.middle_turn) / found.line.scale,
+        left_out=found.line.less(measured[out], turns[out] - found.middle_turn) / (found.line.scale or 1.0),
         saturated_at=float(np.median(measured[saturated])) if saturated.any() else None,
     )  # fmt: skip
 
@@ -258,8 +258,8 @@ class _Fit:
     shift: float
     line: _Line
     middle_turn: float
-    inside: Array
-    used: Array
+    inside: Mask
+    used: Mask
 
 
 class _Computed:
@@ -277,7 +277,7 @@ class _Computed:
         """The curve there."""
         return np.interp(places, self._angle, self._curve)
 
-    def fitted(self, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...], kept: Array) -> _Fit:
+    def fitted(self, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...], kept: Mask) -> _Fit:
         """Least squares over the samples that are kept.
 
         Raises
@@ -349,7 +349,7 @@ class _Computed:
         return FittedCurve(
             asked, {one: errors.get(one, 0.0) for one in FITTED}, 0, line.offset, line.scale,
             float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
-            line.less(y, turn) / line.scale, found, line.drift, drifting and drifting[0].drift,
+            line.less(y, turn) / (line.scale or 1.0), found, line.drift, drifting and drifting[0].drift,
             drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,
         )  # fmt: skip
 

@@ -33,6 +33,8 @@ _CERTAIN = 50.0
 _EXPLAINED = 2e-3
 #: Alternatives that leave at most that many times what the best one leaves are as good.
 _AS_GOOD = 2.0
+#: Less than this is left by rounding.
+_NOTHING = 1e-6
 #: Standard errors of what noise leaves unexplained.
 _BY_NOISE = 3.0
 #: Tooth pitches by which one miscounts at most, and how near to them a shift is.
@@ -106,7 +108,7 @@ def alternatives(
         return ()
     best = min((one.fitted for one in good), key=_left)
     by_noise = _BY_NOISE * _left(best) * math.sqrt(2.0 / best.samples)
-    most = _AS_GOOD * max(unexplained(best), by_noise)
+    most = _AS_GOOD * max(unexplained(best), by_noise, _NOTHING)
     alike = [one for one in good if unexplained(one.fitted) <= most]
     fewest = min(len(one.changes) for one in alike)
     return tuple(sorted((one for one in alike if len(one.changes) == fewest), key=lambda one: unexplained(one.fitted)))

@@ -16,7 +16,9 @@ import numpy as np
 from fegear.contact.trace_scatter import noise_of
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array, Mask
 
 #: Samples about each that a first look compares with, and how far one sticks out: times their middle half and noise.
 _AROUND, _OF_HALF, _OF_NOISE = 9, 3.0, 8.0
@@ -54,19 +56,19 @@ class Beside:
     """
 
     place: Array
-    inside: Array
+    inside: Mask
     fitted: Array
     steep: Array
     size: float
     turns: float
 
 
-def suspected(measured: Array) -> tuple[Array, Array]:
+def suspected(measured: Array) -> tuple[Mask, Mask]:
     """Spikes and dropouts, and what may be saturated, by the trace alone; bool, shape (N,) each."""
     from scipy.ndimage import percentile_filter
 
     if measured.size < _AROUND:
-        return (np.zeros(measured.size, dtype=bool),) * 2
+        return np.zeros(measured.size, dtype=bool), np.zeros(measured.size, dtype=bool)
     low, middle, high = (
         percentile_filter(measured, of, size=_AROUND, mode="mirror") for of in (25.0, 50.0, 75.0)
     )  # fmt: skip
@@ -83,7 +85,7 @@ def suspected(measured: Array) -> tuple[Array, Array]:
     return spikes | drops, ends if ends.mean() <= _MOST_AT_ENDS else np.zeros(measured.size, dtype=bool)
 
 
-def outliers(measured: Array, beside: Beside) -> tuple[Array, Array]:
+def outliers(measured: Array, beside: Beside) -> tuple[Mask, Mask]:
     """Spikes and dropouts, and saturated samples, beside a fitted curve; bool, shape (N,) each.
 
     Parameters
@@ -125,7 +127,7 @@ def outliers(measured: Array, beside: Beside) -> tuple[Array, Array]:
     return off & ~saturated, saturated
 
 
-def _sticking_out(measured: Array, off: Array) -> Array:
+def _sticking_out(measured: Array, off: Mask) -> Mask:
     """Which samples lie beyond those before and after them that are not off: samples on a slope do not, shape (N,)."""
     at, kept = np.arange(measured.size), np.flatnonzero(~off)
     if not kept.size:
@@ -135,7 +137,7 @@ def _sticking_out(measured: Array, off: Array) -> Array:
     return np.asarray((measured < np.minimum(*edges)) | (measured > np.maximum(*edges)))
 
 
-def _runs(measured: Array) -> tuple[Array, Array]:
+def _runs(measured: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """First samples of runs of at least three equal ones, and the samples after their last."""
     new = np.flatnonzero(np.diff(measured) != 0.0) + 1
     start, stop = np.append(0, new), np.append(new, measured.size)
@@ -143,22 +145,22 @@ def _runs(measured: Array) -> tuple[Array, Array]:
     return start[long], stop[long]
 
 
-def _edges(measured: Array, start: Array, stop: Array) -> tuple[Array, Array]:
+def _edges(measured: Array, start: NDArray[np.int64], stop: NDArray[np.int64]) -> tuple[Array, Array]:
     """By how much runs lie above the samples before and after them; above nothing at the ends of the trace."""
     before = measured[start] - measured[np.maximum(start - 1, 0)]
     after = measured[start] - measured[np.minimum(stop, measured.size - 1)]
     return np.where(start > 0, before, after), np.where(stop < measured.size, after, before)
 
 
-def _filled(size: int, start: Array, stop: Array, chosen: Array) -> Array:
+def _filled(size: int, start: NDArray[np.int64], stop: NDArray[np.int64], chosen: Mask) -> Mask:
     """The samples of some runs, shape (N,)."""
     edge = np.zeros(size + 1, dtype=int)
     np.add.at(edge, start[chosen], 1)
     np.add.at(edge, stop[chosen], -1)
-    return np.cumsum(edge[:-1]) > 0
+    return np.asarray(np.cumsum(edge[:-1]) > 0)
 
 
-def _at_ends(measured: Array) -> Array:
+def _at_ends(measured: Array) -> Mask:
     """Samples at the highest or the lowest value where that is there in a run."""
     of_runs = measured[_runs(measured)[0]]
     found = np.zeros(measured.size, dtype=bool)

@@ -1,0 +1,164 @@
+"""What is said of traces that do not fit as they are described, and of samples left out."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.measured_error import beside_computed, better_described, measured_error
+from fegear.contact.trace_alternatives import alternatives
+from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
+from fegear.results.pair.trace_verdict import Otherwise, drawn_as, left_out, verdict
+
+ANGLE = np.linspace(-0.4, 0.5, 300)
+STRAIN = 9e-4 * np.interp(ANGLE, [-0.2, -0.15, 0.0, 0.05, 0.1, 0.2, 0.24], [0.0, 0.3, 0.9, 1.0, 0.6, 0.65, 0.0])
+TURNS = np.arange(0.0, 4.0 * math.pi, 0.01)
+_PHASE = 2.0 * math.pi * np.arange(101) / 100.0
+#: Transmission error over a base pitch of 8 mm under two torques.
+X, LIGHT = 8e-3 * _PHASE / (2.0 * math.pi), 1e-6 * (np.sin(_PHASE) + 0.6 * np.cos(2.0 * _PHASE))
+HEAVY = 1e-6 * (3.0 * np.sin(_PHASE + 1.0) + 0.8 * np.sin(2.0 * _PHASE))
+
+
+def strain(sign=1.0, sense=1.0, shift=0.0, noise=4e-6):
+    place = sense * (np.mod(TURNS - shift + math.pi, 2.0 * math.pi) - math.pi)
+    found = sign * np.interp(place, ANGLE, STRAIN, left=0.0, right=0.0)
+    return found + np.random.default_rng(4).normal(0.0, noise, TURNS.size)
+
+
+def judged(measured, fit=("offset", "scale"), *, teeth=24, brief=True, curves=None, torques=None):
+    found = fit_curve(TURNS, measured, ANGLE, STRAIN, fit)
+    better = alternatives(found, TURNS, measured, ANGLE, {"": STRAIN, **(curves or {})}, fit)
+    otherwise = Otherwise(better, "tension", teeth, torques or {})
+    return verdict(found, 9e-4, 1e-5, 0.0, 0.01, otherwise, brief=brief)
+
+
+@pytest.mark.parametrize(
+    ("trace", "way", "remedy"),
+    [
+        ({"sign": -1.0}, "with its sign reversed", "check the polarity of the bridge"),
+        ({"sense": -1.0}, "with its angle reversed", "check reverse (direction of the angle)"),
+        ({"shift": 0.4}, "shifted by 22.9°", 'check the zero of the angle (add "shift" to fit)'),
+        ({"shift": -2.0 * math.pi / 24}, "shifted by -15° (-1 tooth pitch)", "check the tooth of the gauge and the"),
+        ({"shift": 4.0 * math.pi / 24}, "shifted by 30° (+2 tooth pitches)", "check the tooth of the gauge and the"),
+        ({"sign": -1.0, "sense": -1.0}, "with its sign reversed and with its angle reversed", "the bridge and reverse"),
+    ],
+)  # fmt: skip
+def test_the_way_in_which_a_trace_fits_is_said_in_place_of_a_verdict(trace, way, remedy):
+    said = judged(strain(**trace))
+    assert said.startswith(f"the trace fits {way}: RMS of the residual 0.4")
+    assert remedy in said
+    assert " of the peak instead of " in said
+    assert "above the computed one" not in said
+    assert judged(strain(**trace), brief=False).startswith(said)
+
+
+def test_the_other_fillet_is_named():
+    other = -1.2 * STRAIN * (1.0 + ANGLE)
+    measured = np.interp(np.mod(TURNS + math.pi, 2.0 * math.pi) - math.pi, ANGLE, other, left=0.0, right=0.0)
+    said = judged(measured, curves={"opposite": other})
+    assert said.startswith("the trace fits the compression fillet: ")
+    assert said.endswith("measured / computed 1; check fillet")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "words"),
+    [
+        (1e-3, "; with a unit 1000 times larger it is 1 times: check the unit of the strain"),
+        (1.1e6, "; with a unit 1e+06 times smaller it is 1.1 times: check the unit of the strain"),
+        (0.5, ", as of half the torque, or a quarter bridge evaluated as a half bridge; check torque and bridge"),
+        (2.0, ", as of twice the torque, or a half bridge evaluated as a quarter bridge; check torque and bridge"),
+        (0.7, ", as computed at 150 N m; check the torque of the trace"), (1.3, "; check load, gauge factor and"),
+        (1.0, ", within ±1.5 %"),
+    ],
+)  # fmt: skip
+def test_a_ratio_with_a_reason_is_named_by_it(ratio, words):
+    assert words in judged(ratio * strain(), torques={"150 N m": 0.7})
+    assert Otherwise().of_ratio(1.0, 0.01) == Otherwise().of_ratio(1.3, 0.01) == ""
+
+
+def test_a_difference_of_shape_makes_no_verdict_milder():
+    """The limit of a trace with noise is that of its noise, however large the residual of a wrong curve is."""
+    bent = 1.06 * strain() + 8e-5 * np.sin(40.0 * TURNS)  # too far off, and of another shape
+    said = judged(bent, brief=False)
+    assert "beyond ±1.5 %" in said  # of placement and load, nearly
+    assert "scatter 0.2" in said
+    noise = float(said.split("noise ")[1].split(" %")[0])
+    assert noise < 3.0
+    assert float(said.split("residual ")[1].split(" %")[0]) > 5.0
+
+
+def test_what_is_left_out_is_counted_and_drawn_otherwise():
+    measured = strain()
+    inside = np.flatnonzero(np.abs(np.mod(TURNS + math.pi, 2.0 * math.pi) - math.pi) < 0.3)
+    measured[inside[::17]] += 5e-3
+    found = fit_curve(TURNS, measured, ANGLE, STRAIN, ("offset",))
+    count = inside[::17].size
+    assert left_out(found).startswith(f"{count} of {found.samples + count} samples are spikes or dropouts; left out")
+    assert drawn_as(found).endswith(" Crosses: samples left out of the comparison.")
+    cut = fit_curve(TURNS, np.minimum(strain(), 6e-4), ANGLE, STRAIN, ("offset", "scale"))
+    assert left_out(cut).endswith(
+        "samples are saturated at 600 µm/m (range of the amplifier); left out of the comparison, drawn as crosses"
+    )
+    assert "samples are saturated at 600 µm/m" in verdict(cut, 9e-4, 1e-5, 0.0, 0.01, brief=True)
+    clean = fit_curve(TURNS, strain(), ANGLE, STRAIN)
+    assert left_out(clean) == left_out(None) == drawn_as(clean) == drawn_as(None) == ""
+
+
+def encoders(te, sign=1.0, sense=1.0, teeth=24, at=1.0):
+    """A trace of two turns with eccentricity and noise."""
+    angle = np.linspace(0.0, 4.0 * math.pi, 24 * 2 * 40, endpoint=False)
+    phase = np.mod(sense * teeth * angle, 2.0 * math.pi)
+    found = sign * np.interp(phase, _PHASE, te) + 5e-6 * np.sin(angle)
+    return at * angle, found + np.random.default_rng(2).normal(0.0, 2e-8, angle.size)
+
+
+@pytest.mark.parametrize(
+    ("trace", "words"),
+    [
+        ({"te": HEAVY, "sign": -1.0}, "with its sign reversed"), ({"te": HEAVY, "sense": -1.0}, "with its angle rev"),
+        ({"te": LIGHT}, "as computed at 60 N m"), ({"te": HEAVY}, ""),
+    ],
+)  # fmt: skip
+def test_traces_of_encoders_that_are_described_wrongly_are_named(trace, words):
+    measured = measured_error(*encoders(**trace), 24, 36)
+    fit = ("offset", "scale")
+    fitted = beside_computed(measured, X, HEAVY, 8e-3, fit)
+    better = better_described(measured, fitted, X, {"": HEAVY, "60 N m": LIGHT}, 8e-3, fit)
+    said = OtherwiseError(better).said(fitted, float(np.ptp(HEAVY)))
+    assert said.startswith(f"the trace fits {words}") if words else said == ""
+
+
+def test_the_other_shaft_shows_in_the_orders():
+    right, wrong = (measured_error(*encoders(HEAVY, at=at), 24, 36) for at in (1.0, 24.0 / 36.0))
+    assert not orders_of_mate(right, 36)
+    angle, te = encoders(HEAVY, at=24.0 / 36.0)
+    long = np.concatenate([angle, angle + angle[-1] + angle[1]]), np.tile(te, 2)
+    assert orders_of_mate(measured_error(*long, 24, 36), 36)
+    assert wrong.spectrum.turns >= 1.0
+    assert "the ratio of the teeth being 1.5; check te_at" in OtherwiseError(ratio=1.5).of_ratio(1.49)
+    assert OtherwiseError(ratio=1.5).of_ratio(1.2) == OtherwiseError(ratio=1.0).of_ratio(1.02) == ""
+
+
+def test_spikes_of_encoders_change_neither_curve_nor_verdict():
+    angle, te = encoders(HEAVY)
+    spoiled = te.copy()
+    spoiled[50::97] += 3e-5
+    one, other = (measured_error(angle, each, 24, 36) for each in (te, spoiled))
+    assert one.spikes == 0
+    assert other.spikes == te[50::97].size
+    assert other.te == pytest.approx(one.te, abs=3e-8)
+    fits = [beside_computed(each, X, HEAVY, 8e-3, ("offset", "scale")) for each in (one, other)]
+    assert fits[1].gain == pytest.approx(fits[0].gain, rel=2e-3)
+
+
+def test_the_limit_of_encoders_is_the_scatter_between_teeth():
+    """Not the residual: of a curve of another shape the scatter stays what it is."""
+    measured = measured_error(*encoders(HEAVY), 24, 36)
+    bent = HEAVY + 2e-7 * np.sin(5.0 * _PHASE)
+    one, other = (beside_computed(measured, X, te, 8e-3, ("offset", "scale")) for te in (HEAVY, bent))
+    assert other.gain_error > 5.0 * one.gain_error
+    assert other.gain_scatter == pytest.approx(one.gain_scatter, rel=0.1)
+    few = replace(measured, by_teeth=measured.by_teeth[:2])
+    assert beside_computed(few, X, HEAVY, 8e-3, ("offset", "scale")).gain_scatter > 0.0
