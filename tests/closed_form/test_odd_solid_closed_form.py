@@ -402,3 +402,51 @@ def test_root_stress_without_motion_along_the_axis_is_that_of_plane_teeth(spur):
     assert np.delete(off, number).max() < 2e-4 + left  # the largest of both are looked for between their own positions
     assert left < 3e-4
     assert np.abs(after / before - 1.0)[[number - 1, number + 1]].min() > 2e-3
+
+
+def test_stress_intensity_without_motion_along_the_axis_is_that_of_the_plane():
+    """Loads even along the face: K of plane strain at every place, and no K_III."""
+    width = 3.0
+    found = solid({0: CRACK}, plane_strain=True, width=width, intensity=True)
+    mesh, settings = section_mesh(TOOTH, BORE, SETTINGS.section, None, frontal=True), SETTINGS.section
+    sector = cracked_sector(TOOTH, BORE, settings, CRACK)
+    plane = solve_odd_influence(TOOTH, mesh, {0: OddTooth(TOOTH, sector)}, 0.3, "strain", settings)
+    own = bands(RADII[1:], 0.0, 0.5 * width, 0.1, profile="even")
+    for j in (-1, 0, 1):
+        value, error = found.stress_intensity(0, j, own, [-1.2, 0.0, 0.7])
+        expected = plane.by_ring(0, j, RADII[1:], 0.1)[0] / width
+        largest = np.hypot(*expected).max()
+        assert np.abs(value - value[:, :1]).max() < 1e-10 * largest
+        assert np.abs(value[:2, 0] - expected).max() < 2e-3 * largest
+        assert np.abs(value[2]).max() < 1e-10 * largest
+        assert error.max() < 5e-3 * largest
+    with pytest.raises(RangeError, match="intensity=True"):
+        found.stress_intensity(1, 1, own, [0.0])
+    with pytest.raises(RangeError, match="outside the face width"):
+        found.stress_intensity(0, 0, own, [2.0])
+    with pytest.raises(InputError, match="spur gears only"):
+        solid({0: CRACK}, TAU, intensity=True)
+
+
+@pytest.mark.dear
+def test_stress_intensity_along_the_front_gives_back_the_energy():
+    """A load off the middle of the face, three modes: int G dz = dc/da / 2, and a mirrored load mirrors them."""
+    settings, width, step = SolidSettings().scaled(1.2), 3.0, 0.06
+    one, mirrored = (bands(np.array([10.2]), z, 0.5, 0.2) for z in (0.4, -0.4))
+
+    def solved(depth, **how):
+        crack = straight_crack(
+            TOOTH, mouth_at_tangent(TOOTH, math.radians(30.0)), math.radians(70.0), depth=depth
+        )  # fmt: skip
+        return solve_odd_solid(TOOTH, 0.0, width, 0.3, BORE, settings, odd={0: crack}, reach=1, **how)
+
+    low, high = (solved(0.5 + off).deflection(0, 0, one, one)[0, 0] for off in (-step, step))
+    found = solved(0.5, intensity=True)
+    x, weight = np.polynomial.legendre.leggauss(20)
+    k, error = (values[:, :, 0] for values in found.stress_intensity(0, 0, one, 0.5 * width * x))
+    release = (1.0 - 0.3**2) * (k[0] ** 2 + k[1] ** 2) + (1.0 + 0.3) * k[2] ** 2
+    assert 0.5 * width * weight @ release == pytest.approx(0.5 * (high - low) / (2.0 * step), rel=4e-3)
+    assert np.abs(k[2]).max() > 0.05 * k[0].max()
+    assert error.max() < 0.02 * k[0].max()
+    other = found.stress_intensity(0, 0, mirrored, -0.5 * width * x)[0][:, :, 0]
+    assert other == pytest.approx(k * np.array([[1.0], [1.0], [-1.0]]), abs=1e-9 * k[0].max())

@@ -104,7 +104,7 @@ class SectorElements:
         mapping = MappingAffine(self.grid, tind=chosen)
         return mapping.A, mapping.invA, np.abs(mapping.detA)
 
-    def basis(self, chosen: Index | None = None) -> Any:
+    def basis(self, chosen: Index | None = None, degree: int = _CURVED_DEGREE) -> Any:
         """scikit-fem's basis of the shape functions on elements, by default all, for integrals over curved ones.
 
         Raises
@@ -112,7 +112,7 @@ class SectorElements:
         InputError
             If an element is turned inside out.
         """
-        basis = self._basis(intorder=_CURVED_DEGREE, elements=chosen)
+        basis = self._basis(intorder=degree, elements=chosen)
         _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
         return basis
 

@@ -142,12 +142,16 @@ class FaceFunctions:
 
     def at(self, zeta: Array) -> tuple[Array, Array]:
         """Values and slopes of every function at places on the face, shape (count, P) each."""
-        slopes = np.zeros((self.count, zeta.size))
+        return self.values(zeta), self.derivatives(zeta, 1)
+
+    def derivatives(self, zeta: Array, order: int) -> Array:
+        """First, second, ... derivatives of every function at places on the face, shape (count, P)."""
+        found = np.zeros((self.count, zeta.size))
         for i, here, x in self._pieces(zeta):
-            falling = np.polynomial.legendre.legder(self._series[i], axis=1)
-            found = falling @ np.polynomial.legendre.legvander(x, self.degrees[i] - 1).T
-            slopes[self._numbers[i][:, None], here] = found * (2.0 / (self.breaks[i + 1] - self.breaks[i]))
-        return self.values(zeta), self._joined(slopes)
+            falling = np.polynomial.legendre.legder(self._series[i], order, axis=1)
+            own = falling @ np.polynomial.legendre.legvander(x, self.degrees[i] - order).T
+            found[self._numbers[i][:, None], here] = own * (2.0 / (self.breaks[i + 1] - self.breaks[i])) ** order
+        return self._joined(found)
 
     def values(self, zeta: Array) -> Array:
         """Values of every function at places on the face, shape (count, P)."""

@@ -15,10 +15,11 @@ by 2.6 % with eight rays whatever their size.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, Index
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import SectorElements
 from fegear.fem.plane.odd.cracked_sector import CrackedSector
@@ -56,14 +57,11 @@ def interaction(
         [1/sqrt(module)]: K is in units of stress times the root of a module, stress in line load per module. K_I opens
         the crack; K_II is positive where its left face, seen from the mouth, moves toward the tip.
     """
-    r1, r2 = (share * sector.room for share in ring)
-    tip = sector.tip[:, None] - elements.tip[:, 0]
-    corners = np.hypot(*(elements.grid.p - tip))[elements.grid.t]
-    chosen = np.flatnonzero((corners.min(axis=0) < r2) & (corners.max(axis=0) > r1))
     lam, mu = lame(poisson_ratio, plane)
     modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
     kappa = 3.0 - 4.0 * poisson_ratio if plane == "strain" else (3.0 - poisson_ratio) / (1.0 + poisson_ratio)
-    local = np.array([sector.way, [-sector.way[1], sector.way[0]]])  # rows: along the crack, and to its left
+    r1, r2 = (share * sector.room for share in ring)
+    chosen, tip, local = _around(sector, elements, r2, r1)
     basis = elements.vector_basis(chosen=chosen, degree=_DEGREE)
 
     at = np.einsum("ac,cmq->amq", local, np.asarray(basis.global_coordinates()) - tip[:, :, None])
@@ -75,6 +73,46 @@ def interaction(
         )
         found.append(np.bincount(basis.element_dofs.ravel(), of_function.ravel(), basis.N))
     return np.asarray(0.5 * modulus * np.stack(found, axis=1), dtype=float)
+
+
+def _around(
+    sector: CrackedSector, elements: SectorElements, outer: float, inner: float = 0.0
+) -> tuple[Index, Array, Array]:
+    """Elements with a part between two circles around the tip, where it is, and the crack's axes as rows."""
+    tip = sector.tip[:, None] - elements.tip[:, 0]
+    corners = np.hypot(*(elements.grid.p - tip))[elements.grid.t]
+    chosen = np.flatnonzero((corners.min(axis=0) < outer) & (corners.max(axis=0) > inner))
+    return chosen, tip, np.array([sector.way, [-sector.way[1], sector.way[0]]])  # along the crack, and to its left
+
+
+def ring_fields(
+    sector: CrackedSector, elements: SectorElements, ring: tuple[float, float]
+) -> tuple[Any, Array, Array, Array, Array]:
+    """Shape functions of the elements within a ring's outer circle, and where the ring's q is and falls.
+
+    Returns
+    -------
+    basis : skfem.Basis
+        Scalar.
+    local : ndarray, shape (2, 2)
+        Rows: along the crack, and to its left.
+    at : ndarray, shape (2, M, Q)
+        Places of the quadrature from the tip, in these axes [modules].
+    q : ndarray, shape (M, Q)
+    fall : ndarray, shape (2, M, Q)
+        Gradient of q.
+    """
+    r1, r2 = (share * sector.room for share in ring)
+    chosen, tip, local = _around(sector, elements, r2)
+    basis = elements.basis(chosen, _DEGREE)
+    at = np.einsum("ac,cmq->amq", local, np.asarray(basis.global_coordinates()) - tip[:, :, None])
+    return basis, local, at, _share(np.hypot(*at), r1, r2), _fall(at, r1, r2)
+
+
+def _share(r: Array, r1: float, r2: float) -> Array:
+    """q = 1 - 10 w^3 + 15 w^4 - 6 w^5 over the ring, one within it and zero beyond."""
+    w = np.clip((r - r1) / (r2 - r1), 0.0, 1.0)
+    return np.asarray(1.0 - w**3 * (10.0 - 15.0 * w + 6.0 * w**2))
 
 
 def by_faces(sector: CrackedSector, places: Array, ring: tuple[float, float] = RINGS[0]) -> Array:
@@ -92,15 +130,13 @@ def by_faces(sector: CrackedSector, places: Array, ring: tuple[float, float] = R
     """
     r1, r2 = (share * sector.room for share in ring)
     r = np.hypot(*(places - sector.tip[:, None]))
-    w = np.clip((r - r1) / (r2 - r1), 0.0, 1.0)
-    q = 1.0 - w**3 * (10.0 - 15.0 * w + 6.0 * w**2)
-    return np.stack([q * np.sqrt(2.0 / (math.pi * r)), np.zeros(r.shape)])
+    return np.stack([_share(r, r1, r2) * np.sqrt(2.0 / (math.pi * r)), np.zeros(r.shape)])
 
 
 def _weights(mode: int, at: Array, ring: tuple[float, float], lam: float, mu: float, kappa: float) -> Array:
     """By what a displacement's gradient du_a/dx_b, along the crack and to its left, enters: shape (2, 2, ...)."""
     fall = _fall(at, *ring)
-    slope, stress = _williams(mode, at, mu, kappa)
+    slope, stress = williams(mode, at, mu, kappa)
     # s_ij u^a_i,1 q_,j of the strain, by Hooke's law; s^a_ij u_i,1 q_,j; s^a_ij e_ij q_,1.
     product = slope[:, None] * fall[None]
     found = mu * (product + product.transpose(1, 0, 2, 3)) - stress * fall[0]
@@ -117,7 +153,7 @@ def _fall(at: Array, r1: float, r2: float) -> Array:
     return np.asarray(-30.0 * (w * (1.0 - w)) ** 2 / (r2 - r1) * at / np.maximum(r, 1e-300))
 
 
-def _williams(mode: int, at: Array, mu: float, kappa: float) -> tuple[Array, Array]:
+def williams(mode: int, at: Array, mu: float, kappa: float) -> tuple[Array, Array]:
     """Williams' first term with unit stress intensity, in components along the crack and to its left.
 
     Returns

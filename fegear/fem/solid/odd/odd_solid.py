@@ -18,6 +18,7 @@ from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.fillet import SolidFillet, surface_stress
 from fegear.fem.solid.flank_body import SolidFlank
+from fegear.fem.solid.odd.front_intensity import DERIVATIVES, MODES
 from fegear.fem.solid.odd.odd_window import OddWindow
 from fegear.fem.solid.solution import SolidSolution
 
@@ -209,6 +210,45 @@ class OddSolid(SolidFlank):
         moved = self.moved(i, j, side, loads_of(pressed, self.flank_of(j), self.face))
         return self.surface_stress(i, side, moved, zeta)
 
+    def stress_intensity(self, i: int, j: int, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
+        """K_I, K_II and K_III along the front of the crack of tooth i per unit force on bands of tooth j.
+
+        Parameters
+        ----------
+        i, j : int
+        pressed : Bands
+            P of them.
+        zeta : array_like, shape (Z,)
+            Places along the face [modules].
+
+        Returns
+        -------
+        value, error : ndarray, shape (3, Z, P)
+            [1/module^1.5]; the error is what another ring of integration changes. K_III is positive where the left
+            face of the crack, seen from the mouth, moves along z. At the ends of the front there is no such K.
+
+        Raises
+        ------
+        RangeError
+            If a place lies off the face; if the tooth has no crack, or its rows were not asked for.
+        """
+        z, found = self._on_face(zeta), self._window(i, j)
+        rows = np.zeros((0, 1)) if found is None else found[0].front(
+            *found[1:], loads_of(pressed, self.flank_of(j), self.face)
+        )  # fmt: skip
+        if not rows.size:
+            raise RangeError("tooth", i, "has no crack whose stress intensity was asked for (intensity=True)")
+        along = np.stack([self.face.values(z), *(self.face.derivatives(z, order) for order in (1, 2))])
+        by = rows.reshape(-1, MODES, DERIVATIVES, self.face.count, rows.shape[1])
+        usual, other = np.einsum("rmdkp,dkz->rmzp", by, along)
+        return usual, np.abs(usual - other)
+
+    def _on_face(self, zeta: ArrayLike) -> Array:
+        z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
+        if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
+            raise RangeError("zeta", f"{off[0]:.6g} modules", f"is outside the face width, {-half:.6g} to {half:.6g}")
+        return z
+
     def is_missing(self, tooth: int) -> bool:
         """Whether there is no such tooth."""
         found = self._window(tooth, tooth)
@@ -230,9 +270,7 @@ class OddSolid(SolidFlank):
         RangeError
             If a place lies off the face.
         """
-        z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
-        if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
-            raise RangeError("zeta", f"{off[0]:.6g} modules", f"is outside the face width, {-half:.6g} to {half:.6g}")
+        z = self._on_face(zeta)
         fillet = self.kind_of(tooth)[1][side]
         return surface_stress(fillet, self.tau, self.poisson_ratio, moved, *self.face.at(z))
 

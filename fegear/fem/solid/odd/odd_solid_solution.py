@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -11,20 +12,23 @@ from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.body import with_body
+from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.odd.crack import Crack
 from fegear.fem.plane.odd.cracked_sector import CrackedSector, cracked_sector
 from fegear.fem.plane.odd.odd_ring import odd_ring
 from fegear.fem.plane.odd.other_outline import Missing
 from fegear.fem.plane.odd.other_sector import empty_sector
+from fegear.fem.solid.odd.front_intensity import front_rows
 from fegear.fem.solid.odd.odd_solid import OddSolid
 from fegear.fem.solid.odd.odd_window import TOUCHED, OddWindow
-from fegear.fem.solid.odd.solid_kind import KindOfMotion, SolidKind, between, motion, solid_kind
+from fegear.fem.solid.odd.solid_kind import SolidKind, between, motion, solid_kind
 from fegear.fem.solid.sector import SolidSector, solid_sector
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import SolvedSector, solve_with_sector
 
 if TYPE_CHECKING:
+    from fegear.base.arrays import Array
     from fegear.fem.plane.sector_sides import BetweenSides
     from fegear.geometry.gear_body import GearBody
     from fegear.geometry.involute_tooth import InvoluteTooth
@@ -47,6 +51,7 @@ def solve_odd_solid(
     body: GearBody | None = None,
     mesh: SectorMesh | None = None,
     plane_strain: bool = False,
+    intensity: bool = False,
 ) -> OddSolid:
     """Solve a solid ring with odd teeth for all that can be asked of its flanks and fillets.
 
@@ -57,6 +62,8 @@ def solve_odd_solid(
     odd : mapping of int to Crack, Missing or SectorMesh
         By the number of the tooth: a crack through the whole face, straight along it (along the helix of a helical
         gear), whose faces do not touch; no tooth; or a mesh of its section, sides as the ordinary one's.
+    intensity : bool
+        Whether stress intensity along cracks will be asked for, of spur gears; it takes memory.
 
     Raises
     ------
@@ -71,6 +78,7 @@ def solve_odd_solid(
     settings, started = settings or SolidSettings(), time.perf_counter()
     z = tooth.teeth
     _refuse(odd, z, tooth, body)
+    _refuse_intensity(tau, intensity=intensity)
     usual = solve_with_sector(
         tooth, tau, width, poisson_ratio, bore_radius, settings, reach=reach, body=body, mesh=mesh,
         plane_strain=plane_strain,
@@ -88,16 +96,19 @@ def solve_odd_solid(
         for number, one in odd.items():
             first = next(other for other, what in odd.items() if what is one or what == one)
             if first not in parts:
-                section, mouth, back = _section(tooth, bore_radius, settings, body, one)
-                sector = sector_of(section)
-                parts[first] = tuple(between(sector, alone) for alone in sector.halves())
+                section, cracked = _section(tooth, bore_radius, settings, body, one)
+                sector, rows = sector_of(section), None
+                if cracked is not None and intensity:
+                    whole = replace(cracked, mesh=section)
+                    rows = front_rows(whole, poisson_ratio, sector_elements(section, settings.section.order))
+                parts[first] = tuple(between(sector, alone, expandable=rows is not None) for alone in sector.halves())
                 if not isinstance(one, Missing):
-                    kinds[first] = solid_kind(sector, _motions(sector, parts[first]), mouth, back=back)
+                    kinds[first] = _kind(sector, parts[first], cracked, rows)
             parts[number] = parts[first]
             if first in kinds:
                 kinds[number] = kinds[first]
         condensed = time.perf_counter()
-        ordinary = solid_kind(usual.sector, _motions(usual.sector, usual.parts))
+        ordinary = _kind(usual.sector, usual.parts)
         windows = tuple(_window(usual, ordinary, kinds, parts, group, z) for group in _groups(list(odd), z))
     seconds = {
         **usual.solution.seconds, "odd sectors": condensed - solved, "odd ring": time.perf_counter() - condensed,
@@ -106,8 +117,22 @@ def solve_odd_solid(
     return OddSolid(usual.solution, windows, seconds)
 
 
-def _motions(sector: SolidSector, parts: tuple[BetweenSides, ...]) -> tuple[KindOfMotion, ...]:
-    return tuple(motion(sector, alone, part) for alone, part in zip(sector.halves(), parts, strict=True))
+def _kind(
+    sector: SolidSector,
+    parts: tuple[BetweenSides, ...],
+    cracked: CrackedSector | None = None,
+    front: Array | None = None,
+) -> SolidKind:
+    """What stands in a sector that is condensed."""
+    motions = tuple(motion(sector, alone, part, front) for alone, part in zip(sector.halves(), parts, strict=True))
+    if cracked is None:
+        return solid_kind(sector, motions)
+    return solid_kind(sector, motions, cracked.mouth, back=cracked.back)
+
+
+def _refuse_intensity(tau: float, *, intensity: bool) -> None:
+    if intensity and tau != 0.0:
+        raise InputError("intensity", "true", "is available for spur gears only (the crack front runs along the axis)")
 
 
 def _refuse(odd: Mapping[int, SolidOddity], teeth: int, tooth: InvoluteTooth, body: GearBody | None) -> None:
@@ -123,20 +148,16 @@ def _refuse(odd: Mapping[int, SolidOddity], teeth: int, tooth: InvoluteTooth, bo
 
 def _section(
     tooth: InvoluteTooth, bore_radius: float, settings: SolidSettings, body: GearBody | None, one: SolidOddity
-) -> tuple[SectorMesh, float, bool]:
-    """Mesh of an odd sector, where a crack starts up its fillet, and whether that is the back one."""
-    mouth, back = float("nan"), False
+) -> tuple[SectorMesh, CrackedSector | None]:
+    """Mesh of an odd sector, and where its crack is."""
     if isinstance(one, SectorMesh):
-        return one, mouth, back
+        return one, None
     inside = bore_radius if body is None else body.rim_radius
-    if isinstance(one, Missing):
-        mesh = empty_sector(tooth, inside, settings.section)
-    else:
-        cracked: CrackedSector = cracked_sector(tooth, inside, settings.section, one)
-        mesh, mouth, back = cracked.mesh, cracked.mouth, cracked.back
+    cracked = None if isinstance(one, Missing) else cracked_sector(tooth, inside, settings.section, one)
+    mesh = empty_sector(tooth, inside, settings.section) if cracked is None else cracked.mesh
     if body is not None:
         mesh = with_body(mesh, body, bore_radius, settings.section.rim_fraction, settings.body_layers)
-    return mesh, mouth, back
+    return mesh, cracked
 
 
 def _groups(numbers: list[int], teeth: int) -> list[list[int]]:

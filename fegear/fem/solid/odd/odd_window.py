@@ -125,3 +125,21 @@ class OddWindow:
             found[here.fillets[side]] = felt + here.fillet_own[side] @ on if i == j else felt
         of_nodes = found.reshape(nodes, 3, *found.shape[1:])
         return np.asarray(np.einsum("ncd,ndkr->nckr", watched.axes[side], of_nodes, optimize=True))
+
+    def front(self, i: int, j: int, loads: Array) -> Array:
+        """Stress intensity of the crack of tooth i by functions along the face, under loads on the flank of tooth j.
+
+        Parameters and errors as of `moved`.
+
+        Returns
+        -------
+        ndarray, shape (rows, P)
+            As of `KindOfMotion`; no rows where none were asked for.
+        """
+        watched, loaded = self.kind(i), self.kind(j)
+        found = np.zeros((watched.motions[0].front_own.shape[0], loads.shape[1]))
+        for ring, here, there in zip(self.rings, watched.motions, loaded.motions, strict=True):
+            on = loads[there.flank]
+            felt = here.front_follows @ (ring.between(i, j) @ (there.flank_follows.T @ on))
+            found += felt + here.front_own @ on if i == j else felt
+        return found

@@ -36,6 +36,9 @@ class KindOfMotion(ReadOnlyArrays):
         Which unknowns of a fillet, and with which functions along the face.
     fillet_follows, fillet_own : mapping of side to ndarray, shape (., 2 m) and (., n)
         Their motion likewise.
+    front_follows, front_own : ndarray, shape (rows, 2 m) and (rows, n)
+        Stress intensity along the front of a crack likewise, by ring, mode, derivative and function along the face
+        (`front_intensity`); no rows where it is not asked for.
     """
 
     flank: Index
@@ -44,6 +47,8 @@ class KindOfMotion(ReadOnlyArrays):
     fillets: Mapping[Side, tuple[Index, Index]]
     fillet_follows: Mapping[Side, Array]
     fillet_own: Mapping[Side, Array]
+    front_follows: Array
+    front_own: Array
 
 
 @dataclass(frozen=True)
@@ -68,25 +73,49 @@ class SolidKind(ReadOnlyArrays):
     motions: tuple[KindOfMotion, ...]
 
 
-def between(sector: SolidSector, alone: Unknowns) -> BetweenSides:
-    """Condense a sector onto its sides and ports, in motions that are solved apart."""
+def between(sector: SolidSector, alone: Unknowns, *, expandable: bool = False) -> BetweenSides:
+    """Condense a sector onto its sides and ports, in motions that are solved apart.
+
+    `expandable`, it can be asked for what of its inside follows these.
+    """
     sides = sector.sides
     inner = np.setdiff1d(np.concatenate([sector.ports, *sector.seen.values()]), np.concatenate(sides))
-    condensed = condense_solid(sector.section, sector.joined, alone, np.concatenate([*sides, inner]))
+    condensed = condense_solid(
+        sector.section, sector.joined, alone, np.concatenate([*sides, inner]), expandable=expandable
+    )
     return between_sides(condensed, alone.of(sides[0]).size, None)
 
 
-def motion(sector: SolidSector, alone: Unknowns, part: BetweenSides) -> KindOfMotion:
-    """Flank and fillets of a sector that is condensed between its sides."""
+def motion(sector: SolidSector, alone: Unknowns, part: BetweenSides, front: Array | None = None) -> KindOfMotion:
+    """Flank and fillets of a sector that is condensed between its sides, and the `front_rows` of its crack."""
     follow, ports = np.hstack([part.follow_a, part.follow_b]), sector.ports
     run = ports_of(part.sector, alone.of(ports))
     rows = {side: ports_of(part.sector, alone.of(seen)) for side, seen in sector.seen.items()}
     on_flank = sector.known.number[ports] >= 0
+    forces = np.zeros((0, follow.shape[0])) if front is None else _collected(sector, alone, part, front)
     return KindOfMotion(
         np.flatnonzero((alone.number[ports] >= 0)[on_flank]), follow[run], part.own[np.ix_(run, run)],
         sector.fillet_unknowns(alone), {side: follow[row] for side, row in rows.items()},
-        {side: part.own[np.ix_(row, run)] for side, row in rows.items()},
+        {side: part.own[np.ix_(row, run)] for side, row in rows.items()}, forces @ follow, forces @ part.own[:, run],
     )  # fmt: skip
+
+
+def _collected(sector: SolidSector, alone: Unknowns, part: BetweenSides, front: Array) -> Array:
+    """Functionals of the displacement as weights of a condensed sector's ports, shape (rows, ports).
+
+    Parameters
+    ----------
+    sector, alone, part
+        As of `motion`; expandable.
+    front : ndarray, shape (rings, modes, derivatives, N, 3)
+    """
+    number, functions = alone.number[:, sector.columns], sector.face.count
+    along_axes = np.einsum("ncd,rabnc->rabnd", sector.section.axes, front).reshape(-1, number.shape[0])
+    weights = np.zeros((alone.size, along_axes.shape[0], functions))
+    for function in range(functions):
+        there = np.flatnonzero(number[:, function] >= 0)
+        weights[number[there, function], :, function] = along_axes[:, there].T
+    return np.asarray(part.sector.collect(weights.reshape(alone.size, -1)).T)
 
 
 def solid_kind(
