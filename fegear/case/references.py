@@ -82,6 +82,7 @@ def _of_train(part: TrainPart) -> Iterator[tuple[str, str | None, str]]:
         yield from ((f"train.mesh.{name}.{role}", getattr(mesh, role), "body") for role in ("driver", "driven"))
         yield f"train.mesh.{name}.pair", part.pair_of(name), "pair"
         yield f"train.mesh.{name}.like.pair", part.loaded_pair_of(name), "pair"
+        yield f"train.mesh.{name}.back_pair", mesh.back_pair, "pair"
     for name, damper in part.damper.items():
         yield from ((f"train.damper.{name}.{end}", getattr(damper, end), "body") for end in ("a", "b"))
     yield from (("train.torque", torque, "body") for torque in part.torque)

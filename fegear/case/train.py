@@ -135,6 +135,11 @@ class TrainMeshPart(Part):
         description='Backlash along the line of action, or "unlimited" (no back-side contact). Default: from tooth '
         "thickness and centre distance, at least zero.",
     )
+    back_pair: str | None = Field(
+        default=None,
+        description="Pair of the same gears with driver and driven exchanged, which loads the other flanks of "
+        "asymmetric teeth: their stiffness in back-side contact.",
+    )
     phase: Number = Field(default=0.0, description="Mesh phase at time zero, in base pitches.")
 
     @model_validator(mode="after")

@@ -57,8 +57,12 @@ class _Event:
 def reference(
     system: FourInertia, rpm: float, amplitude: float, periods: int, method: str, rtol: float,
     start: Array | None = None, mesh: tuple[tuple[float, ...], tuple[float, ...]] = (STIFFNESS, JUMPS), looked: int = 2,
+    behind: float = 0.0,
 ) -> tuple[float, int, Array]:  # fmt: skip
-    """By scipy: largest mesh force and contact changes over the last periods, and the state at the end."""
+    """By scipy: largest mesh force and contact changes over the last periods, and the state at the end.
+
+    `behind` is a constant stiffness of the back flanks [N/m]; without it they are as stiff as the others.
+    """
     stiffness, jumps = mesh
     mean = np.dot(stiffness, np.diff(jumps, prepend=0.0))
     j = np.array([system.motor, system.gear_1, system.gear_2, system.load])
@@ -74,7 +78,7 @@ def reference(
     def force(t: float, y: Array, mode: int, k: float) -> float:
         rate = R * (y[5] - y[6])
         x = R * (y[1] - y[2])
-        return (k * (x - e(t)) + cg * rate, 0.0, k * (x + s) + cg * rate)[mode]
+        return (k * (x - e(t)) + cg * rate, 0.0, (behind or k) * (x + s) + cg * rate)[mode]
 
     def rhs(t: float, y: Array, mode: int, k: float) -> Array:
         a, b = ks * (y[0] - y[1]) + cs * (y[4] - y[5]), ks * (y[2] - y[3]) + cs * (y[6] - y[7])

@@ -5,16 +5,18 @@ right-hand side, events; it shares no code with the integrator.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.back_flanks import BackFlanks
 from fegear.dynamics.train.charts import FourInertia
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
-from fegear.verify.rigs import CASES, R, four_inertia, reference, shooting
+from fegear.verify.rigs import CASES, R, excitation, four_inertia, reference, shooting
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -36,6 +38,25 @@ def test_scipy_started_on_the_steady_motion_stays_on_it(name):
     for part in (slice(0, 4), slice(4, 8)):
         before, after = twist @ start[part], twist @ end[part]
         assert np.max(np.abs(after - before)) < 1e-9 * np.max(np.abs(before))
+
+
+@pytest.mark.parametrize("behind", [1.7e8, 6.0e8])
+def test_back_flanks_of_another_stiffness_push_with_it(behind):
+    """As above, the back flanks with a stiffness of their own."""
+    rpm, backlash, amplitude, force, shaft = next(one for name, one in CASES.items() if "back-side" in name)
+    system = four_inertia(force, backlash, shaft)
+    train = system.train(0.64 * 4.2e8 + 0.36 * 2.6e8)
+    of_own = replace(excitation(amplitude), back=BackFlanks(Periodic.constant(behind), -0.4))
+    state = steady_state(MotionModel(train, (of_own,), rpm * math.pi / 30), tolerance=1e-11)
+    path = state.trajectory(1)
+    start = np.concatenate([path.angles(0.0), path.angles(0.0, 1)])
+    largest, _, end = reference(system, rpm, amplitude, 2 * state.periods, "DOP853", 1e-12, start, behind=behind,
+                                looked=2 * state.periods)  # fmt: skip
+    assert state.behind[0] > 0
+    assert state.largest[0] / force == pytest.approx(largest / force, abs=1e-9)
+    twist = np.array([[1, -1, 0, 0], [0, 1, -1, 0], [0, 0, 1, -1]])
+    before, after = twist @ start[4:], twist @ end[4:]
+    assert np.max(np.abs(after - before)) < 1e-8 * np.max(np.abs(before))
 
 
 @pytest.mark.dear

@@ -37,6 +37,8 @@ def train_part(scene: Scene) -> TrainPart:
 def check_train(scene: Scene) -> None:
     """Refuse trains that cannot turn, before anything is computed."""
     part = train_part(scene)
+    for mesh in part.mesh:
+        _check_back(scene, part, mesh)
     train = build_train(train_inputs(scene).spec)
     forces = static_forces(train)
     _check_flanks(scene, part, a_drives(train))
@@ -50,6 +52,25 @@ def check_train(scene: Scene) -> None:
                 f"differs from the mean force of {force:.8g} N that train.torque puts on mesh {name}",
                 "make the load and the torques agree",
             )  # fmt: skip
+
+
+def _check_back(scene: Scene, part: TrainPart, mesh: str) -> None:
+    """Refuse a pair of back flanks that is none."""
+    name = part.mesh[mesh].back_pair
+    if name is None:
+        return
+    key, value, front = f"train.mesh.{mesh}.back_pair", f'"{name}"', part.pair_of(mesh)
+    this, other = ([scene.written.get(gear, gear) for gear in (pair.driver, pair.driven)]
+                   for pair in (scene.case.pair[front], scene.case.pair[name]))  # fmt: skip
+    if not scene.pairs[front].asymmetric:
+        raise InputError(key, value, "requires asymmetric teeth", "remove it: equal flanks are equally stiff")
+    if part.mesh[mesh].like is not None:
+        raise InputError(key, value, "is not available for a mesh with like", "remove it, or like")
+    if this != other[::-1]:
+        raise InputError(
+            key, value, f"must be a pair of the gears of pair {front} with driver and driven exchanged",
+            f'set driver = "{this[1]}" and driven = "{this[0]}" in [pair.{name}]',
+        )  # fmt: skip
 
 
 def _check_flanks(scene: Scene, part: TrainPart, drives: tuple[bool, ...]) -> None:
@@ -75,6 +96,7 @@ class MeshTeeth:
     """Whose teeth a mesh has: those of a loaded pair, or unmodified ones like them, so many times as wide.
 
     `odd`: whether some of them differ from the others. `halves`: 2 of a double helical pair, whose teeth are one half.
+    `back`: the pair that loads their other flanks, if one is named.
     """
 
     pair: str
@@ -82,6 +104,7 @@ class MeshTeeth:
     width_ratio: float = 1.0
     odd: bool = False
     halves: int = 1
+    back: str = ""
 
 
 @dataclass(frozen=True)
@@ -151,7 +174,8 @@ def _teeth(scene: Scene, part: TrainPart, name: str) -> MeshTeeth:
     like, pair = part.mesh[name].like, part.loaded_pair_of(name)
     odd = like is None and bool(odd_gears_of(scene, pair))
     halves = scene.case.pair[pair].halves
-    return MeshTeeth(pair, like is not None, like.width_ratio if like else 1.0, odd, halves)
+    back = part.mesh[name].back_pair or ""
+    return MeshTeeth(pair, like is not None, like.width_ratio if like else 1.0, odd, halves, back)
 
 
 def _shaft(name: str, part: ShaftPart) -> ShaftSpec:

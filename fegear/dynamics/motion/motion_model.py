@@ -169,7 +169,7 @@ class MotionModel:
     def mesh_periods(self) -> tuple[Fraction, ...]:
         """Period of each gear pair's excitation in turns of the first body."""
         return tuple(
-            Fraction(math.lcm(*(f.pitches for f in (*e.stiffness, *e.separation)))) / order
+            Fraction(math.lcm(*(f.pitches for f in _functions(e)))) / order
             for e, order in zip(self.excitations, self.train.mesh_orders, strict=True)
         )
 
@@ -232,6 +232,12 @@ class MotionModel:
             momentary=np.array([m.damping_law == "momentary" for m in train.meshes]),
             swings=self._swings(shapes),
         )
+
+
+def _functions(excitation: MeshExcitation) -> tuple[Periodic, ...]:
+    """All functions that a motion repeats with."""
+    back = () if excitation.back is None else (excitation.back.stiffness,)
+    return (*excitation.stiffness, *excitation.separation, *back)
 
 
 def friction_loss_torque(model: MotionModel) -> Array:
@@ -372,20 +378,24 @@ def on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
 
 def _spring_tables(
     parts: MotionParts, length: float, force: float
-) -> tuple[list[tuple[int, float, Array, Array, int]], int]:
-    """(mesh, side, cuts, polynomials, pitches) of each spring in units, and their common degree."""
+) -> tuple[list[tuple[int, float, Array, Array, int, float]], int]:
+    """(mesh, side, cuts, polynomials, pitches, shift) of each spring in units, and their common degree."""
     springs = []
     for m, (backlash, excitation) in enumerate(zip(parts.backlash, parts.excitations, strict=True)):
         none = Periodic.constant(0.0)
         for j, (k, e) in enumerate(zip(excitation.stiffness, excitation.separation, strict=True)):
             a, b = excitation.friction[j] if excitation.friction else (none, none)
-            springs.append((m, 1.0 if excitation.parting else 0.0, (k, e, a, b)))
+            springs.append((m, 1.0 if excitation.parting else 0.0, (k, e, a, b), 0.0))
         if math.isfinite(backlash) and excitation.parting:
-            total = excitation.total_stiffness() if len(excitation.stiffness) > 1 else excitation.stiffness[0]
-            springs.append((m, -1.0, (total, Periodic.constant(-float(backlash)), none, none)))
-    degree = max(part.coefficients.shape[1] - 1 for _, _, own in springs for part in own)
+            total, shift = excitation.stiffness[0], 0.0
+            if excitation.back is not None:
+                total, shift = excitation.back.stiffness, excitation.back.shift
+            elif len(excitation.stiffness) > 1:
+                total = excitation.total_stiffness()
+            springs.append((m, -1.0, (total, Periodic.constant(-float(backlash)), none, none), shift))
+    degree = max(part.coefficients.shape[1] - 1 for _, _, own, _ in springs for part in own)
     found = []
-    for m, side, own in springs:
+    for m, side, own, shift in springs:
         pitches = math.lcm(*(part.pitches for part in own))
         cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in own])) / pitches
         cuts = cuts[np.append(True, np.diff(cuts) > 1e-11)]
@@ -393,7 +403,7 @@ def _spring_tables(
         table = np.stack([on_breaks(part, cuts, pitches, degree) for part in own], axis=1)
         table[:, 0] *= length / force
         table[:, 1] /= length
-        found.append((m, side, cuts, table, pitches))
+        found.append((m, side, cuts, table, pitches, shift))
     return found, degree
 
 
@@ -433,7 +443,7 @@ def pack(model: Moving) -> Packed:
         mesh_of=mesh_of,
         side=np.array([s[1] for s in springs]),
         rate=np.array([parts.frequency[s[0]] / s[4] for s in springs]) * time,
-        phase=np.array([parts.excitations[s[0]].phase / s[4] for s in springs]),
+        phase=np.array([(parts.excitations[s[0]].phase + s[5]) / s[4] for s in springs]),
         first=np.concatenate([[0], np.cumsum(pieces)]).astype(np.int64),
         cuts=np.concatenate([s[2] for s in springs]),
         poly=np.concatenate([s[3] for s in springs]).reshape(-1, 4, degree + 1),

@@ -29,7 +29,8 @@ def excitations_at(asked: MotionSpec, data: GearTrain, speed: float) -> tuple[Me
         if not asked.parametric:
             # Mark's (2.9b): constant stiffness, all fluctuation in the transmission error
             flat = MeshExcitation.from_mesh(Periodic.constant(mesh.stiffness), one.error.plus(-one.error.mean))
-            found.append(replace(flat, phase=excitation.phase, parting=asked.contact_loss))
+            back = None if one.back is None else one.back.even
+            found.append(replace(flat, phase=excitation.phase, parting=asked.contact_loss, back=back))
             continue
         if not asked.contact_loss:
             excitation = excitation.never_parting(one.force)
@@ -38,7 +39,7 @@ def excitations_at(asked: MotionSpec, data: GearTrain, speed: float) -> tuple[Me
                 excitation, mesh, one.pair.base_pitch, one.pair.working_pressure_angle, float(frequency), one.force,
                 asked.law.of(one.pair), a_drives=one.a_drives, internal=one.pair.internal,
             )  # fmt: skip
-        found.append(excitation)
+        found.append(replace(excitation, back=one.back))
     return tuple(found)
 
 

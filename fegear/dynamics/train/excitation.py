@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError, RangeError
 from fegear.contact.sign_changes import sign_changes
+from fegear.dynamics.train.back_flanks import BackFlanks
 from fegear.dynamics.train.periodic import Periodic, combine
 
 #: Divisions of a cell in which a spring comes to bear or lets go: to the last digit.
@@ -59,6 +60,8 @@ class MeshExcitation:
         Whether every tooth pair stands alone, so that it is a spring whether it bears or not.
     parting : bool
         Whether teeth part where their spring would pull; otherwise the gear pair is linear.
+    back : BackFlanks, optional
+        Of asymmetric teeth; other teeth are as stiff behind as in front.
     """
 
     stiffness: tuple[Periodic, ...]
@@ -68,6 +71,7 @@ class MeshExcitation:
     first_slot: int = 0
     slotted: bool = False
     parting: bool = True
+    back: BackFlanks | None = None
 
     def __post_init__(self) -> None:
         if not self.stiffness or len(self.stiffness) != len(self.separation):

@@ -18,6 +18,7 @@ from fegear.dynamics.train.train import Train
 from fegear.geometry.pair import GearPair, Member
 
 if TYPE_CHECKING:
+    from fegear.dynamics.train.back_flanks import BackFlanks
     from fegear.dynamics.train.excitation import MeshExcitation
 
 
@@ -93,6 +94,8 @@ class TrainMesh:
         Whether the train's body `a` of this mesh drives, and not body `b`.
     doubt : (float, float), optional
         Estimated errors of its mean stiffness [N/m] and of the peak-to-peak static transmission error [m].
+    back : BackFlanks, optional
+        Of asymmetric teeth whose back flanks are known.
     """
 
     pair: GearPair
@@ -101,6 +104,7 @@ class TrainMesh:
     force: float
     a_drives: bool = True
     doubt: tuple[float, float] | None = None
+    back: BackFlanks | None = None
 
     @classmethod
     def under(cls, pair: GearPair, excitation: MeshExcitation, force: float, *, a_drives: bool = True) -> TrainMesh:

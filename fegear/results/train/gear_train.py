@@ -39,10 +39,12 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded_pair import LoadedWidePair
+    from fegear.dynamics.train.back_flanks import BackFlanks
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import TrainMesh
     from fegear.dynamics.train.tooth_force import Pull
     from fegear.dynamics.train.train import Mesh
+    from fegear.dynamics.train.train_spec import MeshSpec
     from fegear.engine.sheet.seen import Seen
 
 
@@ -74,6 +76,7 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
         pair = part.loaded_pair_of(name)
         # teeth like those of another mesh are those of perfect gears
         needed.update(dict.fromkeys(needs_teeth(scene, pair) if mesh.like else (odd_teeth_task(scene, pair),)))
+        needed.update(dict.fromkeys(needs_teeth(scene, mesh.back_pair) if mesh.back_pair else ()))
     return tuple(needed)
 
 
@@ -114,6 +117,7 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     train = build_train(asked.spec)
     forces, forward = static_forces(train), a_drives(train)
     excitations: dict[str, MeshExcitation] = {}
+    backs: dict[str, BackFlanks] = {}
     for number, (name, teeth) in enumerate(asked.teeth.items()):
         pair, force, width = teeth.pair, abs(float(forces[number])), teeth.width_ratio
         if Task("loaded-flanks", pair) in upstream:
@@ -127,6 +131,8 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
                 engagement if forward[number] else engagement.reversed(), force / width or loaded.nominal
             )
         excitations[name] = found.widened(width)
+        if teeth.back:
+            backs[name] = _back(asked.spec.meshes[number], teeth, force, upstream, forward=forward[number])
         work.progress((number + 1) / len(asked.teeth))
     made = assemble(asked.spec, excitations)
     meshes = tuple(
@@ -134,7 +140,26 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
         if Task("loaded-flanks", teeth.pair) in upstream else one
         for teeth, one in zip(asked.teeth.values(), made.meshes, strict=True)
     )  # fmt: skip
-    return replace(made, meshes=meshes)
+    with_backs = tuple(replace(one, back=backs.get(name)) for name, one in zip(asked.teeth, meshes, strict=True))
+    return replace(made, meshes=with_backs)
+
+
+def _back(mesh: MeshSpec, teeth: MeshTeeth, force: float, upstream: Upstream, *, forward: bool) -> BackFlanks:
+    """Back flanks of a mesh under the torque of its mean force [N]."""
+    from fegear.dynamics.train.back_flanks import back_flanks, leverage
+    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
+    from fegear.dynamics.train.mesh_excitation import mesh_excitation
+    from fegear.results.pair.loaded_flanks import loaded_flanks  # late: a plan of plane pairs does without
+
+    load = force / leverage(mesh.pair)
+    if Task("loaded-flanks", teeth.back) in upstream:
+        flanks = loaded_flanks(upstream, teeth.back)
+        found = excitation_of_flanks(flanks, load / teeth.halves, forward=forward).widened(teeth.halves)
+    else:
+        loaded = loaded_pair(upstream, teeth.back)
+        engagement = loaded.engagement if forward else loaded.engagement.reversed()
+        found = mesh_excitation(engagement, load or loaded.nominal)
+    return back_flanks(mesh.pair if forward else mesh.pair.reversed(), found)
 
 
 def _doubt(data: LoadedWidePair, halves: int) -> tuple[float, float]:
@@ -182,6 +207,12 @@ class MeshRow:
     def mean_stiffness(self) -> float:
         """[N/m]."""
         return self.spring.stiffness
+
+    @property
+    @shows("N/um", "mean stiffness of the non-working flanks, along the line of action of the working flanks")
+    def back_stiffness(self) -> float | None:
+        """[N/m]; None where they are not known apart."""
+        return None if self.made.back is None else float(self.made.back.even.stiffness(0.0))
 
     @property
     @shows("um", "peak to peak of the static transmission error under the mean force")
@@ -253,6 +284,7 @@ _SHEET = Sheet(
             Number("axial_force", owner="{key}"),
             Number("mean_force", owner="{key}"),
             Number("mean_stiffness", lambda seen: seen.one.doubt[0], owner="{key}"),
+            Number("back_stiffness", owner="{key}"),
             Number("static_te_peak_to_peak", lambda seen: seen.one.doubt[1], owner="{key}"),
         ),
         Number("inertia", each=_bodies, owner="{key}", meaning="moment of inertia of body {key}: {one.sources}"),

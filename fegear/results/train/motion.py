@@ -102,12 +102,16 @@ def check_motion(scene: Scene, subject: str = "") -> None:
 
 def _check_back_sides(scene: Scene) -> None:
     """Refuse asymmetric teeth that might touch on their back flanks, whose stiffness a mesh does not have."""
-    for mesh in train_inputs(scene).spec.meshes if scene.case.effects.contact_loss else ():
-        if mesh.pair.asymmetric and math.isfinite(mesh.room):
+    if not scene.case.effects.contact_loss:
+        return
+    asked = train_inputs(scene)
+    for mesh in asked.spec.meshes:
+        if mesh.pair.asymmetric and math.isfinite(mesh.room) and not asked.teeth[mesh.name].back:
             raise InputError(
                 f"train.mesh.{mesh.name}.backlash", f"{mesh.room * 1e3:.6g} mm",
-                "must be unlimited for asymmetric teeth with loss of contact (back-side contact is not available)",
-                'set backlash = "unlimited"',
+                "requires back_pair for asymmetric teeth with loss of contact (stiffness of the other flanks)",
+                "set back_pair to a pair of the same gears with driver and driven exchanged, or "
+                'backlash = "unlimited"',
             )  # fmt: skip
 
 
