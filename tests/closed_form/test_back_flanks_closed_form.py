@@ -13,7 +13,6 @@ from fegear.case.reading import build_scene
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.back_flanks import BackFlanks, back_flanks, leverage
-from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -26,7 +25,7 @@ GEAR = {
     "rack": {"tip_radius": 0.15, "coast_tip_radius": 0.3}, "face_width": "10 mm", "bore_radius": "12 mm",
     "thickness_allowance": "30 um", "profile_shift": 0.1,
 }  # fmt: skip
-FLAT = MeshExcitation.from_mesh(Periodic.constant(2e8))
+FLAT = Periodic.constant(2e8)
 
 
 def case(results=("gear-train",), exchanged=False, mesh=(), **pair):

@@ -12,10 +12,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.periodic import Periodic, combine
 
 if TYPE_CHECKING:
-    from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.geometry.pair import GearPair
 
 
@@ -37,10 +36,8 @@ class BackFlanks:
     @property
     def even(self) -> BackFlanks:
         """The same with the mean stiffness at all positions: the reverse of the mean compliance."""
-        from fegear.dynamics.train.excitation import MeshExcitation
-
-        mean = 1.0 / MeshExcitation.from_mesh(self.stiffness).mean_compliance()
-        return BackFlanks(Periodic.constant(mean), self.shift)
+        mean = combine((self.stiffness,), lambda k: 1.0 / k).mean
+        return BackFlanks(Periodic.constant(1.0 / mean), self.shift)
 
 
 def leverage(pair: GearPair) -> float:
@@ -48,19 +45,19 @@ def leverage(pair: GearPair) -> float:
     return math.cos(pair.from_the_back.working_pressure_angle) / math.cos(pair.working_pressure_angle)
 
 
-def back_flanks(pair: GearPair, excitation: MeshExcitation) -> BackFlanks:
-    """Back flanks of a pair from the springs of these flanks, loaded on their own.
+def back_flanks(pair: GearPair, stiffness: Periodic) -> BackFlanks:
+    """Back flanks of a pair from the mesh stiffness of these flanks, loaded on their own.
 
     Parameters
     ----------
     pair : GearPair
         As it runs, seen from the working flanks.
-    excitation : MeshExcitation
-        Of the back flanks, which the driven gear loads; x counts toward its tip.
+    stiffness : Periodic
+        Of the back flanks, which the driven gear loads, along their line of action over x toward its tip [N/m].
     """
     driver = pair.driver
     radius = driver.base_radius / math.cos(pair.working_pressure_angle)
     thickness = float(driver.tooth.thickness_angle(radius / driver.module))
     room = max(pair.circumferential_backlash, 0.0) / radius
     shift = -(thickness + 0.5 * room) / driver.angular_pitch
-    return BackFlanks(excitation.total_stiffness().scaled(leverage(pair) ** 2), shift)
+    return BackFlanks(stiffness.scaled(leverage(pair) ** 2), shift)

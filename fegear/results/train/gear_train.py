@@ -159,7 +159,7 @@ def _back(mesh: MeshSpec, teeth: MeshTeeth, force: float, upstream: Upstream, *,
         loaded = loaded_pair(upstream, teeth.back)
         engagement = loaded.engagement if forward else loaded.engagement.reversed()
         found = mesh_excitation(engagement, load or loaded.nominal)
-    return back_flanks(mesh.pair if forward else mesh.pair.reversed(), found)
+    return back_flanks(mesh.pair if forward else mesh.pair.reversed(), found.total_stiffness())
 
 
 def _doubt(data: LoadedWidePair, halves: int) -> tuple[float, float]:
