@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.nearest import nearest
+from fegear.case.set_pairs import set_of_pair
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +35,8 @@ def half_notes(case: Case, name: str) -> tuple[str, ...]:
     """What results of the pair are of, where it is double helical."""
     if case.pair[name].double_helical is None:
         return ()
-    return (f"Pair {name}: one half (end I) of a double helical pair under half of the load; see double-helical.",)
+    said = f"Pair {name}: one half (end I) of a double helical pair under half of the load"
+    return (f"{said}." if set_of_pair(case, name) is not None else f"{said}; see double-helical.",)
 
 
 def check_double_helical(case: Case, gears: Mapping[str, Gear]) -> None:
@@ -48,20 +50,23 @@ def check_double_helical(case: Case, gears: Mapping[str, Gear]) -> None:
     for name, part in case.pair.items():
         if part.double_helical is None:
             continue
-        prefix = f"pair.{name}"
+        in_set = set_of_pair(case, name)
+        prefix = f"pair.{name}" if in_set is None else f"planetary.{in_set}"
         for role in ("driver", "driven"):
-            _check_gear(f"{prefix}.{role}", getattr(part, role), gears)
+            gear = getattr(part, role)
+            _check_gear(f"{prefix}.{role if in_set is None else _role(case, in_set, gear)}", gear, gears, in_set)
         for role, other in part.double_helical.others.items():
             if other is not None:
                 _check_other(f"{prefix}.double_helical.second_{role}", other, getattr(part, role), gears)
         if part.line_error is not None:
             raise InputError(
-                f"{prefix}.line_error", "(given)", "is not available with double_helical (a gap of one half only)",
+                f"pair.{name}.line_error", "(given)", "is not available with double_helical (a gap of one half only)",
                 "specify misalignment of the axes, or lead of second_driver and second_driven",
             )  # fmt: skip
         if part.axial_offset:
             raise InputError(
-                f"{prefix}.axial_offset", f"{part.axial_offset * 1e3:.6g} mm", "is not available with double_helical",
+                f"pair.{name}.axial_offset", f"{part.axial_offset * 1e3:.6g} mm",
+                "is not available with double_helical",
                 "specify double_helical.apex_offset",
             )  # fmt: skip
         on_shaft = next((gear for gear in (part.driver, part.driven) if gear in carried), None)
@@ -91,11 +96,17 @@ def _check_in_train(case: Case, key: str, part: PairPart) -> None:
             raise InputError(f"{key}.{what}", value, f"is not available in a train, which {equal}", remedy)
 
 
-def _check_gear(key: str, name: str, gears: Mapping[str, Gear]) -> None:
+def _role(case: Case, in_set: str, gear: str) -> str:
+    """Of a gear in a planetary set."""
+    part = case.planetary[in_set]
+    return next((role for role in ("sun", "ring") if getattr(part, role) == gear), "planet")
+
+
+def _check_gear(key: str, name: str, gears: Mapping[str, Gear], in_set: str | None = None) -> None:
     gear = gears[name]
     if gear.helix_angle == 0.0:
         raise InputError(key, f'"{name}"', "is a spur gear: double_helical requires helical gears", "set helix_angle")
-    if gear.tooth.internal:
+    if gear.tooth.internal and in_set is None:
         raise InputError(
             key, f'"{name}"', "is an internal gear: double_helical is available for external pairs only",
             "remove double_helical; model one half with half the torque",
@@ -137,8 +148,6 @@ def _check_places(case: Case, name: str, part: PairPart) -> None:
     train, taken = case.train, "remove it; use one half with half the face width and torque"
     if train is not None and any(name in (train.pair_of(one), train.loaded_pair_of(one)) for one in train.mesh):
         _check_in_train(case, key, part)
-    if any(name in (f"{one}_sun", f"{one}_ring") for one in case.planetary):
-        raise InputError(key, "(given)", "is not available in a planetary gear set", taken)
     if any(name == one.mesh.pair for one in case.transmissibility.values()):
         raise InputError(key, "(given)", "is not available with transmissibility", taken)
     if part.shafts is not None and part.shafts.deformation is None:

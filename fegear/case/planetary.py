@@ -157,6 +157,12 @@ class PlanetaryPart(Part):
         "([[gear.NAME.odd_tooth]]); the teeth of all other planets are identical.",
     )
     body: SetBodiesPart = Field(default_factory=SetBodiesPart, description="Masses and inertias, for vibration.")
+    double_helical: bool = Field(
+        default=False,
+        description="Double helical gears: sun, planet and ring gears are the half at end I, with its face width; the "
+        "half at end II is the mirror image. Both halves carry the same load (sun and planets float axially). Torques, "
+        "mesh forces and masses are those of both halves.",
+    )
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."
     )
@@ -206,6 +212,11 @@ class PlanetaryPart(Part):
     def count(self) -> int:
         """Number of planets."""
         return len(self.angles) if self.angles is not None else self.planets or 0
+
+    @property
+    def halves(self) -> int:
+        """How many halves of its gears share the load evenly: 2 of double helical ones."""
+        return 2 if self.double_helical else 1
 
     def sun_drives(self) -> bool:
         """Whether power rolls from the sun over the planets to the ring, in the motion relative to the carrier."""

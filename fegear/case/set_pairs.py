@@ -69,6 +69,15 @@ def _set_pair(case: Case, name: str, mesh: Mesh, distance: float | None) -> Pair
             "set driver and driven accordingly, or rename the pair",
         )  # fmt: skip
     filled: dict[str, Any] = {}
+    if given.double_helical is not None:
+        raise InputError(
+            f"pair.{own}.double_helical", "(given)", "is a key of the planetary gear set here",
+            f"remove it and set planetary.{name}.double_helical = true",
+        )  # fmt: skip
+    if part.double_helical:
+        from fegear.case.double_helical import DoubleHelicalPart
+
+        filled["double_helical"] = DoubleHelicalPart()
     if not (given.load or given.torque):
         filled["torque"] = teeth.sun_torque(part) / part.count * driving / teeth.sun
     if given.centre_distance is None and distance is not None:

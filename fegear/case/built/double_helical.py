@@ -11,6 +11,7 @@ from fegear.case.built.gear_flanks import gear_flanks
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.solid_influence import solid_gear_to_solve
+from fegear.case.set_pairs import set_of_pair
 from fegear.contact.double_helical.double_spec import DoubleHelicalSpec, mirrored, of_other_hand, twist_between
 from fegear.geometry.pair import MEMBERS
 
@@ -58,7 +59,13 @@ class DoubleToLoad:
 
 def double_part(scene: Scene, name: str) -> DoubleHelicalPart:
     """The keys of a double helical pair, or a refusal."""
-    part = scene.case.pair[name].double_helical
+    part, in_set = scene.case.pair[name].double_helical, set_of_pair(scene.case, name)
+    if part is not None and in_set is not None:
+        raise InputError(
+            f"planetary.{in_set}.double_helical", "true",
+            "gives both halves the same load: double-helical is available for pairs outside planetary gear sets",
+            "remove double-helical from results, or describe the pair in a case of its own",
+        )  # fmt: skip
     if part is None:
         raise InputError(
             f"pair.{name}.double_helical", "(not given)", "is required for double-helical",
@@ -69,7 +76,10 @@ def double_part(scene: Scene, name: str) -> DoubleHelicalPart:
 
 def double_helical_pairs(scene: Scene) -> tuple[str, ...]:
     """All double helical pairs; every pair where there is none, so that this is reported."""
-    found = tuple(name for name, part in scene.case.pair.items() if part.double_helical is not None)
+    found = tuple(
+        name for name, part in scene.case.pair.items()
+        if part.double_helical is not None and set_of_pair(scene.case, name) is None
+    )  # fmt: skip
     return found or tuple(scene.pairs)
 
 

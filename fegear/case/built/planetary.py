@@ -52,8 +52,10 @@ class SetInputs:
     at_speed : bool
         Whether a speed is given.
     base_twist : float
-        tan(beta_b) of the sun, positive for a right hand; zero of spur sets.
+        tan(beta_b) of the sun, positive for a right hand; zero of spur sets and where two halves balance.
     name : str
+    halves : int
+        2 of double helical gears, whose teeth are one half under half of the load.
     """
 
     found: PlanetarySet
@@ -65,6 +67,7 @@ class SetInputs:
     at_speed: bool
     base_twist: float
     name: str = field(compare=False)
+    halves: int = 1
 
 
 def planetary_part(scene: Scene, name: str) -> PlanetaryPart:
@@ -102,13 +105,13 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
     phases = mesh_phases(found, clockwise=run.sun_turns < 0.0, sun_drives=run.sun_drives)
     model = SetModel(
         found, _central(part, "sun", sun), _central(part, "ring", ring), _central(part, "carrier"),
-        PlanetBody(*_mass(part.body.planet, planet), pin=part.stiffness.pin or math.inf), run.mirrored,
+        PlanetBody(*_mass(part.body.planet, planet, part.halves), pin=part.stiffness.pin or math.inf), run.mirrored,
     )  # fmt: skip
     meshes = {"sun": part.stiffness.sun_mesh, "ring": part.stiffness.ring_mesh}
     given = {mesh: None if one is None else tuple(one) for mesh, one in meshes.items()}
     return SetInputs(
         found, run, phases, model, teeth.sun_torque(part), given, part.speed is not None,
-        sun.twist * sun.base_radius, name,
+        0.0 if part.double_helical else sun.twist * sun.base_radius, name, part.halves,
     )  # fmt: skip
 
 
@@ -138,13 +141,13 @@ def _at_ring(scene: Scene, name: str) -> tuple[float, float]:
     return (planet.base_pitch, planet.tooth.base_half_angle) if planet.asymmetric else (math.nan, math.nan)
 
 
-def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:
-    """Mass and inertia [kg, kg m^2]: as given, or of the gear's body; nan where neither is known."""
+def _mass(body: SetBodyPart | None, gear: Gear | None, halves: int) -> tuple[float, float]:
+    """Mass and inertia [kg, kg m^2]: as given, or of the gear's body, both halves; nan where neither is known."""
     if body is not None:
         return body.mass, body.inertia
     if gear is None:
         return math.nan, math.nan
-    return gear.mass_properties.mass, gear.mass_properties.inertia
+    return halves * gear.mass_properties.mass, halves * gear.mass_properties.inertia
 
 
 def body_masses(scene: Scene, name: str) -> tuple[tuple[str, float, float, str], ...]:
@@ -154,8 +157,9 @@ def body_masses(scene: Scene, name: str) -> tuple[tuple[str, float, float, str],
         given, gear = getattr(part.body, member), getattr(part, member, None)
         if given is None and gear is None:
             continue
-        source = f"from body.{member}" if given is not None else f"from teeth and body of gear {gear}"
-        found.append((member, *_mass(given, None if gear is None else scene.gears[gear]), source))
+        both = " (both halves)" if part.double_helical else ""
+        source = f"from body.{member}" if given is not None else f"from teeth and body of gear {gear}{both}"
+        found.append((member, *_mass(given, None if gear is None else scene.gears[gear], part.halves), source))
     return tuple(found)
 
 
@@ -172,7 +176,7 @@ def _central(part: PlanetaryPart, member: Central, gear: Gear | None = None) -> 
     turning = 0.0
     if member == part.fixed:
         turning = math.inf if part.stiffness.turning is None else part.stiffness.turning
-    return CentralBody(*_mass(getattr(part.body, member), gear), bearing, turning)
+    return CentralBody(*_mass(getattr(part.body, member), gear, part.halves), bearing, turning)
 
 
 def check_masses(scene: Scene, name: str) -> None:

@@ -7,7 +7,7 @@ the force that a planet really carries. Between forces at which it is solved it 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -48,6 +48,21 @@ class MeshSprings(NamedTuple):
     level: Array
     off: Array
     bent: Array
+
+
+class MeshTeeth(Protocol):
+    """Teeth of a mesh as springs over the base pitch."""
+
+    @property
+    def cycles(self) -> int:
+        """Base pitches after which teeth that differ meet again; 1 where all are alike."""
+
+    @property
+    def breaks(self) -> Array:
+        """Places of jumps and kinks [base pitches]."""
+
+    def at(self, place: Array) -> MeshSprings:
+        """Springs at places [base pitches from the pitch point], shape (Q,)."""
 
 
 @dataclass(frozen=True)
@@ -148,6 +163,36 @@ class LawSprings:
         off = [solve_again(other, alone).transmission_error[:, 0] - mean for other in self.shifted]
         changes = np.array(off).reshape(len(self.shifted), x.size)
         return springs(force, state.transmission_error, state.local_stiffness[:, 0], changes)
+
+
+@dataclass(frozen=True)
+class WidenedSprings:
+    """Teeth so many times as wide, under forces so many times as large: both halves of double helical gears.
+
+    Parameters
+    ----------
+    teeth : MeshTeeth
+        Of one half.
+    ratio : float
+    """
+
+    teeth: MeshTeeth
+    ratio: float
+
+    @property
+    def cycles(self) -> int:
+        """Those of one half."""
+        return self.teeth.cycles
+
+    @property
+    def breaks(self) -> Array:
+        """Those of one half."""
+        return self.teeth.breaks
+
+    def at(self, place: Array) -> MeshSprings:
+        """Springs at places [base pitches from the pitch point], shape (Q,)."""
+        found = self.teeth.at(place)
+        return found._replace(stiffness=self.ratio * found.stiffness, level=self.ratio * found.level)
 
 
 def forces(load: float, planets: int) -> tuple[Array, int]:

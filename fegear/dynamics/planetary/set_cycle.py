@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from fegear.fem.alike_teeth import together
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.dynamics.planetary.mesh_law import MeshSprings
+    from fegear.dynamics.planetary.mesh_law import MeshSprings, MeshTeeth
     from fegear.dynamics.planetary.phases import Phases
     from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.planetary.set_model import SetModel
@@ -40,21 +40,6 @@ _FINE = 1.0 / 24.0
 MOST_PITCHES = 2000
 #: Breaks closer than this are one, and ends of pieces stand so far inside them [base pitches].
 _ONE, _INSIDE = 1e-9, 3e-10
-
-
-class MeshTeeth(Protocol):
-    """Teeth of a mesh as springs over the base pitch."""
-
-    @property
-    def cycles(self) -> int:
-        """Base pitches after which teeth that differ meet again; 1 where all are alike."""
-
-    @property
-    def breaks(self) -> Array:
-        """Places of jumps and kinks [base pitches]."""
-
-    def at(self, place: Array) -> MeshSprings:
-        """Springs at places [base pitches from the pitch point], shape (Q,)."""
 
 
 @dataclass(frozen=True)

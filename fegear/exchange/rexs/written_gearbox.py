@@ -27,6 +27,7 @@ _OIL = frozenset({"viscosity_40", "viscosity_100", "density_15", "temperature", 
 _OPERATION = frozenset({"application_factor", "life"})
 _SET = frozenset(
     {
+        "double_helical",
         "sun",
         "planet",
         "ring",
@@ -254,6 +255,10 @@ def _set(
 ) -> None:  # fmt: skip
     """A planetary stage: its meshes, carrier, pins, and the coupling that holds a member."""
     left_out(written, f"Set {name}", part, _SET)
+    if part.double_helical:
+        written.remarks.append(
+            f"Set {name}: only one half (end I) of the double helical gears written to REXS, with half of the torque."
+        )
     unit, casing = around
     sun, ring = gears[part.sun], gears[str(part.ring)]
     distance = scene.pairs[set_pair(name, "sun")].centre_distance
@@ -299,7 +304,7 @@ def _set(
         bodies.speed[driving.id] = sense * part.speed
     for role, member in members.items():
         if role != part.fixed:
-            torque = sense * part.torque * share[role] / share[part.input]
+            torque = sense * part.torque / part.halves * share[role] / share[part.input]
             bodies.torques.setdefault(member.id, []).append(torque)
 
 

@@ -18,7 +18,7 @@ from fegear.base.shown import declared, shown, shown_as
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import MESHES, PHASED_HARMONICS, set_pair
 from fegear.dynamics.planetary.kinematics import axial_forces
-from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
+from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings, WidenedSprings
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_loads import PlanetLoads, force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
@@ -42,9 +42,10 @@ if TYPE_CHECKING:
     from fegear.case.built.planetary import SetInputs
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.mesh_law import MeshTeeth
     from fegear.dynamics.planetary.phases import Phasing
     from fegear.dynamics.planetary.planet_set import Central
-    from fegear.dynamics.planetary.set_cycle import MeshTeeth, SetCycle
+    from fegear.dynamics.planetary.set_cycle import SetCycle
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
@@ -96,17 +97,43 @@ def check_set(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
+def given_or_wide_teeth(asked: SetInputs, mesh: Mesh, upstream: Upstream) -> MeshTeeth | None:
+    """Teeth of a mesh whose stiffness is given, or that have a width; None of plane teeth.
+
+    Those of double helical gears are two halves, each under half of the force.
+    """
+    given, name = asked.given[mesh], set_pair(asked.name, mesh)
+    if given is not None:
+        return SlotSprings(given_teeth(given))
+    if Task("loaded-flanks", name) not in upstream:
+        return None
+    from fegear.dynamics.planetary.flank_law import FlankSprings
+
+    load = mean_force(asked.model, asked.sun_torque, mesh) / asked.halves
+    half = FlankSprings(loaded_flanks(upstream, name), load, asked.model.count)
+    return half if asked.halves == 1 else WidenedSprings(half, asked.halves)
+
+
+def given_or_wide_springs(asked: SetInputs, mesh: Mesh, upstream: Upstream) -> MeshExcitation | None:
+    """The same teeth as springs about the mean force."""
+    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
+
+    given, name = asked.given[mesh], set_pair(asked.name, mesh)
+    if given is not None:
+        return given_teeth(given)
+    if Task("loaded-flanks", name) not in upstream:
+        return None
+    load = mean_force(asked.model, asked.sun_torque, mesh) / asked.halves
+    return excitation_of_flanks(loaded_flanks(upstream, name), load).widened(asked.halves)
+
+
 def _cycle(asked: SetInputs, upstream: Upstream, _work: Work) -> SetCycle:
     def teeth(mesh: Mesh) -> MeshTeeth:
-        given, load = asked.given[mesh], mean_force(asked.model, asked.sun_torque, mesh)
-        if given is not None:
-            return SlotSprings(given_teeth(given))
-        name = set_pair(asked.name, mesh)
-        if Task("loaded-flanks", name) in upstream:
-            from fegear.dynamics.planetary.flank_law import FlankSprings
-
-            return FlankSprings(loaded_flanks(upstream, name), load, asked.model.count)
-        pair = loaded_pair(upstream, name)
+        found = given_or_wide_teeth(asked, mesh, upstream)
+        if found is not None:
+            return found
+        pair = loaded_pair(upstream, set_pair(asked.name, mesh))
+        load = mean_force(asked.model, asked.sun_torque, mesh)
         return LawSprings(pair.engagement, pair.shifted, load, asked.model.count)
 
     return set_cycle(asked.model, (teeth("sun"), teeth("ring")), asked.phases, asked.sun_torque, asked.run.input)
@@ -137,17 +164,14 @@ SET_CYCLE = _teeth_stage(
 
 
 def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
-    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
     def teeth(mesh: Mesh) -> MeshExcitation:
-        given, force = asked.given[mesh], mean_force(asked.model, asked.sun_torque, mesh)
-        if given is not None:
-            return given_teeth(given)
-        name = set_pair(asked.name, mesh)
-        if Task("loaded-flanks", name) in upstream:
-            return excitation_of_flanks(loaded_flanks(upstream, name), force)
-        return mesh_excitation(loaded_pair(upstream, name).engagement, force)
+        found = given_or_wide_springs(asked, mesh, upstream)
+        if found is not None:
+            return found
+        force = mean_force(asked.model, asked.sun_torque, mesh)
+        return mesh_excitation(loaded_pair(upstream, set_pair(asked.name, mesh)).engagement, force)
 
     return MeshedSet(asked.model, teeth("sun"), teeth("ring"), asked.phases, asked.sun_torque, asked.run.input)
 

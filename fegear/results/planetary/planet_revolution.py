@@ -15,7 +15,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import assuming
 from fegear.base.shown import declared, shown, shown_as
 from fegear.case.built.odd_gears import odd_gears_of
-from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
+from fegear.case.built.planetary import pin_errors, planetary_part, set_inputs
 from fegear.case.planetary import set_pair
 from fegear.dynamics.planetary.phases import whole_delays
 from fegear.dynamics.planetary.planet_loads import PlanetLoads, planet_loads
@@ -28,10 +28,14 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import over_revolution_task, pair_over_revolution
 from fegear.results.pair.mesh_stiffness_revolution import INDICATORS
-from fegear.results.planetary.planet_load_sharing import check_set, effects_of_set, solved_meshes
+from fegear.results.planetary.planet_load_sharing import (
+    check_set,
+    effects_of_set,
+    given_or_wide_teeth,
+    solved_meshes,
+)
 from fegear.results.planetary.planet_set import planetary_sets
 
 if TYPE_CHECKING:
@@ -42,7 +46,7 @@ if TYPE_CHECKING:
     from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
     from fegear.contact.plane.engagement import Engagement
-    from fegear.dynamics.planetary.set_cycle import MeshTeeth
+    from fegear.dynamics.planetary.mesh_law import MeshTeeth
     from fegear.dynamics.planetary.set_revolution import SetRevolution
     from fegear.dynamics.planetary.set_signals import RingLines
     from fegear.engine.sheet.seen import Seen
@@ -152,18 +156,14 @@ def _compute(inputs: SetRevolutionInputs, upstream: Upstream, work: Work) -> Set
 
 def _laws(inputs: SetRevolutionInputs, mesh: Mesh, upstream: Upstream) -> Sequence[MeshTeeth]:
     """Teeth of a mesh of every planet."""
-    from fegear.dynamics.planetary.mesh_law import LawSprings, SlotSprings
+    from fegear.dynamics.planetary.mesh_law import LawSprings
 
-    asked, given = inputs.asked, inputs.asked.given[mesh]
-    count, name = asked.model.count, set_pair(asked.name, mesh)
-    load = mean_force(asked.model, asked.sun_torque)
-    if given is not None:
-        return [SlotSprings(given_teeth(given))] * count
-    if Task("loaded-flanks", name) in upstream:
-        from fegear.dynamics.planetary.flank_law import FlankSprings
-
-        return [FlankSprings(loaded_flanks(upstream, name), load, count)] * count
-    pair = pair_over_revolution(upstream, name)
+    asked = inputs.asked
+    count, load = asked.model.count, mean_force(asked.model, asked.sun_torque)
+    found = given_or_wide_teeth(asked, mesh, upstream)
+    if found is not None:
+        return [found] * count
+    pair = pair_over_revolution(upstream, set_pair(asked.name, mesh))
     both = (pair.engagement, *pair.shifted)
     return inputs.of_planets(mesh, both, lambda each: LawSprings(each[0], tuple(each[1:]), load, count))
 

@@ -129,6 +129,9 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     if asked.base_twist:
         said.append(assuming(f"Set {name}: bearings are assumed rigid for axial forces of sun and ring and for tilting "
                     "moments of the planets."))  # fmt: skip
+    if asked.halves > 1:
+        said.append(assuming(f"Set {name}: double helical: both halves carry the same load (sun and planets float "
+                    "axially), their axial forces balance; torques, mesh forces and masses are of both."))  # fmt: skip
     said += [failing(f"Set {name}: {one.sentence(inputs.module)}.") for one in inputs.checks if one.margin < 0.0]
     if not asked.at_speed:
         said.append(assuming(f"Set {name}: speed not specified: frequencies require planetary.{name}.speed; member "

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, cast
 from fegear.base.effects import ODD_TEETH
 from fegear.base.errors import InputError
 from fegear.base.shown import declared, shown, shown_as
-from fegear.case.built.planetary import given_teeth, planetary_part
+from fegear.case.built.planetary import planetary_part
 from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.set_motion_over_revolution import SetMotionOverRevolution
 from fegear.engine.citation import Citation, citing
@@ -24,10 +24,9 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import pair_over_revolution
 from fegear.results.pair.mesh_stiffness_revolution import INDICATORS
-from fegear.results.planetary.planet_load_sharing import effects_of_set
+from fegear.results.planetary.planet_load_sharing import effects_of_set, given_or_wide_springs
 from fegear.results.planetary.planet_motion import check_moving, unlimited
 from fegear.results.planetary.planet_revolution import (
     ODD_REMARKS,
@@ -102,15 +101,12 @@ def _compute(inputs: SetVibrationInputs, upstream: Upstream, work: Work) -> SetM
 
 def _teeth(asked: SetRevolutionInputs, mesh: Mesh, force: float, upstream: Upstream) -> tuple[MeshExcitation, ...]:
     """Teeth of a mesh of every planet as springs about the mean force."""
-    from fegear.dynamics.train.flank_excitation import excitation_of_flanks
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
-    given, name = asked.asked.given[mesh], set_pair(asked.name, mesh)
-    if given is not None:
-        return (given_teeth(given),) * asked.asked.model.count
-    if Task("loaded-flanks", name) in upstream:
-        return (excitation_of_flanks(loaded_flanks(upstream, name), force),) * asked.asked.model.count
-    odd = pair_over_revolution(upstream, name).engagement
+    found = given_or_wide_springs(asked.asked, mesh, upstream)
+    if found is not None:
+        return (found,) * asked.asked.model.count
+    odd = pair_over_revolution(upstream, set_pair(asked.name, mesh)).engagement
     return asked.of_planets(mesh, [odd], lambda each: mesh_excitation(each[0], force))
 
 
