@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from fegear.base.errors import FegearError, InputError
+    from fegear.workbench.any_result import compute, crosscheck
     from fegear.workbench.fillet import fillet_design
     from fegear.workbench.gear import Gear
     from fegear.workbench.measured import gauge, measured_transmission_error
@@ -35,9 +36,9 @@ if TYPE_CHECKING:
 __version__ = "0.2.0"
 
 __all__ = [
-    "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "dynamic_factor", "fillet_design",
-    "flank_design", "gauge", "load_sharing", "measured_transmission_error", "mesh_stiffness_revolution", "rating",
-    "relief", "root_stress", "run", "stiffness_table", "transmission_error",
+    "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "compute", "crosscheck",
+    "dynamic_factor", "fillet_design", "flank_design", "gauge", "load_sharing", "measured_transmission_error",
+    "mesh_stiffness_revolution", "rating", "relief", "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
 #: Modules of the names above, besides the version.
@@ -48,6 +49,8 @@ _HOMES = {
     "Pair": "workbench.pair",
     "Rack": "workbench.rack",
     "Results": "workbench.results",
+    "compute": "workbench.any_result",
+    "crosscheck": "workbench.any_result",
     "dynamic_factor": "workbench.questions",
     "fillet_design": "workbench.fillet",
     "flank_design": "workbench.questions",

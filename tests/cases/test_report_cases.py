@@ -119,7 +119,8 @@ def test_the_files_in_the_page_are_the_files(made):
     files = carried(report(folder))
     assert list(files) == [
         "tables/geometry.csv", "tables/mass_and_inertia.csv", "tables/gear_data_I.csv", "tables/stiffness_a.csv",
-        "tables/neighbour_compliance_a.csv", "tables/root_stress_a.csv", "lin_table1.toml",
+        "tables/neighbour_compliance_a.csv", "tables/neighbour_compliance_a.mat", "tables/root_stress_a.csv",
+        "lin_table1.toml",
     ]  # fmt: skip
     for name, content in files.items():
         if name.startswith("tables/"):

@@ -14,6 +14,7 @@ from fegear.case.csv_file import read_columns
 from fegear.case.gauge import PLACES
 from fegear.case.nearest import nearest
 from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST, turns_along
+from fegear.contact.trace_outliers import suspected
 from fegear.fem.plane.gauge import ISO_TANGENT, ISO_TANGENT_INTERNAL, FilletProfile, Grid, PlaceKey
 from fegear.geometry.pair import MEMBERS
 
@@ -229,7 +230,8 @@ def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStra
                 f'requires a trace of {DRIFT_TURNS:g} turns, "{part.file}" has {turns:.3g}: too few to separate a '
                 "drift from the shape of the curve", "remove drift",
             )  # fmt: skip
-    largest = float(np.abs(strain - np.median(strain)).max())
+    likely = ~suspected(strain)[0]  # what an amplifier writes for nothing is no strain
+    largest = float(np.abs(strain - np.median(strain))[likely].max(initial=0.0))
     if largest > _LARGEST_STRAIN:
         raise InputError(
             key, f"strain of {largest * 1e2:.3g} %", f"is above {_LARGEST_STRAIN * 1e2:g} %",

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from importlib.util import find_spec
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, TypeVar
 
 import fegear
@@ -30,7 +30,7 @@ from fegear.output.file_names import file_name
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import Block, as_words, readable
 from fegear.output.report.kept import keep, kept, recalled
-from fegear.output.tables import table_file, table_text
+from fegear.output.tables import KINDS, table_bytes, table_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -125,7 +125,11 @@ def page_text(page: Page) -> str:
     str
         HTML without any reference to other files.
     """
-    files = {f"tables/{table_file(table)}": table_text(table).encode() for table in page.tables} | dict(page.files)
+    tables = {
+        str(PurePosixPath("tables", table_file(table)).with_suffix(f".{kind}")): table_bytes(table, kind)
+        for table in page.tables for kind in (KINDS if table.matlab else KINDS[:1])
+    }  # fmt: skip
+    files = tables | dict(page.files)
     figures = _figures(page)
     return render(
         "page.html",
