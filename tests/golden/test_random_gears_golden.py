@@ -29,6 +29,8 @@ EVERY = json.loads((HERE / "random_gears.json").read_text())
 FOR_ESTIMATES, FOR_TOLERANCES = EVERY[:30], EVERY[30:]
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
 HALF_WIDTH = 0.02
+#: Of c_0: so small an estimate is not too large (neighbours of some of these gears are 1e-9 off).
+NOTHING = 3e-8
 
 _spec = importlib.util.spec_from_file_location("make_random_gears", HERE / "make_random_gears.py")
 generator = importlib.util.module_from_spec(_spec)
@@ -71,7 +73,7 @@ def check_honesty(truth, estimate, gears):
     """No more than one gear in fifteen errs by more than was estimated, one in six by less than a tenth of it."""
     assert truth.shape == (gears,)
     assert (truth > estimate).sum() <= gears / 15
-    assert (estimate > 10.0 * truth).sum() <= gears / 6
+    assert (estimate > np.maximum(10.0 * truth, NOTHING)).sum() <= gears / 6
 
 
 #: All thirty in the long run, the first eight at every change, the first four in the ordinary run: of the same shares.

@@ -39,7 +39,7 @@ def test_edges_of_a_fillet_move_the_next_tooth_by_what_shorter_ones_change(ring)
     change = finer.fine.neighbour(1, radius, radius, patch) - known.neighbour(1, radius, radius, patch)
     loads, outside = known.remote(radius, patch), {side: beyond_the_fillet(known, side) for side in SIDES}
     moved = moved_by_edges(known, 1, loads, loads, outside)
-    assert np.linalg.norm(moved - change) < 0.25 * np.linalg.norm(change)
+    assert np.linalg.norm(moved - change) < 0.3 * np.linalg.norm(change)
     backward = moved_by_edges(known, -1, loads, loads, outside)
     assert backward == pytest.approx(moved.T, rel=1e-6, abs=1e-9 * np.abs(moved).max())
     other = rough.estimate.neighbour(1, radius, radius)[1]
@@ -98,7 +98,7 @@ def test_where_a_difference_changes_its_sign_the_error_is_that_of_places_beside_
     estimate, b = replace(ring[0].estimate), np.asarray(0.02)
     sampled = difference(None, estimate._samples, estimate._samples, None)
     crossing, before, end, next_to_it = estimate.self_error(np.array([middle, middle + span, high, high - 0.02]), b)
-    share = end
+    share = end / estimate_module._NARROWED
     nearest = np.argsort(np.abs(estimate._samples[:33] - middle))[:3]
     assert crossing >= 0.99 * share * sampled[nearest].max()
     assert before >= 0.99 * share * 1e-3 * math.exp(-0.5)

@@ -109,29 +109,16 @@ def test_spots_of_several_loads_are_put_together_with_the_most_steps(monkeypatch
         assert getattr(found, name).tolist() == [[times, 3.0 * times, 2.0 * times]]
 
 
-def test_neighbours_err_no_less_than_a_share_of_the_usual_and_than_what_the_gear_turns():
-    def kept(share, beside=0.0):
+def test_neighbours_err_no_less_than_usually_and_than_what_the_gear_turns():
+    def kept(beside=0.0):
         one = SimpleNamespace(
             _least_beside=beside, _neighbour_at_samples=lambda k: np.full((99, 99), 2.0), common_errors=(0.0, 0.5)
         )
-        (found,) = Estimate._neighbour_estimate(one, 1, np.zeros(1), np.array([share]))
-        return (found - 0.5) / 2.0
+        (found,) = Estimate._neighbour_estimate(one, 1, np.zeros(1))
+        return found
 
-    assert kept(0.1, 1e7) == pytest.approx(0.5 * (10.0 - 0.5))  # a millionth of what the gear turns
-    assert kept(0.1) == pytest.approx(0.1)
-    assert kept(0.8) == pytest.approx(0.8)
-
-
-@pytest.mark.parametrize(("order", "edges", "share", "least"), [
-    (4, 2.0, 0.1, 0.1), (4, 2.0, 0.4, 0.2), (4, 1.0, 0.4, 0.8), (4, 1.0, 0.9, 0.8), (3, 2.0, 0.1, 0.8)
-])  # fmt: skip
-def test_a_share_of_the_usual_is_limited_but_on_long_edges_and_of_lower_orders(order, edges, share, least):
-    """Of external teeth; 0.2 of what neighbours usually differ by is error at least, on long edges 0.8."""
-    one = SimpleNamespace(
-        _for_width=lambda *_: share, _edges_below=edges,
-        fine=SimpleNamespace(flank=SimpleNamespace(order=order), tooth=SimpleNamespace(side=1)),
-    )  # fmt: skip
-    assert Estimate._least_of_usual(one, np.zeros(2)) == pytest.approx([least, least])
+    assert kept(1e8) == pytest.approx(10.0)  # a ten-millionth of what the gear turns
+    assert kept() == pytest.approx(2.5)
 
 
 def test_a_pair_may_jam_by_what_rounded_profile_shifts_are_off_and_by_no_more():

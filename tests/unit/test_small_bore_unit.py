@@ -46,7 +46,7 @@ def test_the_difference_between_teeth_does_not_know_how_far_the_gear_turns(on_a_
     low, high = usual.influence.gear.involute_radii
     radius = np.linspace(low, high, 15)
     wanted = own_less_neighbours(usual, radius)
-    assert own_less_neighbours(on_a_small_bore, radius)[1:] == pytest.approx(wanted[1:], rel=0.02)
+    assert own_less_neighbours(on_a_small_bore, radius)[1:] == pytest.approx(wanted[1:], rel=0.03)
     assert own_less_neighbours(on_a_small_bore, radius)[0] == pytest.approx(wanted[0], rel=0.2)
 
 

@@ -37,8 +37,12 @@ _FEWEST_FILLET_EDGES = 4
 _SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
 #: Edges where flank and a short fillet meet go with its length, down to this share of the usual ones.
 _SHORTEST_JOINT = 0.03
-#: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
+#: Widest angle of an edge on the bore [rad].
 _WIDEST_BORE_EDGE = 0.15
+#: A bore that is longer over a sector than this share of the body's depth has two edges at least: what a thin rim does
+#: between its sides a single edge does not follow (next teeth of four of 48 gears and rings were 20 to 1000 times as
+#: far off; half a hundred unknowns more).
+_LONG_BORE = 0.45
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
 #: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
 _SHARPEST_TURN = 0.26
@@ -212,7 +216,8 @@ def sector_boundary(
         bore = _graded_bore(side_b.vertices[:, 0], bore_radius, bore_end, settings, pitch_angle)
     else:
         by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
-        bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
+        fewest = 2 if pitch_angle * bore_radius > _LONG_BORE * side * (outer - bore_radius) else 1
+        bore_edges = max(fewest, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
         bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     chains = [bore, side_b, *above, *back, side_a]
     # Round the sector of a ring gear, which lies outside its outline, this runs clockwise.

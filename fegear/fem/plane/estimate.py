@@ -13,7 +13,7 @@ from fegear.base.arrays import Array
 from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
-from fegear.fem.plane.influence import MOSTLY_TURNED, SIDES, Influence, Side
+from fegear.fem.plane.influence import MOSTLY_TURNED, ROOM_SHARE, SIDES, Influence, Side
 from fegear.fem.plane.root_stress import smooth_at
 
 #: What errors are estimated of.
@@ -24,21 +24,24 @@ _SHARE = {2: 0.1, 3: 0.25, 4: 1.3}
 #: The fewer edges a pressure covers, the farther the lower order lags behind the higher one: of fourth order the part
 #: falls with this power of the number of edges below the wider half-width where that is smaller than this number.
 _RESOLVED, _RESOLVED_POWER = 3.3, 0.9
+#: Where the room beside a flank's end leaves both solutions the same pressures, what the corner does to these shows in
+#: no difference: so many times the error elsewhere (24 rings at a tolerance of 1e-4 need 1.8, at 0.001 0.7).
+_NARROWED = 1.3
 #: Neighbours err by the width of the pressures, which both orders share: this times what pressures half as wide change,
-#: those that are narrowed beside the flank's ends, too; and by a part of what elements one order lower do. What halves
-#: of a width change goes with its fourth power (docs/numerics.md): 16/15 of it is error, and true
-#: errors of 80 gears and rings are 1.05 times it; of elements of lower orders, which were not looked at, more counts.
-#: The part of fourth order, which is true of a tenth and less of that of gears, is for a half-width of so much, and
-#: grows with this power of wider ones, which go with the root of the edges' length; where edges are few it is another.
-_WIDTH_SHARE, _NEIGHBOUR_SHARE = {2: 1.5, 3: 1.5, 4: 1.2}, {2: 0.5, 3: 0.5, 4: 0.16}
-_NEIGHBOUR_WIDTH, _NEIGHBOUR_POWER, _NEIGHBOUR_OF_FEW_EDGES = 0.25, 0.6, 0.3
+#: those that are narrowed beside the flank's ends, too (it goes with the sixth power, so hardly more than the change is
+#: error; where edges are as long as the pressures it is scatter); and by a part of what elements one order lower do:
+#: for a half-width of so much, growing with this power of wider ones, which go with the root of the edges' length, and
+#: falling with this one of narrower ones. Of 24 gears and 24 rings a tenth at most was error at tolerances of 0.01 and
+#: 0.001, in the median a twentieth; where edges are few, and of lower orders, which were not looked at, more counts.
+_WIDTH_SHARE, _NEIGHBOUR_SHARE = {2: 1.5, 3: 1.5, 4: 1.3}, {2: 0.5, 3: 0.5, 4: 0.1}
+_NEIGHBOUR_WIDTH, _WIDER_POWER, _NARROWER_POWER, _NEIGHBOUR_OF_FEW_EDGES = 0.25, 1.0, 2.5, 0.25
 #: Of what all teeth have in common, as a gear turns as a whole, that part is, and grows so.
 _COMMON_SHARE, _COMMON_POWER = {2: 0.5, 3: 0.5, 4: 0.15}, 2.5
 #: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
 #: number over the number of edges that the fillet would have if all were as long as along most of it (those that are
 #: graded toward its ends say nothing about where stress is largest), no more than all of it, and no less than the
 #: other, for both orders have the edges' own curves. Elements of lower orders were not looked at, and count twice.
-_STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.23, 2.0
+_STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.16, 2.0
 #: What both orders have, edges that are few and their own curves, shows as scatter of stress about the smooth curve
 #: along a fillet. Of what is usual beside the largest stress so much counts, of that at one contact on the tooth itself
 #: so much, and on the next tooth so much. It counts on long fillets of long edges, and below contacts beside a fillet.
@@ -62,7 +65,7 @@ _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
 #: which both orders have: so many times the part of a tooth's own and no less than the other part. Relatively no
 #: neighbour errs by less than so much of what a tooth's own stress usually differs by.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.5, 0.9
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.75, 0.9
 #: A neighbour's other fillets are smooth: so many times a tooth's own part.
 _SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
@@ -78,21 +81,13 @@ _SCATTERS = 3.0
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
-#: Of neighbours, whose errors by the width of the pressures are local: of fourth order for that half-width, more by
-#: this power of wider ones up to so much (of 24 gears and 56 rings at a tolerance of 0.01 no place needs more than 0.1
-#: but by the tips of three rings).
-_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER, _MOST_USUAL_NEIGHBOUR = 0.15, 6.0, 0.2
-#: Where the wider half-width covers fewer edges than these, longer ones than those of that tolerance, and of lower
-#: orders so much.
-_FEWEST_KNOWN, _LITTLE_KNOWN = 1.25, 0.8
-#: By the tip of a ring's teeth up to so much on a thin rim: there pressures are narrow, their width says nothing, and
-#: what elements one order lower change is all that is known, of three rings with rims of 2.5 to 2.8 modules less than
-#: the error, of none of 40 with thicker ones. The tip is so much of the flank, and fades over so much of it; a rim of
-#: the first thickness is thin, one of the second is not [modules].
-_BY_TIP_OF_RING, _TIP_OF_RING, _FADES, _THIN_RIM = 1.3, 0.35, 0.25, (3.0, 4.0)
+#: Of neighbours, of which no position errs by less than they usually differ by, times this.
+_USUAL_NEIGHBOUR = 1.0
+#: Where the wider half-width covers fewer edges than these, longer ones than those of a tolerance of 0.01.
+_FEWEST_KNOWN = 1.25
 #: By how much the gear turns on its bore both orders may agree by chance: so much of the smallest deflection of its
-#: neighbours is error at least (of one gear 8e-7 was, 5 times what was stated at a tolerance of 1e-4).
-_OF_TURNING = 1e-6
+#: neighbours is error at least.
+_OF_TURNING = 1e-7
 #: Relative errors of root stress are of no less than this share of its largest over the flank: on a rim that bends as a
 #: whole the tension of a tooth may pass through zero.
 _LEAST_STRESS = 0.1
@@ -151,19 +146,26 @@ class Estimate:
         """c_0, its error, and how much less a true contact gives way (`Influence.contact`), shape (P,) each."""
         value, shift = self.fine.contact(radius, self.patch, half_width)
         difference = self._self_difference(value, radius, half_width)
-        return value, self._self_estimate(difference, radius), shift
+        return value, self._self_estimate(difference, radius, self._narrowed(radius)), shift
 
     def self_error(self, radius: Array, half_width: Array) -> Array:
         """Error of c_0, shape (P,)."""
         value = self.fine.self_compliance(radius, self.patch, half_width)
-        return self._self_estimate(self._self_difference(value, radius, half_width), radius)
+        difference = self._self_difference(value, radius, half_width)
+        return self._self_estimate(difference, radius, self._narrowed(radius))
+
+    def _narrowed(self, radius: Array) -> Array:
+        """How much more c_0 errs beside the ends of the flank, shape (P,)."""
+        flank = self.fine.flank
+        arc = flank.arc_of_radius(radius)
+        room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
+        return np.where((ROOM_SHARE * room < self.patch) & (flank.order == 4), _NARROWED, 1.0)
 
     def neighbour(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         """c_k(p, q) and its error, shape (P, Q) each."""
         self._neighbour_at_samples(k)  # first: at the same positions tooth after tooth is asked for
         value, difference = self._neighbour_difference(k, p, q)
-        least = np.maximum.outer(self._least_of_usual(p), self._least_of_usual(q))
-        return value, self._neighbour_estimate(k, difference, least)
+        return value, self._neighbour_estimate(k, difference)
 
     def root_stress(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
@@ -181,8 +183,7 @@ class Estimate:
         errors = {"c_self": self._self_estimate(difference, self._samples) / own}
         if self.fine.reach:
             difference = np.diagonal(self._neighbour_at_samples(1))
-            least = self._least_of_usual(self._samples)
-            errors["c_neighbour"] = self._neighbour_estimate(1, difference, least) / own
+            errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
             error = self._own_stress_estimate(side, value, difference, self._scatter[0, side], _JUDGED)
@@ -220,7 +221,8 @@ class Estimate:
         value = self.fine.self_compliance(r, self.patch, b)
         return value, self._self_difference(value, r, b)
 
-    def _self_estimate(self, difference: Array, radius: Array) -> Array:
+    def _self_estimate(self, difference: Array, radius: Array, times: Array | float = 1.0) -> Array:
+        """Of differences at some places, so many times what it is elsewhere."""
         samples, known = self._samples, self._self_at_samples[1]
         usual = _USUAL * _root_mean_square(known[:_SAMPLES])
         # A difference that changes its sign along the flank vanishes on its way from one place to the next. At the ends
@@ -229,7 +231,7 @@ class Estimate:
         padded = np.pad(known[order], 1, mode="edge")
         beside = np.maximum(np.maximum(padded[:-2], padded[2:]), padded[1:-1])
         floor = np.maximum(usual, np.interp(radius, samples[order], beside, left=0.0, right=0.0))
-        return np.asarray(self._self_share * np.maximum(difference, floor) + self.common_errors[0])
+        return np.asarray(times * self._self_share * np.maximum(difference, floor) + self.common_errors[0])
 
     def place_error(self, value: Array, other: Array) -> Array:
         """Error of the stress at places of a fillet under loads at several positions, shape (places, P).
@@ -274,9 +276,12 @@ class Estimate:
     @property
     def _neighbour_share(self) -> float:
         share = _NEIGHBOUR_SHARE[self.fine.flank.order]
+        if self.fine.flank.order < 4:
+            return share
         if self._edges_below < _FEWEST_KNOWN:
-            share = max(share, _NEIGHBOUR_OF_FEW_EDGES)
-        return self._for_width(share, _NEIGHBOUR_POWER)
+            share = _NEIGHBOUR_OF_FEW_EDGES
+        narrow = min(self.patch / _NEIGHBOUR_WIDTH, 1.0) ** _NARROWER_POWER
+        return self._for_width(share, _WIDER_POWER) * narrow
 
     def _for_width(self, share: float, power: float) -> float:
         """A share, more of fourth order where pressures are wide."""
@@ -287,25 +292,11 @@ class Estimate:
             self._neighbours[k] = self._neighbour_difference(k, self._samples, self._samples)[1]
         return self._neighbours[k]
 
-    def _neighbour_estimate(self, k: int, difference: Array, least: Array) -> Array:
-        """Of differences at some places, of which so much of what is usual over the flank is error at least."""
+    def _neighbour_estimate(self, k: int, difference: Array) -> Array:
+        """Of differences at some places; no less than part of what is usual over the flank."""
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        found = np.maximum(difference, least * usual) + self.common_errors[1]
+        found = np.maximum(difference, _USUAL_NEIGHBOUR * usual) + self.common_errors[1]
         return np.asarray(np.maximum(found, _OF_TURNING * self._least_beside))
-
-    def _least_of_usual(self, radius: Array) -> Array:
-        """How much of neighbours' usual difference is their error at least, shape (P,)."""
-        wanted, tooth = self._for_width(_USUAL_NEIGHBOUR, _USUAL_NEIGHBOUR_POWER), self.fine.tooth
-        if self.fine.flank.order < 4 or self._edges_below < _FEWEST_KNOWN:
-            return np.full(np.shape(radius), _LITTLE_KNOWN)
-        least, most = min(wanted, _MOST_USUAL_NEIGHBOUR), min(wanted, _BY_TIP_OF_RING)
-        if tooth.side > 0:
-            return np.full(np.shape(radius), least)
-        first, last = tooth.roll(self._samples[[0, _SAMPLES - 1]]).tolist()
-        along = (tooth.roll(np.maximum(radius, tooth.base_radius)) - first) / (last - first)
-        by_tip = np.clip((_TIP_OF_RING + _FADES - along) / _FADES, 0.0, 1.0)
-        rim = float(np.hypot(*self.fine.mesh.points).max()) - tooth.root_radius
-        return np.asarray(least + np.interp(rim, _THIN_RIM, (1.0, 0.0)) * by_tip * (most - least))
 
     @cached_property
     def _least_beside(self) -> float:

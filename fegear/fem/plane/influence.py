@@ -40,9 +40,17 @@ Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
 #: The narrower of the two pressures that load the mesh, as a share of the wider one.
 _NARROWER = 0.6
+#: A load far away is a mixture of pressures of these widths, in shares of the widest one, whose moments of second and
+#: fourth order vanish: those go with width^2 and width^4, so the parts are those of the polynomial in width^2 through
+#: three values at width 0 (Richardson). What the width moves elsewhere goes with its sixth power.
+_REMOTE_WIDTHS = np.array([1.0, 0.5, 0.25])
+_REMOTE_PARTS = np.array([1.0, -20.0, 64.0]) / 45.0
+#: No pressure reaches over the start of the flank, where the outline's curvature jumps; the nearest one is as wide as
+#: this [modules].
+_NARROWEST = 1e-6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
-_ROOM_SHARE = 0.7
+ROOM_SHARE = 0.7
 #: Where neighbours give way by so much of what the loaded tooth does, most of it is the gear that turns on its bore.
 MOSTLY_TURNED = 0.8
 #: From how far beside the tip on a true contact keeps to Hertz's pressure [modules]: there the mating flank stiffens as
@@ -152,13 +160,13 @@ class Influence:
 
     def _remote_at(self, arc: Array, patch: float, share: float = 1.0) -> Array:
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
-        low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
-        # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
-        wide = np.maximum(share * np.minimum(patch, room), POINT)
-        narrow = np.maximum(_NARROWER * wide, 0.5 * POINT)
-        loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
-        part = -(narrow**2) / (wide**2 - narrow**2)
-        return np.asarray(part * loads[:, : arc.size] + (1.0 - part) * loads[:, arc.size :])
+        low = max(self.flank.arc[0] + POINT, self.flank.flank_start + _NARROWEST)
+        high = self.flank.arc[-1] - POINT
+        # Pressures in such a mixture that second and fourth moment vanish: a concentrated load, seen from afar.
+        wide = np.maximum(share * np.minimum(patch, room), _NARROWEST)
+        count = len(_REMOTE_WIDTHS)
+        loads = self.flank.patches(np.tile(np.clip(arc, low, high), count), np.outer(_REMOTE_WIDTHS, wide).ravel())
+        return np.asarray(_REMOTE_PARTS @ loads.reshape(-1, count, arc.size))
 
     def fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
@@ -282,7 +290,7 @@ class Influence:
     def _regular(self, arc: Array, width: Array, patch: float) -> Array:
         """What contacts leave of c_0 beside what depends on their width in closed form, shape (P,)."""
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
-        wide = np.maximum(np.minimum(patch, _ROOM_SHARE * room), self.corner_distance)
+        wide = np.maximum(np.minimum(patch, ROOM_SHARE * room), self.corner_distance)
         wide = np.maximum(wide, width)
         narrow = _NARROWER * wide
         places, widths = np.concatenate([arc, arc]), np.concatenate([wide, narrow])
@@ -310,7 +318,7 @@ class Influence:
             return None
         flank = self.flank
         middle = np.array([0.5 * (flank.flank_start + flank.flank_end)])
-        load = flank.patches(middle, np.array([_ROOM_SHARE * 0.5 * (flank.flank_end - flank.flank_start)]))[:, 0]
+        load = flank.patches(middle, np.array([ROOM_SHARE * 0.5 * (flank.flank_end - flank.flank_start)]))[:, 0]
         own, beside = (float(load @ self.compliance[k] @ load) for k in (0, 1))
         return 0.5 * (self.compliance[1] + self.compliance[1].T) if beside > MOSTLY_TURNED * own else None
 

@@ -32,6 +32,8 @@ SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
 
 #: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
 _STRAIGHT = 1e-12
+#: So many times the square of its angle an edge's tangents differ in length from its arc at most; on a circle a 48th.
+_FAR_FROM_ARC = 0.125
 #: How fast edges inside grow with the distance from the boundary where no one says: level 0's `side_growth`.
 _GROWTH = 0.4
 #: What a mesh depends on. Algorithm 5 is Delaunay's: the frontal one (6) leaves triangles of quality .05 at sharp
@@ -270,14 +272,24 @@ def by_name(edges: dict[str, Index]) -> dict[str, Index]:
 
 
 def _bends(chain: Chain) -> NDArray[np.float64]:
-    """How the exact curve leaves each edge's chord at its ends, shape (2, 2, n): see `SectorMesh`."""
+    """How the exact curve leaves each edge's chord at its ends, shape (2, 2, n): see `SectorMesh`.
+
+    Both tangents are so long that the cubic meets the middle node: beside that of a circle it then lies by the sixth
+    power of the edge's angle, beside others' by the fifth of its length; with the arc's own length by the fourth.
+    """
     chord = np.diff(chain.vertices)
     # Twice the way over the middle node, less what the chord is shorter: the arc's length to fourth order.
     halves = np.hypot(*(chain.middles - chain.vertices[:, :-1])) + np.hypot(*(chain.vertices[:, 1:] - chain.middles))
-    length = (4.0 * halves - np.hypot(*chord)) / 3.0
+    arc = (4.0 * halves - np.hypot(*chord)) / 3.0
+    sag = chain.middles - 0.5 * (chain.vertices[:, 1:] + chain.vertices[:, :-1])
+    # The middle of a cubic is off the chord's by an eighth of its tangents' difference. Where an edge hardly turns, or
+    # turns back, that tells nothing, and tangents keep to the arc's length about.
+    turn = -np.diff(chain.tangents)
+    square = (turn**2).sum(axis=0)
+    wanted = 8.0 * (sag * turn).sum(axis=0) / np.maximum(square, _STRAIGHT)
+    length = np.clip(wanted, arc * (1.0 - _FAR_FROM_ARC * square), arc * (1.0 + _FAR_FROM_ARC * square))
     bends = np.stack([length * chain.tangents[:, :-1] - chord, chord - length * chain.tangents[:, 1:]], axis=1)
-    off = np.hypot(*(chain.middles - 0.5 * (chain.vertices[:, 1:] + chain.vertices[:, :-1])))
-    return np.where(off > _STRAIGHT * np.hypot(*chord), bends, 0.0)
+    return np.where(np.hypot(*sag) > _STRAIGHT * np.hypot(*chord), bends, 0.0)
 
 
 def _initialize(gmsh: Any) -> None:
