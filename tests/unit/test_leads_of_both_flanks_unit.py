@@ -9,6 +9,9 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import gear_face
 from fegear.case.built.gear_flanks import gear_flanks
+from fegear.case.built.pair_notes import end_notes
+from fegear.case.built.pair_spec import pair_spec
+from fegear.case.built.table_ends import table_end_notes
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -137,6 +140,32 @@ def test_equal_flanks_have_one_lead(key):
         gear |= {"coast_pressure_angle": "30 deg", "rack": {"tip_radius": 0.15}}
     with pytest.raises(InputError, match=rf"^gear\.p\.{key} = .*requires asymmetric teeth; specify"):
         built(equal)
+
+
+def test_a_note_says_that_ends_are_seen_from_the_other_side(tmp_path):
+    z = np.linspace(-3.0, 3.0, 13)  # shorter than the face, which another note says
+    written(tmp_path, "lead.csv", z, z, "removal")
+    said = {
+        flank: pair_notes_of(built(case(flank, lead={"file": "lead.csv"}), tmp_path)) for flank in ("drive", "coast")
+    }
+    ends = "Pair I: coast flanks loaded, face position z from the other side; end I of lead is at positive z here."
+    assert ends in said["coast"]
+    assert ends not in said["drive"]
+    assert any("lead table" in note for note in said["drive"])
+    assert any("lead table" in note for note in said["coast"])
+    assert end_notes(built(case("coast")), "I") == ()
+
+
+def pair_notes_of(scene):
+    return (*end_notes(scene, "I"), *table_end_notes(pair_spec(scene, "I", over_face=True)))
+
+
+def test_a_measured_topography_is_mirrored_with_its_flank(tmp_path):
+    roll, z = np.linspace(5.0, 36.0, 40), np.linspace(-4.0, 4.0, 17)
+    rows = "\n".join(f"{a},{b},{-0.2 * a - b}" for a in roll for b in z)
+    (tmp_path / "flank.csv").write_text(f"roll_angle [deg],z [mm],deviation [um]\n{rows}")
+    found = removal(case("coast", coast_measured={"topography": "flank.csv", "filter": False}), tmp_path)
+    assert np.polyfit(Z, found, 1)[0] == pytest.approx(-1e-3, rel=1e-9)
 
 
 @pytest.mark.dear

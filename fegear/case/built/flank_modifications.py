@@ -81,7 +81,18 @@ def _as_seen(scene: Scene, name: str, found: list[FlankModification]) -> tuple[F
     """
     if _flank(scene, name) != "coast":
         return tuple(found)
-    return tuple(one if isinstance(one, LeadCrowning) else MirroredModification(one) for one in found)
+    return tuple(_mirrored(one) for one in found)
+
+
+def _mirrored(one: FlankModification) -> FlankModification:
+    """A modification with its ends exchanged; tables stay tables, whose ends notes name."""
+    if isinstance(one, LeadCrowning):
+        return one
+    if isinstance(one, LeadTable):
+        return LeadTable(-one.z[::-1], one.values[::-1])
+    if isinstance(one, Topography):
+        return Topography(one.roll, -one.z[::-1], one.values[:, ::-1])
+    return MirroredModification(one)
 
 
 def gear_face(scene: Scene, name: str, *, drawn: bool = False) -> tuple[FlankModification, ...]:

@@ -32,6 +32,23 @@ def odd_teeth_notes(scene: Scene, name: str) -> tuple[str, ...]:
     return tuple(note for gear in gears for note in _odd_teeth(scene, gear, wide=True))
 
 
+def end_notes(scene: Scene, name: str) -> tuple[str, ...]:
+    """That a pair of loaded coast flanks counts its ends from the other side than the keys of its gears."""
+    gears = dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS)
+    seen = [gear for gear in gears if scene.gears[gear].tooth.working_flank == "coast"]
+    given = {
+        key
+        for gear in seen
+        for part, key in (scene.case.gear[gear].lead_of("coast"), scene.case.gear[gear].measured_of("coast"))
+        if part is not None
+    }
+    if not (given and scene.case.effects.relief):
+        return ()
+    keys = " and ".join(sorted(given))
+    seen_from = "coast flanks loaded, face position z from the other side"
+    return (f"Pair {name}: {seen_from}; end I of {keys} is at positive z here.",)
+
+
 def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
     if not scene.case.gear[gear].odd_tooth:
         return []

@@ -11,7 +11,7 @@ from fegear.base.notes import exceeding, failing, neglecting
 from fegear.base.printed import percent
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_checks import check_wide_pair
-from fegear.case.built.pair_notes import odd_teeth_notes
+from fegear.case.built.pair_notes import end_notes, odd_teeth_notes
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import on_shafts
 from fegear.case.built.table_ends import table_end_notes
@@ -59,7 +59,8 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
 
 def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
     spec = pair_spec(scene, name, over_face=True)
-    notes = (*half_notes(scene.case, name), *table_end_notes(spec), *odd_teeth_notes(scene, name))
+    of_ends = (*table_end_notes(spec), *end_notes(scene, name))
+    notes = (*half_notes(scene.case, name), *of_ends, *odd_teeth_notes(scene, name))
     return AskedOfTeeth.of(scene, spec, notes)
 
 
