@@ -16,10 +16,11 @@ from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.design.charts import Metric
 from fegear.design.excitation_relief import MinimumExcitationRelief
-from fegear.design.load_range import LoadRange
+from fegear.design.load_range import LoadRange, proportions
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, relief_nodes, relief_table
 from fegear.design.oil_film import OilFilm
+from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
@@ -82,6 +83,14 @@ class DesignTask:
         """Loads at which reliefs are compared: those of the range, or all of the curves [N]."""
         return self.loads if self.over is None else self.over.loads
 
+    @property
+    def over_weights(self) -> Array:
+        """What each of these counts: only the design load without a range."""
+        loads = np.array(self.over_loads)
+        if self.over is None:
+            return np.asarray(loads == self.load, dtype=float)
+        return np.ones(loads.size) if self.over.weights is None else np.array(self.over.weights)
+
     def grind_on(self, engagement: Engagement, shape: Shape, cache: SolutionCache | None = None) -> TipReliefPair:
         """The reliefs of a shape to grind, for the range or for the design load."""
         return grindable(engagement, self.load if self.over is None else self.over, shape, self.metric, cache=cache)
@@ -132,6 +141,9 @@ class ReliefDesign:
     within : mapping of shape to ndarray, shape (L, 2)
         Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
         empty without tolerances, or with a film.
+    finer : mapping of shape to int or None
+        By how many classes the tolerances would have to be finer for each to leave no more than no relief at any of
+        these loads: 0 where they do, None where none does; of the shapes of `within`.
     tables_leave : float
         Transmission error, peak to peak, of the relief tables read back linearly [m].
     """
@@ -146,12 +158,21 @@ class ReliefDesign:
     curves: Mapping[str, Loaded]
     over_range: Mapping[str, tuple[TransmissionError, ...]]
     within: Mapping[Shape, Array]
+    finer: Mapping[Shape, int | None]
     tables_leave: float
 
     @property
+    def shapes(self) -> list[Shape]:
+        """Of the reliefs to grind, the one to be ground first: by what they leave, also within their tolerances."""
+        part = proportions(np.array(self.task.over_loads), self.task.over_weights)
+        within = {shape: float((both[:, 1] * part).max()) for shape, both in self.within.items()}
+        return preferred({shape: one.objective for shape, one in self.ground.items()}, within)
+
+    @property
     def best_ground(self) -> tuple[Shape, TipReliefPair]:
-        """The shape that leaves the least by the metric of the task, and its reliefs."""
-        return min(self.ground.items(), key=lambda one: one[1].objective)
+        """The shape to be ground, and its reliefs."""
+        shape = self.shapes[0]
+        return shape, self.ground[shape]
 
 
 def design_relief(
@@ -216,11 +237,14 @@ def design_relief(
         if label != "diagonal only"
     }
     within: dict[Shape, Array] = {}
+    finer: dict[Shape, int | None] = {}
     if film is None and task.tip_tolerances is not None:
         within = {
             shape: within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
             for shape, one in ground.items()
         }
+        none = np.array([one.peak_to_peak for one in over_range["no relief"]])
+        finer = {shape: _classes_finer(plain, ground[shape], task, both[:, 1], none) for shape, both in within.items()}
     report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
@@ -228,8 +252,23 @@ def design_relief(
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     return ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, finer, tables_leave,
     )  # fmt: skip
+
+
+def _classes_finer(
+    plain: Engagement, ground: TipReliefPair, task: DesignTask, most: Array, none: Array
+) -> int | None:  # fmt: skip
+    """By how many classes tolerances would have to be finer for reliefs to pay at every load that counts."""
+    assert task.tip_tolerances is not None  # noqa: S101  (for mypy: there is something within them)
+    both, counts = task.tip_tolerances, task.over_weights > 0.0
+    loads = np.array(task.over_loads)[counts]
+
+    def finer(classes: int) -> Array:
+        allowed = both[0].finer(classes), both[1].finer(classes)
+        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
+
+    return classes_finer(most[counts], none[counts], finer, min(one.finest for one in both))
 
 
 def relief_at(designed: Engagement, member: Member, roll_angles: ArrayLike) -> ReliefTable:

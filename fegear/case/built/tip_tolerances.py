@@ -79,11 +79,12 @@ def _tolerance(part: GearPart, gear: Gear, asked: TipTolerancePart) -> TipTolera
         found = gear_deviations(part, gear, grade, ("profile_slope", "profile_form"), rounded=True)
         slope, form = found["profile_slope"], found["profile_form"]
     except RangeError:
-        by_class = _inside_the_standard(gear, grade)
-        slope, form = by_class.profile_slope, by_class.profile_form
+        usual = _inside_the_standard(gear, grade)
+        slope, form = usual.profile_slope, usual.profile_form
     if asked.amount is not None:
         return TipTolerance(asked.amount, asked.length, form)
-    return TipTolerance(slope, asked.length, form, _origin_of_slope(part))
+    by_class = None if own_deviation(part, "profile_slope") is not None else grade
+    return TipTolerance(slope, asked.length, form, _origin_of_slope(part), by_class)
 
 
 def _origin_of_slope(part: GearPart) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -17,7 +18,7 @@ from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
 from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
-from fegear.design.flanks.forms import GroundRelief
+from fegear.design.flanks.forms import NUMBERS, GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
 from fegear.design.flanks.scatter import Scatter
@@ -33,9 +34,10 @@ from fegear.design.flanks.topography import (
 )
 from fegear.design.flanks.trials import FlankTrials, Tried
 from fegear.design.load_range import proportions
+from fegear.design.preferred import CLEARLY, classes_finer
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.flank_modification import Topography
-from fegear.geometry.pair import Member
+from fegear.geometry.pair import GearPair, Member
 
 UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
 
@@ -117,6 +119,9 @@ class FlankState(ReadOnlyArrays):
         Of `over_peak_to_peak` [m].
     over_most : ndarray, shape (L,), optional
         Largest peak-to-peak value within the task's tolerances, aligned as given [m]; None where nothing is ground.
+    over_finer : int or None
+        By how many classes these would have to be finer for it to leave no more than no relief at any load: 0 where
+        they do, None where none does.
     """
 
     label: str
@@ -129,6 +134,7 @@ class FlankState(ReadOnlyArrays):
     over_mean: Array
     over_error: Array | None = None
     over_most: Array | None = None
+    over_finer: int | None = 0
 
     @property
     def modifications(self) -> int:
@@ -202,13 +208,26 @@ class FlankDesign(ReadOnlyArrays):
         """The one to be ground: `least`, or one of fewer modifications that leaves no more within its error.
 
         So does one of fewer whose further modifications are smaller than their tolerances: no inspection finds these.
+        One that leaves clearly less at the worst within its tolerances goes before all of them.
         """
         least = self.least
         like = [
             s for s in self.ground
             if s.modifications <= least.modifications and (s is least or self.alike(s) or self.within_tolerance(s))
         ]  # fmt: skip
-        return min(like, key=lambda s: (s.modifications, self.left_by(s)))
+        simple = min(like, key=lambda s: (s.modifications, self.left_by(s)))
+        clear = [] if self.scattered else [
+            s for s in self.ground
+            if self.within_by(s) < CLEARLY * self.within_by(simple) and s.modifications <= least.modifications
+        ]  # fmt: skip
+        return min(clear, key=self.within_by, default=simple)
+
+    def within_by(self, state: FlankState) -> float:
+        """What a way leaves at most within its tolerances, as `left_by`; infinite where that is not known [m]."""
+        if state.over_most is None:
+            return math.inf
+        weights = None if self.task.weights is None else np.array(self.task.weights)
+        return float((state.over_most * proportions(np.array(self.task.loads), weights)).max())
 
     @property
     def chosen(self) -> tuple[FlankState, ...]:
@@ -383,16 +402,33 @@ def _state(
     if task.scatter.over_face.size > 1:
         dense = over_loads.judge.dense
         mean = mean_over_scatter(dense, gap(dense.known.lines), task.deviation)
-    most = None
+    most: Array | None = None
+    finer: int | None = 0
     if task.tolerance is not None and isinstance(relief, GroundRelief) and label != UNRELIEVED:
         dense = over_loads.judge.dense
         off = within_tolerances(over_loads.searched, here.pair, relief.numbers, task.tolerance)
         most = np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
         most = np.maximum(most, left)
+        finer = _classes_finer(over_loads, here.pair, relief, task, most)
     lines = over_loads.judge.dense.known.lines
     phase = 2j * np.pi * lines.roll / here.pair.base_pitch
     first = 2.0 * np.abs(lines.mean(np.exp(-phase)[:, None] * (te - lines.mean(te))))
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
-        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most,
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most, finer,
     )  # fmt: skip
+
+
+def _classes_finer(
+    over: _OverLoads, pair: GearPair, relief: GroundRelief, task: FlankDesignTask, most: Array
+) -> int | None:  # fmt: skip
+    """By how many classes tolerances would have to be finer for a relief to pay under every load."""
+    tolerance, dense = task.tolerance, over.judge.dense
+    assert tolerance is not None  # noqa: S101  (for mypy: there is something within it)
+
+    def finer(classes: int) -> Array:
+        off = within_tolerances(over.searched, pair, relief.numbers, tolerance.finer(classes))
+        return np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
+
+    none = np.array([np.ptp(dense.of_numbers(np.zeros(len(NUMBERS))).te[0, :, i]) for i in range(len(task.loads))])
+    return classes_finer(most, none, finer, tolerance.finest)

@@ -10,6 +10,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.design.flanks.forms import NUMBERS
 from fegear.design.flanks.trials import FlankTrials
+from fegear.design.preferred import CLASS_STEP
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.relief import EndRelief
@@ -54,6 +55,19 @@ class FlankTolerance:
 
     tips: tuple[TipTolerance, TipTolerance]
     lead: LeadTolerance | None = None
+
+    @property
+    def finest(self) -> int:
+        """By how many classes all of it can be finer."""
+        return min(tip.finest for tip in self.tips)
+
+    def finer(self, classes: int) -> FlankTolerance:
+        """The same so many classes finer, lengths of tip reliefs as they are."""
+        tips, lead = (self.tips[0].finer(classes), self.tips[1].finer(classes)), self.lead
+        if lead is not None:
+            part = CLASS_STEP**-classes
+            lead = LeadTolerance(lead.slope * part, lead.crowning * part, lead.twist * part)
+        return FlankTolerance(tips, lead)
 
     @property
     def amounts(self) -> Array:

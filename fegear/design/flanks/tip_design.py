@@ -7,18 +7,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.base.arrays import Array, Mask, ReadOnlyArrays
 from fegear.contact.fourier import Panels
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest
 from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
-from fegear.design.flanks.tip_bench import Read, tip_reader, tip_trials, without_tips
+from fegear.design.flanks.tip_bench import Read, TipReader, tip_reader, tip_trials, without_tips
 from fegear.design.flanks.tip_search import best_tips
-from fegear.design.load_range import LoadRange
+from fegear.design.load_range import LoadRange, proportions
+from fegear.design.preferred import classes_finer, preferred
 from fegear.fem.solid.flank_body import FlankBody
-from fegear.geometry.pair import Member
+from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.relief import Shape
 
 #: Exponents of the shapes.
@@ -58,6 +59,18 @@ class TipDesignTask:
         """All loads under which what is left is read, ascending [N]."""
         return tuple(sorted({self.load, *(self.over.loads if self.over else ()), *self.map_loads}))
 
+    @property
+    def counts(self) -> Mask:
+        """Which of them the reliefs are designed for, shape (L,)."""
+        return np.isin(np.array(self.loads), (self.over or self.one_load).loads)
+
+    @property
+    def proportions(self) -> Array:
+        """By what these count."""
+        over = self.over or self.one_load
+        weights = None if over.weights is None else np.array(over.weights)
+        return np.asarray(proportions(np.array(over.loads), weights), dtype=float)
+
 
 @dataclass(frozen=True)
 class TipDesign(ReadOnlyArrays):
@@ -77,6 +90,9 @@ class TipDesign(ReadOnlyArrays):
         ("linear tip relief for one load"), and "present relief" where the pair has one.
     most : mapping of shape to ndarray, shape (L,)
         Largest peak-to-peak value within the tolerances [m].
+    finer : mapping of shape to int or None
+        By how many classes these would have to be finer for it to leave no more than no relief under any load that it
+        is designed for: 0 where they do, None where none does.
     """
 
     task: TipDesignTask
@@ -85,6 +101,18 @@ class TipDesign(ReadOnlyArrays):
     for_one_load: Mapping[Shape, FamilyBest]
     left: Mapping[str, Read]
     most: Mapping[Shape, Array]
+    finer: Mapping[Shape, int | None]
+
+    @property
+    def shapes(self) -> list[Shape]:
+        """The one to be ground first: by what they leave, also within their tolerances."""
+        part, counts = self.task.proportions, self.task.counts
+
+        def worst(left: Array) -> float:
+            return float((left[counts] * part).max())
+
+        drawn = {shape: worst(self.left[f"{shape} tip relief"].peak_to_peak) for shape in self.found}
+        return preferred(drawn, {shape: worst(most) for shape, most in self.most.items()})
 
 
 def design_tips(
@@ -126,6 +154,7 @@ def design_tips(
     found: dict[Shape, FamilyBest] = {}
     single: dict[Shape, FamilyBest] = {}
     most: dict[Shape, Array] = {}
+    finer: dict[Shape, int | None] = {}
     for number, shape in enumerate(task.grind):
         power = POWERS[shape]
         of_shape = reader.shaped(power)
@@ -136,8 +165,23 @@ def design_tips(
         most[shape] = np.array([
             np.ptp(of_shape.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)
         ])  # fmt: skip
+        finer[shape] = _classes_finer(of_shape, pair, numbers, task, most[shape], left["no relief"].peak_to_peak)
         if task.over is not None:
             single[shape] = best_tips(trials.over(task.one_load, power, apart))
             left[f"{shape} tip relief for one load"] = of_shape.read(single[shape].relief.numbers)
         report(0.5 + 0.5 * (number + 1) / len(task.grind))
-    return TipDesign(task, reader.points, found, single, left, most)
+    return TipDesign(task, reader.points, found, single, left, most, finer)
+
+
+def _classes_finer(
+    reader: TipReader, pair: GearPair, numbers: Array, task: TipDesignTask, most: Array, none: Array
+) -> int | None:  # fmt: skip
+    """By how many classes tolerances would have to be finer for reliefs to pay under every load that counts."""
+    counts = task.counts
+
+    def finer(classes: int) -> Array:
+        worst = within_tolerances(reader.plain, pair, numbers, task.tolerance.finer(classes))
+        left = [np.ptp(reader.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)]
+        return np.array(left)[counts]
+
+    return classes_finer(most[counts], none[counts], finer, task.tolerance.finest)

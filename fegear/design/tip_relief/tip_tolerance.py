@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
+from fegear.design.preferred import CLASS_STEP, FINEST
 from fegear.geometry.gear import Gear
 from fegear.geometry.relief import EndRelief
 
@@ -34,12 +35,26 @@ class TipTolerance:
         What the profile may deviate besides, to the side of more removal [m].
     origin : str
         Where the amount's tolerance comes from, for sentences: "f_Hα of class 5"; empty where the case gives it.
+    grade : int or None
+        Class of ISO 1328 that the amount's tolerance follows; None where it does not follow one.
     """
 
     amount: float
     length: float | None
     form: float
     origin: str = field(default="", compare=False)
+    grade: int | None = field(default=None, compare=False)
+
+    @property
+    def finest(self) -> int:
+        """By how many classes the tolerance of the amount can be finer."""
+        return FINEST if self.grade is None else max(self.grade - 1, 0)
+
+    def finer(self, classes: int) -> TipTolerance:
+        """The same with an amount that is so many classes finer; the length has no class."""
+        grade = None if self.grade is None else self.grade - classes
+        origin = "" if grade is None else f"f_Hα of class {grade}"
+        return replace(self, amount=self.amount / CLASS_STEP**classes, origin=origin, grade=grade)
 
     def length_of(self, gear: Gear, tip: EndRelief) -> float:
         """By how much the length of a relief may be off [m]."""

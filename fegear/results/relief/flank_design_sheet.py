@@ -12,6 +12,7 @@ from fegear.base.notes import assuming
 from fegear.base.printed import figures, percent
 from fegear.contact.wide.lines import ContactLines
 from fegear.design.flanks.forms import lead_bearer
+from fegear.design.preferred import CLASS_STEP
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Map, Over
@@ -26,7 +27,7 @@ from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, left_words, within_words
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -175,33 +176,38 @@ def _grind(seen: Seen) -> Iterator[str]:
     after = _left(seen, best.label)[1]
     ground = [row for row in seen.data.grinding if row.design == best.label and row.words]
     words = [row.words for row in ground]
-    left = ", ".join(
-        f"{_microns(none[i])} -> {_microns(after[i])} µm at {_torque(torque[i])}"
-        for i in dict.fromkeys(i % torque.size for i in (-1, 0))
-    )
+    within = best.over_most if words and best.over_most is not None and best.over_most.size == torque.size else None
+    ends = tuple(dict.fromkeys(i % torque.size for i in (-1, 0)))
+    left = left_words(none, after, within, torque, ends)
     yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
-    if best.over_most is not None and words:
-        within = best.over_most
+    if within is not None:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
-        without = f"{'more than the ' if within[i] > none[i] else ''}{_microns(none[i])} µm without relief"
-        yield (
-            f"Pair {seen.name}: within {_allowed(seen, ground)} at most {_microns(within[i])} µm at "
-            f"{_torque(torque[i])} ({without})."
-        )
+
+        def allowed(classes: int) -> str:
+            return _allowed(seen, ground, classes)
+
+        yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], best.over_finer, allowed)}."
     if least is not best:
         gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
         why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"
-        yield (
-            f"Pair {seen.name}: {least.label} ({least.modifications} modifications) is only {gain} better than "
-            f"{best.label} ({best.modifications}), {why}."
-        )
+        than = f"than {best.label} ({best.modifications})"
+        if not design.alike(best) and not design.within_tolerance(best):
+            most = _microns(design.within_by(least)), _microns(design.within_by(best))
+            said = f"is {gain} better {than} as drawn, but worse within its tolerances ({most[0]}, not {most[1]} µm)"
+        else:
+            said = f"is only {gain} better {than}, {why}"
+        yield f"Pair {seen.name}: {least.label} ({least.modifications} modifications) {said}."
 
 
-def _allowed(seen: Seen, ground: list[Grinding]) -> str:
-    """Tolerances of what is ground: of tips, and of everything else by its kind."""
-    tips = [row for row in ground if row.modification == TIP]
-    tip = [allowed_words(seen.asked.tolerance.tips, tips)] if tips else []
-    rest = [f"± {_microns(row.amount_tolerance)} µm {row.modification}" for row in ground if row.modification != TIP]
+def _allowed(seen: Seen, ground: list[Grinding], classes: int) -> str:
+    """Tolerances of what is ground, so many classes finer: of tips, and of everything else by its kind."""
+    tips, allowed = [row for row in ground if row.modification == TIP], seen.asked.tolerance.tips
+    tip = [allowed_words([one.finer(classes) if classes else one for one in allowed], tips)] if tips else []
+    rest = [
+        f"± {_microns(row.amount_tolerance / CLASS_STEP**classes)} µm {row.modification}"
+        for row in ground
+        if row.modification != TIP
+    ]
     return ", ".join([*tip, *dict.fromkeys(rest)])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from fegear.base.printed import figures
 from fegear.engine.sheet.answer import Answer
 from fegear.geometry.pair import MEMBER_WORDS
-from fegear.results.relief.relief_over_range import said_of_range
+from fegear.results.relief.relief_over_range import said_of_range, said_of_tolerances
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,9 +32,8 @@ def _torque(seen: Seen, load: float) -> str:
 
 
 def _best(seen: Seen) -> str:
-    """Shape of the tip relief that leaves least; empty where none is designed."""
-    shapes = seen.data.data.design.ground
-    return min(shapes, key=lambda shape: seen.data.left[f"{shape} tip relief"].te.peak_to_peak, default="")
+    """Shape of the tip relief to be ground; empty where none is designed."""
+    return next(iter(seen.data.data.design.shapes), "")
 
 
 def _grind(seen: Seen) -> Iterator[str]:
@@ -53,11 +52,14 @@ def _grind(seen: Seen) -> Iterator[str]:
     ]
     before, after = left["no relief"].te.peak_to_peak, left[f"{shape} tip relief"].te.peak_to_peak
     at = _torque(seen, seen.data.load)
-    changed = f"transmission error {_microns(before)} -> {_microns(after)} µm peak to peak at {at}."
+    changed = f"transmission error {_microns(before)} -> {_microns(after)} µm peak to peak at {at}"
     if amounts:
-        yield f"Pair {seen.name}: grind {' and '.join(amounts)} ({shape} tip relief): {changed}"
+        best, i = seen.data.over_range[f"{shape} tip relief"], seen.data.at_design_load
+        within = "" if best.most is None else f" (within tolerances at most {_microns(best.most[i])} µm)"
+        yield f"Pair {seen.name}: grind {' and '.join(amounts)} ({shape} tip relief): {changed}{within}."
+        yield from said_of_tolerances(seen, shape, (i,))
     else:
-        yield f"Pair {seen.name}: no tip relief reduces the excitation: {changed}"
+        yield f"Pair {seen.name}: no tip relief reduces the excitation: {changed}."
 
 
 def _at_half_load(seen: Seen) -> Iterator[str]:

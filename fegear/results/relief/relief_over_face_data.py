@@ -186,27 +186,19 @@ class TipsShown:
         if task.over is not None:
             weights = np.ones(load.size) if task.over.weights is None else np.array(task.over.weights)
         most = {f"{shape} tip relief": one[chosen] for shape, one in design.most.items()}
+        finer = {f"{shape} tip relief": one for shape, one in design.finer.items()}
         return {
             label: LeftOverRange(
                 load * self.data.pair.driver.base_radius, load, weights / weights.max(), read.peak_to_peak[chosen],
-                read.series.amplitude[0][chosen], most.get(label), read.error[chosen],
+                read.series.amplitude[0][chosen], most.get(label), read.error[chosen], finer=finer.get(label, 0),
             )
             for label, read in design.left.items()
         }  # fmt: skip
 
     @cached_property
     def shapes(self) -> list[Shape]:
-        """That were designed, the best first."""
-        return sorted(self.design.found, key=lambda shape: self._worst(f"{shape} tip relief"))
-
-    def _worst(self, label: str) -> float:
-        """What a relief leaves at the worst load of the range, or at the design load [m]."""
-        from fegear.design.load_range import proportions
-
-        found, over = self.over_range[label], self.design.task.over
-        if over is None:
-            return self.left[label].peak_to_peak
-        return float((found.peak_to_peak * proportions(found.load, found.weight)).max())
+        """That were designed, the one to be ground first."""
+        return self.design.shapes
 
     @cached_property
     def tips(self) -> tuple[Tip, ...]:

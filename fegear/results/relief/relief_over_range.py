@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.printed import figures
 from fegear.base.shown import shown
+from fegear.design.preferred import CLEARLY
 from fegear.engine.colours import ROLES
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
@@ -18,7 +19,7 @@ from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.left_errors import left_error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement
@@ -27,11 +28,6 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair
-    from fegear.results.relief.grinding import Grinding
-
-
-#: Share of what one shape may leave within its tolerances below which another is worth a word.
-_CLEARLY = 0.95
 
 
 @dataclass(frozen=True)
@@ -42,6 +38,9 @@ class LeftOverRange:
     ----------
     error : float or ndarray, shape (L,), or None
         Of the peak-to-peak values [m].
+    finer : int or None
+        By how many classes the tolerances would have to be finer for it to leave no more than no relief anywhere: 0
+        where they do, None where none does.
     """
 
     torque: Array = shown("N.m", "torque on the driver", label="torque on the driver")
@@ -58,16 +57,7 @@ class LeftOverRange:
         "um", "peak-to-peak transmission error, mean over the scatter of misalignment",
         name="te_mean_over_scatter", default=None,
     )  # fmt: skip
-
-    @property
-    def allowed(self) -> Array:
-        """Maximum within the tolerances; without them what the relief itself leaves."""
-        return self.peak_to_peak if self.most is None else self.most
-
-    @property
-    def worst_allowed(self) -> float:
-        """The worst of it in proportion to the load, as the design counts it [m]."""
-        return float((self.allowed * self.weight * self.load.max() / self.load).max())
+    finer: int | None = 0
 
     @property
     def errors(self) -> Array | None:
@@ -79,18 +69,17 @@ def left_over_range(
     design: ReliefDesign, pair: GearPair, shifted: Sequence[Engagement] = ()
 ) -> dict[str, LeftOverRange]:
     """What every relief leaves at the loads of the range, or of the pair; `shifted` as in `left_error`."""
-    over, load = design.task.over, np.array(design.task.over_loads)
-    weights = np.asarray(load == design.task.load, dtype=float)
-    if over is not None:
-        weights = np.ones(load.size) if over.weights is None else np.array(over.weights)
+    load = np.array(design.task.over_loads)
+    weights = design.task.over_weights
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
+    finer = {f"{shape} tip relief": one for shape, one in design.finer.items()}
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
     searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
     return {
         label: LeftOverRange(
             load * pair.driver.base_radius, load, weights / weights.max(),
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
-            within.get(label), _errors(found, shifted, searched.get(label)),
+            within.get(label), _errors(found, shifted, searched.get(label)), finer=finer.get(label, 0),
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
@@ -118,15 +107,11 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
     rows = [row for row in d.grinding if row.shape == shape and row.words]
     ground = [row.words for row in rows]
-    left = ", ".join(
-        f"{figures(none.peak_to_peak[i] * 1e6, 2)} -> {figures(best.peak_to_peak[i] * 1e6, 2)} µm at "
-        f"{figures(best.torque[i], 4)} N m"
-        for i in dict.fromkeys(i % best.torque.size for i in ends)
-    )
+    at = tuple(dict.fromkeys(i % best.torque.size for i in ends))
+    left = left_words(none.peak_to_peak, best.peak_to_peak, best.most if ground else None, best.torque, at)
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
-    if ground and best.most is not None:
-        yield _tolerated(seen, shape, none, best, every, rows)
+    yield from said_of_tolerances(seen, shape, every)
     single = d.over_range.get(f"{shape} tip relief for one load")
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
@@ -139,28 +124,90 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         )
 
 
-def _tolerated(
-    seen: Seen, shape: str, none: LeftOverRange, best: LeftOverRange, ends: tuple[int, ...], ground: list[Grinding]
+def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...]) -> Iterator[str]:
+    """What tolerances may leave of a shape at any of these torques, and which would do where it does not pay."""
+    d = seen.data
+    none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
+    rows = [row for row in d.grinding if row.shape == shape and row.words]
+    if not rows or best.most is None:
+        return
+    places = np.array(every) % best.torque.size
+    i = int(places[np.argmax(best.most[places] / none.peak_to_peak[places])])
+
+    def allowed(classes: int) -> str:
+        return allowed_words([one.finer(classes) if classes else one for one in seen.asked.tolerances], rows)
+
+    within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, allowed)
+    yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
+
+
+def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int]) -> str:
+    """Without relief, as drawn and at most within the tolerances: "7 -> 2.4 µm (tolerances: at most 4.5 µm) at ...".
+
+    Parameters
+    ----------
+    none, drawn : ndarray, shape (L,)
+        Peak-to-peak transmission error [m].
+    most : ndarray, shape (L,), or None
+        With amounts and lengths inside their tolerances; None where nothing is known of these [m].
+    torque : ndarray, shape (L,)
+        [N m].
+    at : sequence of int
+        Places that are named.
+    """
+    said: list[str] = []
+    for i in at:
+        within = ""
+        if most is not None:
+            within = f" ({'at most' if said else 'within tolerances at most'} {figures(most[i] * 1e6, 2)} µm)"
+        said.append(
+            f"{figures(none[i] * 1e6, 2)} -> {figures(drawn[i] * 1e6, 2)} µm{within} at {figures(torque[i], 4)} N m"
+        )
+    return ", ".join(said)
+
+
+def within_words(
+    none: float, most: float, torque: float, finer: int | None, allowed: Callable[[int], str]
 ) -> str:  # fmt: skip
-    """What tolerances may leave where they take most of the gain, and which other shape they hurt less."""
-    most, at = best.allowed, np.array(ends) % best.torque.size
-    i = int(at[np.argmax(most[at] / none.peak_to_peak[at])])
-    more = "more than the " if most[i] > none.peak_to_peak[i] else ""
-    without = f"{more}{figures(none.peak_to_peak[i] * 1e6, 2)} µm without relief"
-    said = (
-        f"Pair {seen.name}: within {allowed_words(seen.asked.tolerances, ground)} at most "
-        f"{figures(most[i] * 1e6, 2)} µm at {figures(best.torque[i], 4)} N m ({without})"
-    )
-    others = {
-        key.removesuffix(" tip relief"): one
+    """What tolerances may leave at the torque where they take most of the gain, and which would do.
+
+    Parameters
+    ----------
+    none, most : float
+        Without relief, and at most within the tolerances [m].
+    torque : float
+        [N m].
+    finer : int or None
+        By how many classes the tolerances would have to be finer for the relief to pay at every torque.
+    allowed : callable
+        Tolerances that are so many classes finer, in words.
+    """
+    at = f"{figures(most * 1e6, 2)} µm at {figures(torque, 4)} N m"
+    said = f"within {allowed(0)} at most {at} ({figures(none * 1e6, 2)} µm without relief)"
+    if finer == 0:
+        return said
+    if finer is None:
+        return f"{said}: no finer class keeps it below that at every torque"
+    return f"{said}: to stay below that at every torque it needs {allowed(finer)}"
+
+
+def _as_drawn(seen: Seen, shape: str, best: LeftOverRange, i: int) -> str:
+    """Which other shape leaves less as drawn at this torque, but more within its tolerances; empty for none."""
+    if best.most is None:
+        return ""
+    worse = {
+        key.removesuffix(" tip relief"): (float(one.peak_to_peak[i]), float(one.most[i]))
         for key, one in seen.data.over_range.items()
-        if one.most is not None and key != f"{shape} tip relief"
+        if one.most is not None
+        and key != f"{shape} tip relief"
+        and one.peak_to_peak[i] < best.peak_to_peak[i]
+        and CLEARLY * one.most[i] > best.most[i]
     }
-    other = min(others, key=lambda key: others[key].worst_allowed, default="")
-    if not other or others[other].worst_allowed > _CLEARLY * best.worst_allowed:
-        return f"{said}."
-    within = figures(others[other].allowed[i] * 1e6, 2)
-    return f"{said}; {other} tip relief is better within its tolerances: at most {within} µm."
+    if not worse:
+        return ""
+    other = min(worse, key=lambda key: worse[key])
+    drawn, most = (figures(value * 1e6, 2) for value in worse[other])
+    return f"; {other} tip relief {drawn} µm as drawn there, but at most {most} µm"
 
 
 def _key(seen: Seen) -> str:

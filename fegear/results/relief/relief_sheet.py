@@ -215,6 +215,11 @@ class ReliefShown:
         return left_error(te, self.data.pair.shifted, None if ground is None else ground.objective_error)
 
     @property
+    def at_design_load(self) -> int:
+        """Number of the design load among those of `over_range`."""
+        return self.data.design.task.over_loads.index(self.load)
+
+    @property
     def for_range(self) -> bool:
         """Whether the reliefs to grind are for a range of torques."""
         return self.data.design.task.over is not None and bool(self.data.design.ground)
@@ -222,16 +227,16 @@ class ReliefShown:
     @cached_property
     def grinding(self) -> tuple[Grinding, ...]:
         """The reliefs to grind, those of the best shape first."""
-        ground, allowed = self.data.design.ground, dict(zip(MEMBERS, self.asked.tolerances, strict=True))
+        order, allowed = self.data.design.shapes, dict(zip(MEMBERS, self.asked.tolerances, strict=True))
         rows = [tip_row(tip, self.asked.gears[tip.member], allowed[tip.member]) for tip in self.tips]
-        return tuple(sorted(rows, key=lambda row: ground[cast("Shape", row.shape)].objective))
+        return tuple(sorted(rows, key=lambda row: order.index(cast("Shape", row.shape))))
 
     @cached_property
     def profile_charts(self) -> dict[str, tuple[ProfileChart, ...]]:
         """Of both gears for each shape of relief to grind, the best first."""
         pair, allowed = self.data.pair.engagement, self.asked.tolerances
         present = pair.driver_relief, pair.driven_relief
-        found = sorted(self.data.design.ground.items(), key=lambda one: one[1].objective)
+        found = [(shape, self.data.design.ground[shape]) for shape in self.data.design.shapes]
         return {
             f"{shape} tip relief": tuple(
                 profile_chart(
