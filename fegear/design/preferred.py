@@ -63,4 +63,10 @@ def classes_finer(most: Array, none: Array, finer: Callable[[int], Array], fines
     """
     if not np.any(most > none):
         return 0
-    return next((steps for steps in range(1, finest + 1) if not np.any(finer(steps) > none)), None)
+    short, enough = 0, finest  # what finer tolerances contain is contained in coarser ones: halved
+    if finest < 1 or np.any(finer(finest) > none):
+        return None
+    while enough - short > 1:
+        middle = (short + enough) // 2
+        short, enough = (middle, enough) if np.any(finer(middle) > none) else (short, middle)
+    return enough

@@ -141,9 +141,9 @@ class ReliefDesign:
     within : mapping of shape to ndarray, shape (L, 2)
         Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
         empty without tolerances, or with a film.
-    finer : mapping of shape to int or None
-        By how many classes the tolerances would have to be finer for each to leave no more than no relief at any of
-        these loads: 0 where they do, None where none does; of the shapes of `within`.
+    finer : int or None
+        By how many classes the tolerances would have to be finer for the shape to be ground to leave no more than no
+        relief at any of these loads that counts: 0 where they do, None where none does.
     tables_leave : float
         Transmission error, peak to peak, of the relief tables read back linearly [m].
     """
@@ -158,8 +158,8 @@ class ReliefDesign:
     curves: Mapping[str, Loaded]
     over_range: Mapping[str, tuple[TransmissionError, ...]]
     within: Mapping[Shape, Array]
-    finer: Mapping[Shape, int | None]
     tables_leave: float
+    finer: int | None = 0
 
     @property
     def shapes(self) -> list[Shape]:
@@ -237,38 +237,39 @@ def design_relief(
         if label != "diagonal only"
     }
     within: dict[Shape, Array] = {}
-    finer: dict[Shape, int | None] = {}
     if film is None and task.tip_tolerances is not None:
         within = {
             shape: within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
             for shape, one in ground.items()
         }
-        none = np.array([one.peak_to_peak for one in over_range["no relief"]])
-        finer = {shape: _classes_finer(plain, ground[shape], task, both[:, 1], none) for shape, both in within.items()}
     report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
-    return ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, finer, tables_leave,
+    design = ReliefDesign(
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
     )  # fmt: skip
+    return replace(design, finer=_classes_finer(plain, design))
 
 
-def _classes_finer(
-    plain: Engagement, ground: TipReliefPair, task: DesignTask, most: Array, none: Array
-) -> int | None:  # fmt: skip
-    """By how many classes tolerances would have to be finer for reliefs to pay at every load that counts."""
-    assert task.tip_tolerances is not None  # noqa: S101  (for mypy: there is something within them)
+def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:
+    """By how many classes tolerances would have to be finer for the shape to be ground to pay at every load."""
+    task = design.task
+    if task.tip_tolerances is None or not design.within:
+        return 0
+    shape, ground = design.best_ground
     both, counts = task.tip_tolerances, task.over_weights > 0.0
     loads = np.array(task.over_loads)[counts]
+    none = np.array([one.peak_to_peak for one in design.over_range["no relief"]])
 
     def finer(classes: int) -> Array:
         allowed = both[0].finer(classes), both[1].finer(classes)
         return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
 
-    return classes_finer(most[counts], none[counts], finer, min(one.finest for one in both))
+    finest = min(one.finest for one in both)
+    return classes_finer(design.within[shape][counts, 1], none[counts], finer, finest)
 
 
 def relief_at(designed: Engagement, member: Member, roll_angles: ArrayLike) -> ReliefTable:

@@ -92,7 +92,8 @@ def test_its_answer_says_what_to_grind_what_theory_leaves_and_what_the_robust_on
     grind, within, *fewer, exact, robust = outcome.answer.sentences
     assert grind.startswith("Pair I: grind ")
     torque = f"{1800.0 * 29.06345e-3:.2f} N m"  # base radius: 0.5 x 20 x 3 mm / cos 15° x cos(atan(tan 20° / cos 15°))
-    assert grind.endswith(f"µm at {torque}, peak to peak.")
+    assert grind.endswith(f"µm) at {torque}, peak to peak.")
+    assert "(within tolerances at most " in grind
     assert within.startswith("Pair I: within ± ")
     assert all("modifications) is only" in said for said in fewer)
     assert exact.startswith("Pair I: the exact topography reduces the transmission error from ")

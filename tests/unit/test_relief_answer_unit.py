@@ -18,46 +18,67 @@ CLASS = "f_Hα of class 5, assumed"
 LOAD = np.array([1000.0, 2000.0])
 
 
-def left(values, most=None):
+def left(values, most=None, finer=0):
     numbers = (np.array(values, dtype=float) * 1e-6, np.zeros(2), None if most is None else np.array(most) * 1e-6)
-    return LeftOverRange(0.05 * LOAD, LOAD, np.ones(2), *numbers)
+    return LeftOverRange(0.05 * LOAD, LOAD, np.ones(2), *numbers, finer=finer)
 
 
-def said(linear, parabolic):
+def said(linear, parabolic, finer=0, grade=5):
+    """With linear reliefs to be ground."""
     rows = tuple(
         Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, 6e-6, start_diameter=0.06)
         for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
     )  # fmt: skip
     left_over = {
-        "no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), linear),
-        "parabolic tip relief": left((1.3, 2.5), parabolic), "linear tip relief for one load": left((3.9, 0.8)),
+        "no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), linear, finer),
+        "parabolic tip relief": left((1.1, 2.5), parabolic), "linear tip relief for one load": left((3.9, 0.8)),
     }  # fmt: skip
     data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
-    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS),) * 2)
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2)
     return list(said_of_range(Seen(data, asked, "I")))
 
 
-@pytest.mark.parametrize(
-    ("linear", "parabolic", "words"),
-    [
-        ((4.3, 5.9), (3.5, 4.5), ("at most 4.3 µm at 50 N m (more than the 3.7 µm without relief); parabolic tip "
-         "relief is better within its tolerances: at most 3.5 µm.")),
-        ((1.5, 5.9), (3.5, 4.5), "at most 5.9 µm at 100 N m (7 µm without relief)."),
-        ((2.0, 3.0), (1.9, 3.9), "at most 2 µm at 50 N m (3.7 µm without relief)."),
-    ],
-)  # fmt: skip
-def test_what_tolerances_may_leave_is_said_behind_what_to_grind(linear, parabolic, words):
-    first, within, single = said(linear, parabolic)
+def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_tolerances():
+    first, _, single = said((3.3, 4.5), (3.5, 5.0))
     assert first.startswith("Pair I: grind 6 µm from d 60.0 mm on gear p and 6 µm from d 60.0 mm on gear w, linear: ")
-    assert first.endswith("7 -> 2.4 µm at 100 N m, 3.7 -> 1.2 µm at 50 N m, peak to peak.")
-    assert within == f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length {words}"
+    assert first.endswith(
+        "7 -> 2.4 µm (within tolerances at most 4.5 µm) at 100 N m, 3.7 -> 1.2 µm (at most 3.3 µm) at 50 N m, "
+        "peak to peak."
+    )
     assert single.endswith(
         "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
     )
 
 
+WITHIN = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length at most "
+
+
+@pytest.mark.parametrize(
+    ("linear", "parabolic", "finer", "grade", "words"),
+    [
+        ((2.0, 3.0), (1.9, 3.9), 0, 5, "2 µm at 50 N m (3.7 µm without relief)."),
+        ((2.0, 3.0), (2.6, 3.9), 0, 5,
+         "2 µm at 50 N m (3.7 µm without relief); parabolic tip relief 1.1 µm as drawn there, but at most 2.6 µm."),
+        ((1.5, 5.9), (3.5, 4.5), 0, 5, "5.9 µm at 100 N m (7 µm without relief)."),
+        ((4.3, 5.9), (4.2, 4.5), 2, 5,
+         ("4.3 µm at 50 N m (3.7 µm without relief): to stay below that at every torque it needs ± 2.5 µm (f_Hα of "
+         "class 3) and ± 10 % of the length.")),
+        ((4.3, 5.9), (4.2, 4.5), 3, None,
+         ("4.3 µm at 50 N m (3.7 µm without relief): to stay below that at every torque it needs ± 1.8 µm and ± 10 % "
+         "of the length.")),
+        ((4.3, 5.9), (4.2, 4.5), None, 5,
+         "4.3 µm at 50 N m (3.7 µm without relief): no finer class keeps it below that at every torque."),
+    ],
+)  # fmt: skip
+def test_the_second_sentence_says_what_tolerances_may_leave_and_which_would_do(linear, parabolic, finer, grade, words):
+    within = said(linear, parabolic, finer, grade)[1]
+    assert within == (WITHIN if grade else WITHIN.replace(f" ({CLASS})", "")) + words
+
+
 def test_without_tolerances_nothing_is_said_of_them():
-    assert len(said(None, None)) == 2
+    first, single = said(None, None)
+    assert "tolerances" not in first
+    assert "only gives" in single
 
 
 def test_tolerances_are_named_once_or_by_gear_and_of_ground_gears_only():

@@ -18,7 +18,7 @@ from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
 from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
-from fegear.design.flanks.forms import NUMBERS, GroundRelief
+from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
 from fegear.design.flanks.scatter import Scatter
@@ -119,9 +119,6 @@ class FlankState(ReadOnlyArrays):
         Of `over_peak_to_peak` [m].
     over_most : ndarray, shape (L,), optional
         Largest peak-to-peak value within the task's tolerances, aligned as given [m]; None where nothing is ground.
-    over_finer : int or None
-        By how many classes these would have to be finer for it to leave no more than no relief at any load: 0 where
-        they do, None where none does.
     """
 
     label: str
@@ -134,7 +131,6 @@ class FlankState(ReadOnlyArrays):
     over_mean: Array
     over_error: Array | None = None
     over_most: Array | None = None
-    over_finer: int | None = 0
 
     @property
     def modifications(self) -> int:
@@ -166,6 +162,9 @@ class FlankDesign(ReadOnlyArrays):
     found : mapping of str to FamilyBest
         By the labels of what can be ground.
     grid : ReliefGrid
+    finer : int or None
+        By how many classes the tolerances of `best` would have to be finer for it to leave no more than no relief under
+        any load: 0 where they do, None where none does.
     """
 
     task: FlankDesignTask
@@ -177,6 +176,7 @@ class FlankDesign(ReadOnlyArrays):
     states: tuple[FlankState, ...]
     found: Mapping[str, FamilyBest]
     grid: ReliefGrid
+    finer: int | None = 0
 
     @property
     def unrelieved(self) -> FlankState:
@@ -358,7 +358,8 @@ def design_flanks(
     over = _OverLoads(judge.under(loads, apart), replace(more, weights=None))
     states = tuple(_state(label, relief, here, judge, over, task)
                    for label, relief in reliefs.items())  # fmt: skip
-    return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
+    design = FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
+    return replace(design, finer=_classes_finer(over, pair, design))
 
 
 def _starts(held: Sequence[FamilyBest]) -> list[GroundRelief]:
@@ -403,32 +404,31 @@ def _state(
         dense = over_loads.judge.dense
         mean = mean_over_scatter(dense, gap(dense.known.lines), task.deviation)
     most: Array | None = None
-    finer: int | None = 0
     if task.tolerance is not None and isinstance(relief, GroundRelief) and label != UNRELIEVED:
         dense = over_loads.judge.dense
         off = within_tolerances(over_loads.searched, here.pair, relief.numbers, task.tolerance)
         most = np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
         most = np.maximum(most, left)
-        finer = _classes_finer(over_loads, here.pair, relief, task, most)
     lines = over_loads.judge.dense.known.lines
     phase = 2j * np.pi * lines.roll / here.pair.base_pitch
     first = 2.0 * np.abs(lines.mean(np.exp(-phase)[:, None] * (te - lines.mean(te))))
     return FlankState(
         label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
-        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most, finer,
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)), left, first, mean, error, most,
     )  # fmt: skip
 
 
-def _classes_finer(
-    over: _OverLoads, pair: GearPair, relief: GroundRelief, task: FlankDesignTask, most: Array
-) -> int | None:  # fmt: skip
-    """By how many classes tolerances would have to be finer for a relief to pay under every load."""
-    tolerance, dense = task.tolerance, over.judge.dense
-    assert tolerance is not None  # noqa: S101  (for mypy: there is something within it)
+def _classes_finer(over: _OverLoads, pair: GearPair, design: FlankDesign) -> int | None:
+    """By how many classes tolerances would have to be finer for what is to be ground to pay under every load."""
+    tolerance, dense = design.task.tolerance, over.judge.dense
+    if tolerance is None or not design.found:
+        return 0
+    relief, most = design.best.relief, design.best.over_most
+    if relief is None or most is None:
+        return 0
 
     def finer(classes: int) -> Array:
         off = within_tolerances(over.searched, pair, relief.numbers, tolerance.finer(classes))
         return np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
 
-    none = np.array([np.ptp(dense.of_numbers(np.zeros(len(NUMBERS))).te[0, :, i]) for i in range(len(task.loads))])
-    return classes_finer(most, none, finer, tolerance.finest)
+    return classes_finer(most, design.unrelieved.over_peak_to_peak, finer, tolerance.finest)

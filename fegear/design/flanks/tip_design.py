@@ -90,9 +90,9 @@ class TipDesign(ReadOnlyArrays):
         ("linear tip relief for one load"), and "present relief" where the pair has one.
     most : mapping of shape to ndarray, shape (L,)
         Largest peak-to-peak value within the tolerances [m].
-    finer : mapping of shape to int or None
-        By how many classes these would have to be finer for it to leave no more than no relief under any load that it
-        is designed for: 0 where they do, None where none does.
+    finer : int or None
+        By how many classes these would have to be finer for the shape to be ground to leave no more than no relief
+        under any load that it is designed for: 0 where they do, None where none does.
     """
 
     task: TipDesignTask
@@ -101,7 +101,7 @@ class TipDesign(ReadOnlyArrays):
     for_one_load: Mapping[Shape, FamilyBest]
     left: Mapping[str, Read]
     most: Mapping[Shape, Array]
-    finer: Mapping[Shape, int | None]
+    finer: int | None = 0
 
     @property
     def shapes(self) -> list[Shape]:
@@ -154,7 +154,6 @@ def design_tips(
     found: dict[Shape, FamilyBest] = {}
     single: dict[Shape, FamilyBest] = {}
     most: dict[Shape, Array] = {}
-    finer: dict[Shape, int | None] = {}
     for number, shape in enumerate(task.grind):
         power = POWERS[shape]
         of_shape = reader.shaped(power)
@@ -165,23 +164,23 @@ def design_tips(
         most[shape] = np.array([
             np.ptp(of_shape.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)
         ])  # fmt: skip
-        finer[shape] = _classes_finer(of_shape, pair, numbers, task, most[shape], left["no relief"].peak_to_peak)
         if task.over is not None:
             single[shape] = best_tips(trials.over(task.one_load, power, apart))
             left[f"{shape} tip relief for one load"] = of_shape.read(single[shape].relief.numbers)
         report(0.5 + 0.5 * (number + 1) / len(task.grind))
-    return TipDesign(task, reader.points, found, single, left, most, finer)
+    design = TipDesign(task, reader.points, found, single, left, most)
+    shape = design.shapes[0]
+    return replace(design, finer=_classes_finer(reader.shaped(POWERS[shape]), pair, design, shape))
 
 
-def _classes_finer(
-    reader: TipReader, pair: GearPair, numbers: Array, task: TipDesignTask, most: Array, none: Array
-) -> int | None:  # fmt: skip
-    """By how many classes tolerances would have to be finer for reliefs to pay under every load that counts."""
-    counts = task.counts
+def _classes_finer(reader: TipReader, pair: GearPair, design: TipDesign, shape: Shape) -> int | None:
+    """By how many classes tolerances would have to be finer for a shape to pay under every load that counts."""
+    task, numbers = design.task, design.found[shape].relief.numbers
+    counts, none = task.counts, design.left["no relief"].peak_to_peak
 
     def finer(classes: int) -> Array:
         worst = within_tolerances(reader.plain, pair, numbers, task.tolerance.finer(classes))
         left = [np.ptp(reader.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)]
         return np.array(left)[counts]
 
-    return classes_finer(most[counts], none[counts], finer, task.tolerance.finest)
+    return classes_finer(design.most[shape][counts], none[counts], finer, task.tolerance.finest)

@@ -15,6 +15,10 @@ from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Relief
 
+#: Combinations that are the worst by the grid and are looked at with every kink: lengths of a relief that is not in
+#: contact change nothing, so that three are one. By the first only, the largest was up to 0.4 % too small.
+_NEAREST = 6
+
 
 def within_tolerances(
     engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance],
@@ -23,8 +27,8 @@ def within_tolerances(
     """Least and largest peak-to-peak transmission error at each load, shape (L, 2) [m].
 
     Amounts and lengths of both reliefs are at the lower end, in the middle and at the upper end of their tolerances,
-    each with each; which combinations are the best and the worst is found on one grid, what these leave with every
-    kink.
+    each with each; which combination is the best and which are among the worst is found on one grid, what these leave
+    with every kink.
 
     Parameters
     ----------
@@ -54,6 +58,9 @@ def within_tolerances(
         ground = replace(engagement, driver_relief=driver, driven_relief=driven)
         return transmission_error(ground, load, 12).peak_to_peak
 
-    return np.array([
-        [left(int(at), float(load)) for at in (seen[:, i].argmin(), seen[:, i].argmax())] for i, load in enumerate(w)
-    ])  # fmt: skip
+    found = np.empty((w.size, 2))
+    for i, load in enumerate(w):
+        order = np.argsort(seen[:, i])
+        found[i, 0] = left(int(order[0]), float(load))
+        found[i, 1] = max(left(int(at), float(load)) for at in order[-_NEAREST:])
+    return found

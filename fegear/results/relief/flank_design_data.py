@@ -293,7 +293,7 @@ class FlanksShown:
             state.label: LeftOverRange(
                 load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
                 state.over_first, state.over_most if state.label in self.design.found else None, state.over_error,
-                mean=state.over_mean if self.scattered else None, finer=state.over_finer,
+                mean=state.over_mean if self.scattered else None,
             )
             for state in self.design.states
         }  # fmt: skip

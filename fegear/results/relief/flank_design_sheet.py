@@ -186,7 +186,7 @@ def _grind(seen: Seen) -> Iterator[str]:
         def allowed(classes: int) -> str:
             return _allowed(seen, ground, classes)
 
-        yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], best.over_finer, allowed)}."
+        yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
     if least is not best:
         gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
         why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"

@@ -186,7 +186,7 @@ class TipsShown:
         if task.over is not None:
             weights = np.ones(load.size) if task.over.weights is None else np.array(task.over.weights)
         most = {f"{shape} tip relief": one[chosen] for shape, one in design.most.items()}
-        finer = {f"{shape} tip relief": one for shape, one in design.finer.items()}
+        finer = {f"{design.shapes[0]} tip relief": design.finer}
         return {
             label: LeftOverRange(
                 load * self.data.pair.driver.base_radius, load, weights / weights.max(), read.peak_to_peak[chosen],

@@ -72,7 +72,7 @@ def left_over_range(
     load = np.array(design.task.over_loads)
     weights = design.task.over_weights
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
-    finer = {f"{shape} tip relief": one for shape, one in design.finer.items()}
+    finer = {f"{design.shapes[0]} tip relief": design.finer} if design.ground else {}
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
     searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
     return {
