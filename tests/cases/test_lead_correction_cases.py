@@ -100,15 +100,17 @@ def test_present_crowning_is_searched_over_and_the_minimum_is_that_of_all_of_the
     assert value(slope, crowning) <= min(grid.values())
     for one in found.data.found:
         assert one.kept[-1] > one.after[-1] + 0.1
-    said = {one[:7]: one for one in found.answer.sentences}
     (ground,) = (one for one in found.tables if one.name == "lead_grinding_II")
     rows = list(zip(ground["design"], ground["modification"], ground["amount"], strict=True))
     assert rows[2:] == [
         ("lead correction, present crowning", "helix slope", rows[0][2]),
         ("lead correction, present crowning", "crowning", pytest.approx(6.0)),
     ]
-    assert said["Pair II"].endswith("with the present crowning of 6 µm (for manufacturing deviations) K_Hβ 1.35.")
-    assert not any("present crowning" in one for one in corrected.answer.sentences)
+    other = "pair II: not recommended is lead correction, present crowning, with a crowning of 6 µm (the present one, "
+    assert any(f"{other}for manufacturing deviations): K_Hβ of the loaded flanks 1.35." in one for one in found.remarks)
+    assert not any("not recommended" in one for one in corrected.remarks)
+    for one in found.answer.sentences:  # one correction, with the values of the table
+        assert one.count("K_Hβ") == one.count("helix slope") == 1
     assert "fall without crowning" in " ".join(found.remarks)
     assert not any(one.name == "lead_safety" for one in found.tables)  # nothing is rated
 

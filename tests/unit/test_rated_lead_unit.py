@@ -14,7 +14,7 @@ from fegear.case.reading import build_scene
 from fegear.design.flanks.lead_correction import LeadCorrection
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.results.rating.rating import given, rated
-from fegear.results.shafts.lead_correction import _leads
+from fegear.results.shafts.lead_correction import _ground_lead, _leads
 from fegear.results.shafts.rated_lead import SafetyOfLead, rated_lead, rated_with
 
 LEADS = ((0.0, 3e-6), (-4e-6, 0.0), (-4e-6, 3e-6), (0.0, 0.0))
@@ -73,6 +73,19 @@ def test_under_a_spectrum_the_safety_factors_are_those_of_the_spectrum():
     whole = rate_spectrum(conditions, levels, given(asked))
     assert found[0].contact == pytest.approx(min(whole.contact_safety), rel=1e-9)
     assert found[1].contact < found[0].contact
+
+
+def test_the_table_has_the_amounts_and_factors_of_the_lead_to_grind():
+    """They were those of the minimum K_Hbeta, whatever the answer recommended."""
+    one = np.ones(1)
+    found = LeadCorrection(-4e-6, 0.0, one, 1.2 * one, 1.05 * one, 0.0 * one, 1.15 * one)
+    lead = rated_lead(scene_of(drafted()), "I")
+    for asked, crowning, after in ((lead, 3e-6, 1.15), (None, 0.0, 1.05)):
+        leads = _leads("I", found, (0.0, 3e-6), asked)
+        ground = _ground_lead("I", 0.05, found, "pinion", 3e-6, leads)
+        assert (ground.slope, ground.crowning, ground.after[0]) == (-4e-6, crowning, after)
+        assert [row.amount for row in ground.grinding][:2] == [-4e-6, crowning]
+        assert (ground.best.crowning, ground.best.flanks) == (crowning, after)
 
 
 def test_the_design_with_the_higher_safety_factor_is_first():

@@ -43,7 +43,7 @@ class TipTolerance:
     length: float | None
     form: float
     origin: str = field(default="", compare=False)
-    grade: int | None = field(default=None, compare=False)
+    grade: int | None = None
 
     @property
     def finest(self) -> int:

@@ -204,15 +204,15 @@ def _gain(one: MeshAtGlance) -> float:
     return 1.0 if one.lead is None else one.lead.before / one.lead.after
 
 
-def _levelled(one: MeshAtGlance) -> str:
-    """The lead correction against tilt and sag of the shafts, with K_Hbeta before and after it where it gains."""
+def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
+    """The lead correction against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
     amounts = [f"helix slope C_Hβ {figures(one.lead.slope * 1e6)} µm"] if one.lead.slope else []
     if one.lead.crowning:
         amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
-    gain = f"K_Hβ {one.lead.before:.2f} -> {one.lead.after:.2f}"
-    return f"lead correction ({' and '.join(amounts)} on the driver: {gain})"
+    gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
+    return f"lead correction ({' and '.join(amounts)} on the driver{gain})"
 
 
 def _limit(one: MeshAtGlance, safety: Safety) -> tuple[str, str, float, float, float]:
@@ -237,11 +237,12 @@ def _least_safe(one: MeshAtGlance, safety: Safety) -> Change:
     )  # fmt: skip
 
 
-def _against_tilt(one: MeshAtGlance) -> str:
+def _against_tilt(one: MeshAtGlance, *, gained: bool = True) -> str:
     """What evens out the load of a misaligned mesh."""
     cause = CAUSES[one.main_cause]
     share, every = figures(one.by_cause[one.main_cause] * 1e6), figures(one.over_face * 1e6)
-    return f"{_levelled(one)}, or {REMEDIES[cause]} ({CAUSE_WORDS[cause]} {share} µm, all causes {every} µm)"
+    of_all = f"{CAUSE_WORDS[cause]} {share} µm, all causes {every} µm"
+    return f"{_levelled(one, gained=gained)}, or {REMEDIES[cause]} ({of_all})"
 
 
 def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
@@ -254,7 +255,7 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     if factor > max(_WORTH, level) and one.over_face:
         better = value * (factor / level) ** power
         rated = f"in place of {factor:.2f} of the rating"
-        wider = f"{_against_tilt(one)}: {symbol} about {better:.2f} at K_Hβ {figures(level)} {rated}"
+        wider = f"{_against_tilt(one, gained=False)}: {symbol} about {better:.2f} at K_Hβ {figures(level)} {rated}"
     return Change(one.margin, f"pair {one.pair}", finding, wider)
 
 

@@ -89,6 +89,8 @@ class GearboxInputs:
         Longest life that pairs are rated for [s]; NaN where none is given.
     why : tuple of str
         Why something is missing.
+    corrected : bool
+        Whether ``lead-correction`` is requested, too: its corrections are then the only ones.
     """
 
     shafts: LoadedShaftsInputs
@@ -101,6 +103,7 @@ class GearboxInputs:
     speeds: tuple[tuple[float, ...], ...]
     required: float
     why: tuple[str, ...]
+    corrected: bool = False
 
 
 def _refused(check: object, scene: Scene, pair: str) -> str:
@@ -151,7 +154,7 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         inputs_of_shafts(scene, name), drawn_gearbox(scene),
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
-        names, lives, speeds, required, tuple(why),
+        names, lives, speeds, required, tuple(why), "lead-correction" in scene.case.results,
     )  # fmt: skip
 
 
@@ -189,6 +192,8 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
     """Of every mesh whose flanks are loaded with the shafts, the helix slope against their tilt."""
+    if inputs.corrected:
+        return [None] * len(inputs.shafts.gearbox.meshes)
     meshes = mesh_forces(inputs.shafts, upstream, work)
     return [
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
@@ -269,14 +274,19 @@ def _sentences(seen: Seen) -> Iterator[str]:
                 ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
             )
         ]  # fmt: skip
+        said = ", ".join(known)
         if rated and first.safety is not None:
-            known[-1] += f" with K_Hβ {first.safety.face_load_factor:.2f} of the rating"
-    if math.isfinite(first.face_load_factor):
-        known.append(f"K_Hβ {first.face_load_factor:.2f}" + (" of the loaded flanks" if rated else ""))
+            said += f" at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
+        yield f"Pair {first.pair}{many}: {said}."
+        known, many = [], ""
     modified = ""
     if abs(first.remaining - first.over_face) > _MODIFIED:
         modified = f" (linear gap with the flank modifications {figures(first.remaining * 1e6, 2)} µm)"
     known.append(f"misaligned by {figures(first.over_face * 1e6)} µm{modified}")
+    if math.isfinite(first.face_load_factor):
+        known.append(
+            f"K_Hβ {first.face_load_factor:.2f}" + (" of the loaded flanks (without these deviations)" if rated else "")
+        )
     if math.isfinite(first.te_peak_to_peak):
         known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
     yield f"Pair {first.pair}{many}: {', '.join(known)}."

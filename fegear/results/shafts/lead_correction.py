@@ -83,8 +83,8 @@ class GroundLead:
         "um", "helix slope modification C_Hbeta: zero at end I, this at end II", name="slope", default=0.0
     )
     crowning: float = shown(
-        "um", "lead crowning C_beta of minimum K_Hbeta of the loaded flanks", name="crowning", default=0.0
-    )
+        "um", "lead crowning C_beta", name="crowning", default=0.0
+    )  # fmt: skip
 
     leads: tuple[SafetyOfLead, ...] = ()
 
@@ -132,14 +132,22 @@ def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
         data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, asked.rated, strict=True
     )
     made = [
-        GroundLead(
-            one.loads * radius, one.before, one.after, one.left, crowning, pair, gear, one.slope, one.crowning,
-            _leads(pair, one, (slope, crowning), lead),
-        )
+        _ground_lead(pair, radius, one, gear, crowning, _leads(pair, one, (slope, crowning), lead))
         for pair, radius, one, gear, slope, crowning, lead in rows
         if one is not None
-    ]  # fmt: skip
+    ]
     return sorted(made, key=lambda one: float(one.after[-1] - one.before[-1]))
+
+
+def _ground_lead(
+    pair: str, radius: float, one: LeadCorrection, gear: str, present: float, leads: tuple[SafetyOfLead, ...]
+) -> GroundLead:  # fmt: skip
+    """With the amounts and factors of the lead to grind."""
+    best = leads[1]
+    after = one.kept if best.design == _KEPT else one.after
+    return GroundLead(
+        one.loads * radius, one.before, after, one.left, present, pair, gear, best.slope, best.crowning, leads
+    )
 
 
 def _leads(
@@ -161,18 +169,13 @@ def _leads(
 
 def _sentences(seen: Seen) -> Iterator[str]:
     for one in seen.data:
-        slope, best, other = figures(one.slope * 1e6), one.best, ""
+        slope, best = figures(one.slope * 1e6), one.best
         kept = " (the present one)" if best.crowning and best.crowning == one.present else ""
-        if len(one.leads) > _LEADS:
-            rest = one.leads[2]
-            crowned = f"a crowning of {figures(rest.crowning * 1e6)} µm"
-            if rest.design == _KEPT:
-                crowned = f"the present crowning of {figures(one.present * 1e6)} µm (for manufacturing deviations)"
-            other = f"; with {crowned} K_Hβ {rest.flanks:.2f}{_safeties(rest)}"
         yield (
             f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of "
-            f"{figures(best.crowning * 1e6)} µm{kept} on gear {one.gear}: K_Hβ {one.before[-1]:.2f} -> "
-            f"{best.flanks:.2f} at {figures(one.torque[-1])} N m{_safeties(best, one.leads[0])}{other}."
+            f"{figures(best.crowning * 1e6)} µm{kept} on gear {one.gear}: K_Hβ of the loaded flanks "
+            f"{one.before[-1]:.2f} -> {best.flanks:.2f} at {figures(one.torque[-1])} N m"
+            f"{_safeties(best, one.leads[0])}."
         )
 
 
@@ -196,6 +199,14 @@ def _remarks(seen: Seen) -> Iterator[str]:
         "Lead correction: K_Hbeta before and after is that of the loaded flanks at nominal load. Not that of S_H and "
         "S_F (K_Hbeta_rated, ISO 6336-1 with manufacturing deviations) nor K_Hbeta_iso (linear part of the gap only)."
     )
+    for one in seen.data:
+        for rest in one.leads[_LEADS:]:
+            kept = " (the present one, for manufacturing deviations)" if rest.design == _KEPT else ""
+            what = f"K_Hβ of the loaded flanks {rest.flanks:.2f}{_safeties(rest)}"
+            yield (
+                f"Lead correction, pair {one.pair}: not recommended is {rest.design}, with a crowning of "
+                f"{figures(rest.crowning * 1e6)} µm{kept}: {what}."
+            )
     if seen.data:
         best = seen.data[0].best
         yield (
