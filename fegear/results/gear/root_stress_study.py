@@ -26,7 +26,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
-from fegear.results.gear.root_stress_spread import WORDS, fe_error, sentences, spread_figure
+from fegear.results.gear.root_stress_spread import HIGH, WORDS, fe_error, sentences, spread_figure
 from fegear.results.gear.root_stress_varied import ratios_figure, tiles_figure
 
 if TYPE_CHECKING:
@@ -287,12 +287,30 @@ def _spread(seen: Seen) -> tuple[Figure, ...]:
 
 
 def _closest(seen: Seen) -> Iterator[str]:
-    """How far each formula is off the finite elements, the closest first."""
-    known = [(name, one.ratio[np.isfinite(one.ratio)]) for name, one in seen.data.formulas.items()]
-    known = [(name, ratio) for name, ratio in known if ratio.size]
-    for name, ratio in sorted(known, key=lambda item: abs(math.log(np.median(item[1])))):
-        middle, low, high = (figures(float(one)) for one in (np.median(ratio), ratio.min(), ratio.max()))
-        yield f"{name}: root stress {middle} of FE (median), from {low} to {high}."
+    """How far each formula is off the finite elements, the closest first.
+
+    Formulas rate loads at the tip or at the outer point of single pair contact: near the form circle they are off by
+    far more, and a range over all loads would be one of loads that no rating has.
+    """
+    rows = seen.data.rows
+    high = rows.load_position >= HIGH
+    known = []
+    for name in seen.data.formulas:
+        own = (rows.formula == name) & np.isfinite(rows.ratio_to_fe)
+        if own.any():
+            known.append((name, rows.ratio_to_fe[own & high], rows.ratio_to_fe[own & ~high]))
+    for name, upper, lower in sorted(
+        known, key=lambda one: abs(math.log(np.median(one[1] if one[1].size else one[2])))
+    ):
+        first, rest = (upper, lower) if upper.size else (lower, upper)
+        where = "the upper half of the flank" if upper.size else "the lower half of the flank"
+        middle, *ends = (figures(float(one)) for one in (np.median(first), first.min(), first.max()))
+        below = (
+            f"; on its lower half from {figures(float(rest.min()))} to {figures(float(rest.max()))}"
+            if rest.size
+            else ""
+        )
+        yield f"{name}: root stress {middle} of FE (median), from {ends[0]} to {ends[1]}, for loads on {where}{below}."
 
 
 def _remarks(seen: Seen) -> tuple[str, ...]:

@@ -89,8 +89,6 @@ class GearboxInputs:
         Longest life that pairs are rated for [s]; NaN where none is given.
     why : tuple of str
         Why something is missing.
-    corrected : bool
-        Whether ``lead-correction`` is requested, too: its corrections are then the only ones.
     """
 
     shafts: LoadedShaftsInputs
@@ -103,7 +101,6 @@ class GearboxInputs:
     speeds: tuple[tuple[float, ...], ...]
     required: float
     why: tuple[str, ...]
-    corrected: bool = False
 
 
 def _refused(check: object, scene: Scene, pair: str) -> str:
@@ -154,7 +151,7 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         inputs_of_shafts(scene, name), drawn_gearbox(scene),
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
-        names, lives, speeds, required, tuple(why), "lead-correction" in scene.case.results,
+        names, lives, speeds, required, tuple(why),
     )  # fmt: skip
 
 
@@ -192,8 +189,6 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
     """Of every mesh whose flanks are loaded with the shafts, the helix slope against their tilt."""
-    if inputs.corrected:
-        return [None] * len(inputs.shafts.gearbox.meshes)
     meshes = mesh_forces(inputs.shafts, upstream, work)
     return [
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
