@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.base.errors import ConvergenceError, RangeError
+from fegear.base.errors import ConvergenceError, GeometryError, RangeError
 from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.conditions import Conditions, Replacement
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
@@ -21,6 +21,7 @@ from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.formulas.many.pairs import many_pairs
 from fegear.formulas.many.ratings import ManyLevels, rate_many, rate_many_spectra
 from fegear.formulas.many.shared import ManyConditions, ManyDuties, qualities_of_class
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 
 GROUPS = tuple(dict.fromkeys(MATERIALS.values()))
 ROUGH = (4.8e-6, 20e-6)
@@ -65,6 +66,43 @@ def draw_pair(rng: np.random.Generator, *, rims: bool) -> PairGeometry:
     return PairGeometry((shapes[0], shapes[1]), module, alpha, beta, distance)
 
 
+def draw_ring_pair(rng: np.random.Generator, *, rims: bool) -> PairGeometry:
+    """A pinion in a ring gear that a pinion-type cutter has made."""
+    for _ in range(200):
+        module, z_1 = float(rng.choice([1.5, 2.0, 3.0, 6.0])) * 1e-3, int(rng.integers(15, 40))
+        z_2 = int(z_1 * rng.uniform(2.0, 4.0)) + 12
+        beta = math.radians(float(rng.choice([0.0, 0.0, 10.0, 20.0])))
+        x_1, x_2 = rng.uniform(-0.1, 0.5), rng.uniform(-0.4, 0.2)
+        rounding = float(rng.uniform(0.1, 0.3))
+        cutter = PinionCutter(int(rng.integers(12, 25)), float(rng.uniform(-0.1, 0.2)), 1.25, tip_radius=rounding)
+        alpha = math.radians(20.0)
+        a_t = math.atan(math.tan(alpha) / math.cos(beta))
+        wanted = math.tan(a_t) - a_t + 2.0 * (x_1 + x_2) * math.tan(alpha) / (z_1 - z_2)
+        low, high = 0.01, 1.2
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if math.tan(middle) - middle > wanted else (middle, high)
+        distance = 0.5 * module * (z_2 - z_1) / math.cos(beta) * math.cos(a_t) / math.cos(low)
+        width, d = module * rng.uniform(6.0, 25.0), z_1 * module / math.cos(beta)
+        tip, root = d + 2.0 * module * (1.0 + x_1), d - 2.0 * module * (1.25 - x_1)
+        try:
+            ring = InternalTooth(z_2, cutter, profile_shift=x_2, thickness_allowance=0.02, helix_angle=beta)
+            outer = ring.root_radius * rng.uniform(1.1, 1.3)
+            rim = (float(rng.uniform(1.5, 5.0)) if rims else 1.9) * module
+            wheel = GearShape(
+                z_2, x_2, 2.0 * ring.tip_radius * module, 2.0 * ring.root_radius * module, width, ring.dedendum,
+                bore_diameter=2.0 * outer * module, rim_thickness=rim if rims else None, outline=ring,
+                fixed=bool(rng.integers(0, 2)),
+            )  # fmt: skip
+            return PairGeometry(
+                (GearShape(z_1, x_1, tip, root, width, 1.25, 0.3, bore_diameter=0.4 * root), wheel), module, alpha,
+                beta, distance,
+            )  # fmt: skip
+        except (GeometryError, RangeError):
+            continue
+    raise AssertionError
+
+
 def draw_strength(rng: np.random.Generator, group: str) -> Strength:
     iron = group == "GG"
     return Strength(
@@ -91,7 +129,7 @@ def draw_alignment(rng: np.random.Generator, kind: int) -> Alignment:
 class Group:
     """Pairs that share materials, method, edition, alignment and tolerance class."""
 
-    def __init__(self, seed: int, count: int) -> None:
+    def __init__(self, seed: int, count: int, rings: bool = False) -> None:
         rng = np.random.default_rng(seed)
         self.strength = (draw_strength(rng, GROUPS[seed % len(GROUPS)]), draw_strength(rng, str(rng.choice(GROUPS))))
         self.edition, self.method = (2019, 2006)[seed % 2], "C" if seed % 5 == 3 else "B"
@@ -101,7 +139,7 @@ class Group:
         self.ratio = (-1.2, 0.0) if seed % 6 == 1 else (0.0, 0.0)
         self.computed = Replacement(K_v=1.2) if seed % 7 == 2 else Replacement()
         self.meshes = (3, 1) if seed % 4 == 2 else (1, 1)
-        self.pairs = [draw_pair(rng, rims=seed % 3 == 1) for _ in range(count)]
+        self.pairs = [(draw_ring_pair if rings and k % 4 else draw_pair)(rng, rims=seed % 3 == 1) for k in range(count)]
         self.loads = [float(10.0 ** rng.uniform(1.5, 2.9)) * p.face_width * 1e3 for p in self.pairs]
         self.speeds = [float(10.0 ** rng.uniform(0.5, 3.0)) / p.diameters[0] * 0.2 for p in self.pairs]
         if self.method == "C":
@@ -155,12 +193,12 @@ class Group:
 
 class _Ratio:
     def __init__(self, pair: PairGeometry) -> None:
-        self.ratio_of = pair.signed_ratio
+        self.ratio_of = abs(pair.signed_ratio)
 
 
-def compared(seed: int, count: int) -> tuple[float, int]:
+def compared(seed: int, count: int, rings: bool = False) -> tuple[float, int]:
     """Largest relative difference of stresses and safeties, and how many pairs were rated."""
-    group = Group(seed, count)
+    group = Group(seed, count, rings)
     many = rate_many(group.together())
     worst, rated = 0.0, 0
     for k in range(count):
@@ -185,6 +223,16 @@ def test_random_pairs_are_rated_as_each_alone():
     found = [compared(seed, 4) for seed in range(42)]
     assert sum(rated for _, rated in found) > 130
     assert max(worst for worst, _ in found) < 1e-13
+
+
+def test_ring_gears_are_rated_as_each_alone_beside_external_ones():
+    found = [compared(seed, 4, rings=True) for seed in range(200, 228)]
+    assert sum(rated for _, rated in found) > 60
+    assert max(worst for worst, _ in found) < 1e-13
+    pairs = Group(205, 4, rings=True).together().pairs
+    assert pairs.internal.tolist() == [False, True, True, True]
+    assert (pairs.at(np.array([0, 2])).teeth[1] < 0.0).tolist() == [False, True]
+    assert (pairs.ratio[pairs.internal] < -1.0).all()
 
 
 @pytest.mark.dear

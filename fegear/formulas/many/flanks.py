@@ -47,6 +47,8 @@ def single_pair_factors(pairs: ManyPairs, tip_relief: float) -> Array:
         product = (tips[i] - steps[i]) * (tips[k] - (e - 1.0) * steps[k])
         m = angle / np.sqrt(np.where(product > 0.0, product, np.nan))
         z = np.where(pairs.helix_angle != 0.0, m - part * (m - helical), m)
+        if i == 1:
+            z = np.where(pairs.internal & np.isfinite(z), 1.0, z)  # Z_D of a ring gear is 1 always (6.2)
         found.append(np.where(e >= 2.0, 1.0, np.maximum(z, 1.0)))
     return np.array(found)
 
@@ -89,7 +91,7 @@ def _work_hardening(asked: ManyConditions, velocity: Array) -> tuple[list[Array 
         hardness = strength[0].hardness / strength[1].hardness
         if not math.isnan(hardness) and hardness >= 1.2:
             slope = 0.00698 if hardness > 1.7 else 0.00898 * hardness - 0.00829
-            grown = np.maximum(1.0 + slope * (np.minimum(asked.pairs.ratio, one_pair.LARGEST_RATIO) - 1.0), 1.0)
+            grown = np.maximum(1.0 + slope * (np.minimum(np.abs(asked.pairs.ratio), one_pair.LARGEST_RATIO) - 1.0), 1.0)
             reference[1] = static[1] = grown
     return reference, static
 

@@ -42,7 +42,7 @@ class ManyLoadFactors:
 
 def stiffnesses(pairs: ManyPairs, specific_load: Array) -> tuple[Array, Array]:
     """c' and c_gamma_alpha [Pa] for F_t K_A K_gamma / b [N/m] (ISO 6336-1:2006, 9.3)."""
-    z_1, z_2 = pairs.virtual_teeth
+    z_1, z_2 = np.where(pairs.teeth < 0.0, np.inf, pairs.virtual_teeth)
     x_1, x_2 = pairs.profile_shift
     c = part1_stiffness.COEFFICIENTS
     q = (
@@ -108,7 +108,8 @@ def _reduced_mass(pairs: ManyPairs, meshes: tuple[int, int]) -> Array:
     hollow = np.abs(1.0 - (pairs.bore_diameter / middle) ** 4)
     of_one = math.pi / 8.0 * pairs.density * hollow * middle**4 / pairs.base_diameters**2
     one, other = of_one[0] / meshes[0], of_one[1] / meshes[1]
-    return np.asarray(one * other / (one + other))
+    both = one * other / (one + other)
+    return np.asarray(both if pairs.rings is None else np.where(pairs.rings.fixed > 0.0, one, both))
 
 
 def _coefficients(total: Array) -> tuple[Array | float, ...]:
@@ -155,7 +156,7 @@ def _dynamic_c(pairs: ManyPairs, specific: Array, velocity: Array, grade: int) -
     """K_v by method C; NaN beyond its range."""
     if not 3 <= grade <= 8:
         raise RangeError("accuracy grade", grade, "must be 3 to 8 for K_v by method C", "use method B")
-    u = pairs.ratio
+    u = np.abs(pairs.ratio)
     x = velocity * pairs.teeth[0] / 100.0 * u / np.sqrt(1.0 + u * u)
     load = np.maximum(specific, 100e3) / 1e3
     k_3 = np.where(x <= 0.2, 2.0, 2.071 - 0.357 * x)

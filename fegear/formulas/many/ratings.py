@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas.iso6336.part2_pitting import life_knots
+from fegear.formulas.iso6336.part3_root_stress import LEAST_RIM, LEAST_RING
 from fegear.formulas.many.flanks import contact_stresses, flank_lines
 from fegear.formulas.many.lives import ManyBins, ManyKnots, damages, spectrum_safeties
 from fegear.formulas.many.loads import ManyLoadFactors, contact_ratio_square, load_factors
@@ -71,18 +72,21 @@ def _refused(pairs: ManyPairs, factors: ManyLoadFactors, forms: ManyForms) -> tu
     """What ISO 6336 does not cover."""
     ratio = pairs.contact_ratio
     sizes = (
-        _outside("d", pairs.diameters).any(axis=0) | _outside("m_n", pairs.module)
+        _outside("d", np.abs(pairs.diameters)).any(axis=0) | _outside("m_n", pairs.module)
         | _outside("b", pairs.face_widths).any(axis=0)
     )  # fmt: skip
     spur = pairs.helix_angle == 0.0
-    backup = pairs.rim_thickness / pairs.depth
+    thin = np.where(
+        pairs.teeth < 0.0, pairs.rim_thickness / pairs.module <= LEAST_RING,
+        pairs.rim_thickness / pairs.depth <= LEAST_RIM,
+    )  # fmt: skip
     found = (
         ("contact ratio below 1", ratio < 1.0),
         ("size outside ISO 1328-1", sizes),
         ("helix angle above 45 deg", pairs.helix_angle > np.radians(45.0)),
         ("contact ratio beyond ISO 6336-1", (spur & (ratio >= 2.5)) | (contact_ratio_square(pairs) <= 0.0)),
         ("virtual contact ratio of 3 or more", pairs.virtual_contact_ratio >= 3.0),
-        ("rim too thin for ISO 6336-3", (backup <= 0.5).any(axis=0)),
+        ("rim too thin for ISO 6336-3", thin.any(axis=0)),
         ("no root section of ISO 6336-3", ~forms.exists.all(axis=0)),
         ("notch parameter q_s outside 1 to 8", ~forms.notch_in_range.all(axis=0)),
         (

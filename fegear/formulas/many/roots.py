@@ -1,6 +1,7 @@
-"""Nominal root stress and what the roots of arrays of pairs bear (ISO 6336-3, external gears cut by racks).
+"""Nominal root stress and what the roots of arrays of pairs bear (ISO 6336-3, gears cut by racks, rings by cutters).
 
-Equations and sources stand in `fegear.formulas.iso6336`: part3_root_stress, part3_pair, part3_strength; a test compares
+Equations and sources stand in `fegear.formulas.iso6336`: part3_root_stress, part3_internal, part3_pair,
+part3_strength; a test compares
 both on random pairs.
 """
 
@@ -82,7 +83,44 @@ def root_forms(pairs: ManyPairs) -> ManyForms:
     y_f = 6.0 * h * np.cos(alpha_f) / (s * s * cosine)
     length, q = s / h, s / (2.0 * rho)
     y_s = (1.2 + 0.13 * length) * q ** (1.0 / (1.21 + 2.3 / length))
-    return ManyForms(y_f, y_s, q, exists, (q >= 1.0) & (q < 8.0))
+    external = ManyForms(y_f, y_s, q, exists, (q >= 1.0) & (q < 8.0))
+    return external if pairs.rings is None else _with_rings(external, pairs)
+
+
+def _with_rings(external: ManyForms, pairs: ManyPairs) -> ManyForms:
+    """The same with the sections of wheels that are ring gears; as `part3_internal.ring_root_form`."""
+    assert pairs.rings is not None  # noqa: S101  (for mypy)
+    internal, z, a = pairs.internal, pairs.virtual_teeth[1], pairs.pressure_angle
+    x, dedendum, rho_fp = pairs.rings.generating_shift, pairs.rings.dedendum, pairs.rings.rack_rounding
+    sine, cosine, tangent = np.sin(a), np.cos(a), np.tan(a)
+    e = math.pi / 4 - dedendum * tangent - (1.0 - sine) * rho_fp / cosine
+    g = rho_fp - dedendum + x
+    theta = _auxiliary_angle(g, z, 2.0 / z * (math.pi / 2 - e) - math.pi / 6)
+    c = np.cos(theta)
+    s = z * np.sin(math.pi / 6 - theta) + g / c - rho_fp
+    rho = rho_fp + 2.0 * g * g / (c * (-z * c * c - 2.0 * g))
+    base = -z * cosine
+    tip = -z + (pairs.active_tip_diameter[1] + pairs.diameters[1]) / pairs.module
+    reach = np.sqrt(np.maximum(0.25 * tip**2 - 0.25 * base**2, 0.0))
+    load = 2.0 * np.hypot(reach + math.pi * cosine * (pairs.virtual_contact_ratio - 1.0), 0.5 * base)
+    alpha_e = np.arccos(np.minimum(base / load, 1.0))
+    gamma = (math.pi / 2 + 2.0 * x * tangent) / z + (tangent - a) - (np.tan(alpha_e) - alpha_e)
+    alpha_f = alpha_e - gamma
+    height = 0.5 * (z * np.cos(math.pi / 6 - theta) + math.sqrt(3.0) * (g / c - rho_fp))
+    h = -0.5 * (np.cos(gamma) - np.sin(gamma) * np.tan(alpha_f)) * load - height
+    exists = (theta >= 0.0) & (theta <= math.pi / 2 - a + 1e-9) & (s > 0.0) & (h > 0.0) & (rho > 0.0)
+    s, h, rho = (np.where(exists, one, 1.0) for one in (s, h, rho))
+    length, q = s / h, s / (2.0 * rho)
+    forms = ManyForms(
+        6.0 * h * np.cos(alpha_f) / (s * s * cosine), (1.2 + 0.13 * length) * q ** (1.0 / (1.21 + 2.3 / length)), q,
+        exists, (q >= 1.0) & (q < 8.0),
+    )  # fmt: skip
+
+    def both(name: str) -> Array:
+        outer = getattr(external, name)
+        return np.stack([outer[0], np.where(internal, getattr(forms, name), outer[1])])
+
+    return ManyForms(*(both(name) for name in ("Y_F", "Y_S", "notch", "exists", "notch_in_range")))
 
 
 def _load_distribution(ratio: Array, overlap: Array, edition: Edition) -> Array | float:
@@ -98,7 +136,10 @@ def _rims(pairs: ManyPairs) -> Array:
     backup = pairs.rim_thickness / pairs.depth
     with np.errstate(divide="ignore"):
         thin = 1.6 * np.log(2.242 / np.where(backup > one_tooth.LEAST_RIM, backup, np.nan))
-    return np.where(backup >= one_tooth.SOLID_RIM, 1.0, thin)
+        over = pairs.rim_thickness / pairs.module
+        ring = 1.15 * np.log(8.324 / np.where(over > one_tooth.LEAST_RING, over, np.nan))
+    external = np.where(backup >= one_tooth.SOLID_RIM, 1.0, thin)
+    return np.where(pairs.teeth < 0.0, np.where(over >= one_tooth.SOLID_RING, 1.0, ring), external)
 
 
 def bending_stresses(asked: ManyConditions, factors: ManyLoadFactors, forms: ManyForms) -> Array:

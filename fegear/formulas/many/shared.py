@@ -67,7 +67,7 @@ def rounded_tolerances(values: Array) -> Array:
 def helix_slopes(tolerance_class: int, pairs: ManyPairs) -> Array:
     """f_HbetaT of a class of ISO 1328-1, rounded, shape (2, N) [m]."""
     step = np.sqrt(2.0) ** (tolerance_class - _WRITTEN_FOR) * 1e-6
-    d, b = pairs.diameters / 1e-3, pairs.face_widths / 1e-3
+    d, b = np.abs(pairs.diameters) / 1e-3, pairs.face_widths / 1e-3
     return rounded_tolerances((0.05 * np.sqrt(d) + 0.35 * np.sqrt(b) + 4.0) * step)
 
 
@@ -87,7 +87,7 @@ def qualities_of_class(
     if tolerance_class not in CLASSES:
         raise ValueError(tolerance_class)
     step = np.sqrt(2.0) ** (tolerance_class - _WRITTEN_FOR) * 1e-6
-    d, m = pairs.diameters / 1e-3, pairs.module / 1e-3
+    d, m = np.abs(pairs.diameters) / 1e-3, pairs.module / 1e-3
     pitch = rounded_tolerances((0.001 * d + 0.4 * m + 5.0) * step) * np.cos(pairs.transverse_pressure_angle)
     form = rounded_tolerances(np.broadcast_to((0.55 * m + 5.0) * step, d.shape))
     return ManyQualities(
