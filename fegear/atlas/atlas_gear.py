@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.atlas.tables import over_contacts, shares_of_fillet
+from fegear.atlas.tables import over_contacts, pressed, shares_of_fillet
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.plane.fe_compliance import NOMINAL_HALF_WIDTH, chebyshev_over, own_lengths, roll_length
 from fegear.contact.plane.spline import Spline, spline
@@ -134,8 +134,11 @@ class AtlasGear(ReadOnlyArrays):
 
     def fillet_stress(self, k: int, side: Side, radius: ArrayLike) -> Array:
         """Tangential stress along a fillet of tooth k per unit line load on tooth 0, shape (points, P) [1/m]."""
-        low, high = self._ends
-        weights = over_contacts((self._length(radius) - low) / (high - low))
+        (low, high), length = self._ends, self._length(radius)
+        if (k, side) == (0, "tension"):
+            weights = pressed(self.gear, self._ends, length)
+        else:
+            weights = over_contacts((length - low) / (high - low))
         return np.ascontiguousarray((weights @ self.layout.stress(self.row, (k, side))).T) / self.gear.module
 
     def fillet_curve(self, side: Side) -> FilletCurve:

@@ -17,7 +17,7 @@ from fegear.base.errors import InputError
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks, ManyReliefs
 from fegear.contact.many.many_load_sharing import ManyErrors, transmission_errors
 from fegear.contact.many.many_roots import ManyFillets, ManyRootStress, root_stresses
-from fegear.fem.plane.contact_width import log_slope
+from fegear.fem.plane.contact_width import POINT, log_slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -157,6 +157,7 @@ def known_pairs(
         raise InputError("tip_rounding", f"{family.tip_rounding:.6g}", "must be 0 for arrays of pairs (sharp tips)")
     cosine = math.cos(family.pressure_angle)
     own, beside, lowest, errors, stress, length, held = [], [], [], [], [], [], np.ones(m.size, dtype=bool)
+    nearest = []
     for member in (0, 1):
         places = pairs.places(atlas, member)
         found, modulus = atlas.tables(places, stress=root_stress), pairs.young_modulus[member]
@@ -169,6 +170,7 @@ def known_pairs(
                                    family.lowest_roll_length(places[0], places[1])))  # fmt: skip
         errors.append(found.errors)
         length.append(ends[:, 1])
+        nearest.append(np.where(family.undercut(places), POINT, 0.0))
         if root_stress:
             stress.append(layout.stresses(found.rows))
     base = 0.5 * pairs.teeth * m * cosine
@@ -183,7 +185,9 @@ def known_pairs(
     )
     fillets = None
     if root_stress:
-        fillets = ManyFillets(np.stack(stress), np.stack(length), shares_of_flank(), shares_of_fillet())
+        fillets = ManyFillets(
+            np.stack(stress), np.stack(length), np.stack(nearest), shares_of_flank(), shares_of_fillet()
+        )
     known = np.stack(errors)
     roots = [layout.quantities.index(f"{side} 0") for side in ("tension", "compression")]
     return KnownPairs(engagements, held, known[..., 0], known[..., roots], fillets)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.atlas.atlas_gear import AtlasGear
 from fegear.atlas.build import Budget, build_atlas
 from fegear.atlas.common_rows import KEPT, common_rows
 from fegear.atlas.domain import Domain
@@ -16,7 +17,7 @@ from fegear.atlas.family import Family, Place, place_of
 from fegear.atlas.interpolation import Atlas, load_atlas
 from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degrees, products
 from fegear.atlas.refining import compliances, refined
-from fegear.atlas.tables import Layout
+from fegear.atlas.tables import Layout, over_contacts, row_of
 from fegear.base.errors import InputError, RangeError
 from fegear.base.solution_cache import cache_on_disk
 from fegear.contact.plane.engagement import Engagement
@@ -128,6 +129,28 @@ def test_neighbours_are_reciprocal_and_errors_have_their_places(atlas):
     assert set(mine.largest_errors()) == {"c_self", "c_neighbour", "root_tension", "root_compression"}
     narrower = mine.self_compliance(r, 0.5 * half) - mine.self_compliance(r, half)
     np.testing.assert_allclose(narrower, mine.log_slope * math.log(2.0), rtol=1e-9)
+
+
+@pytest.mark.parametrize("beyond_the_line", [0.2, -0.1])
+def test_root_tension_follows_contacts_that_become_narrower_at_the_start_of_the_flank(beyond_the_line):
+    """Between the contacts of the tables too, and of gears whose flank starts in a corner."""
+    gear = FAMILY.gear(Place(14, FAMILY.least_shift(14) + beyond_the_line, 1.0, 0.5))
+    solved = solve_gear(gear, settings_at(-1.0), estimate_error=False)
+    row = row_of(solved)
+    known = AtlasGear(gear, Layout(1), row, {})
+    low, high = gear.involute_radii
+    above = np.concatenate([
+        (0.0, 5e-5, 1e-4, 3e-4, 1e-3, 0.005, 0.01, 0.015, 0.02, 0.021, 0.03),
+        np.linspace(0.05, 0.5 * (high**2 - low**2) / gear.base_radius, 20),
+    ])  # fmt: skip
+    r = np.minimum(np.sqrt(low**2 + 2.0 * gear.base_radius * above), high)
+    true = solved.largest_root_stress(0, "tension", r)[0]
+    np.testing.assert_allclose(known.largest_root_stress(0, "tension", r)[0], true, atol=1.5e-4 * true.max(), rtol=0.0)
+    lengths = np.sqrt(np.maximum((r - gear.base_radius) * (r + gear.base_radius), 0.0))
+    shares = (lengths - lengths[0]) / (lengths[-1] - lengths[0])
+    as_forces = (over_contacts(shares) @ Layout(1).stress(row, (0, "tension"))).T
+    off = np.abs(known.fillet_curve("tension").largest(as_forces, r)[0] - true).max()
+    assert off > 5e-4 * true.max()  # the width of contacts counts
 
 
 def test_size_and_steel_scale_and_a_thickness_allowance_is_a_shift(atlas):

@@ -31,9 +31,9 @@ class ManyFillets(ReadOnlyArrays):
     ----------
     stress : ndarray, shape (2, N, 2, 2 K + 1, C, P)
         Per unit line load and of module 1, by gear, fillet (tension, compression), tooth -K to K from the loaded one,
-        contact over the flank and point along the fillet.
-    length : ndarray, shape (2, N)
-        Of a fillet [modules].
+        contact over the flank and point along the fillet; tension of the loaded tooth itself is that under a force.
+    length, nearest : ndarray, shape (2, N)
+        Of a fillet, and how near to the flank's start contacts press [modules].
     contacts : ndarray, shape (C,)
         Shares of the flank's roll length, ascending from 0 to 1.
     points : ndarray, shape (P,)
@@ -42,6 +42,7 @@ class ManyFillets(ReadOnlyArrays):
 
     stress: Array
     length: Array
+    nearest: Array
     contacts: Array
     points: Array
 
@@ -139,8 +140,9 @@ def _along(fillets: ManyFillets) -> tuple[Array, ...]:
     """Tables of the fillets and of the smooth curve along them."""
     stress1, stress2 = (np.ascontiguousarray(one, dtype=float) for one in fillets.stress)
     points = np.ascontiguousarray(fillets.points)
-    length = np.array(fillets.length.T, order="C")  # of one type for numba, whatever it was
-    return stress1, stress2, length, np.ascontiguousarray(fillets.contacts), points, *_fitted(points.tobytes())
+    # of one type for numba, whatever they were
+    length, nearest = (np.array(one.T, dtype=float, order="C") for one in (fillets.length, fillets.nearest))
+    return stress1, stress2, length, nearest, np.ascontiguousarray(fillets.contacts), points, *_fitted(points.tobytes())
 
 
 @lru_cache(maxsize=4)

@@ -31,9 +31,11 @@ from fegear.contact.many.kernel import (
     START,
 )
 from fegear.contact.many.over_mesh import begun, limited, pair_numbers, pieces, room_for, solved, tabulated
+from fegear.fem.plane.root_stress import FORCES_OF_PRESSURE
 
 #: As of `fem.plane.root_stress` and `contact_width` [modules].
 _CLEARANCE, _HALF_WIDTH, _POINT = 0.05, 0.02, 1e-4
+_FORCES = np.array(FORCES_OF_PRESSURE)
 #: Points that the smooth curve at a point of the fillet is fitted to.
 _FITTED = 10
 #: A stress below this part of the largest is not looked at closer, nor one that is above the least by this part.
@@ -84,7 +86,38 @@ def weighed(x, share, at, weights):
     weights[2], weights[3] = h * s * (1.0 - s) ** 2, -h * s * s * (1.0 - s)
 
 
-def superposed(stress, rise, tooth, ahead, numbers, v, line, at, weights, out):
+def pressed(x, length, low, high, base, nearest, at, weights):
+    """Forces for the pressure of a contact, as `tables.pressed`, in place; how many.
+
+    Parameters
+    ----------
+    x : ndarray
+        Contacts of the tables.
+    length, low, high, base : float
+        Roll lengths of the contact and of the flank's ends, and base radius [modules].
+    nearest : float
+        How near to the flank's start contacts press [modules].
+    at, weights : ndarray, shape (4,), (4, 4)
+        As of `weighed`, of the forces in rows 1 to 3, or of all that lie between the same two contacts in row 1.
+    """
+    above, most = 0.5 * (length - low) * (length + low) / base, 0.5 * (high - low) * (high + low) / base
+    above = max(above, nearest)
+    width = min(_HALF_WIDTH, max(min(above, most - above), _POINT))
+    together = True
+    for i in range(3):
+        place = min(max(above + _FORCES[i, 0] * width, 0.0), most)
+        share = min(max((math.sqrt(low * low + 2.0 * base * place) - low) / (high - low), 0.0), 1.0)
+        weighed(x, share, at[1 + i :], weights[1 + i])
+        weights[1 + i] *= _FORCES[i, 1]
+        together = together and at[1 + i] == at[1]
+    if not together:
+        return 3
+    for k in range(4):
+        weights[1, k] += weights[2, k] + weights[3, k]
+    return 1
+
+
+def superposed(stress, rise, tooth, ahead, numbers, v, line, at, weights, forces, out):
     """Stress along one fillet of a tooth under the loads of all pairs.
 
     Parameters
@@ -95,6 +128,10 @@ def superposed(stress, rise, tooth, ahead, numbers, v, line, at, weights, out):
         1: the tooth of the next pair is the next tooth; -1 of the driven gear.
     line : float
         Load over face width and module.
+    at, weights : ndarray, shape (numbers, 4), (numbers, 4, 4)
+        Of each contact: as one load, and its pressure as forces (`pressed`).
+    forces : ndarray of int, shape (numbers,)
+        How many forces; 0 where the stress of the loaded tooth itself is that under pressures too.
     """
     reach = stress.shape[0] // 2
     for q in range(out.size):
@@ -102,11 +139,13 @@ def superposed(stress, rise, tooth, ahead, numbers, v, line, at, weights, out):
     for j in range(numbers):
         k = ahead * (tooth - j)
         if v[j] > 0.0 and -reach <= k <= reach:
-            i, load = at[j, 0], line * v[j]
-            a, b, c, d = load * weights[j, 0], load * weights[j, 1], load * weights[j, 2], load * weights[j, 3]
-            values, slopes = stress[k + reach], rise[k + reach]
-            for q in range(out.size):
-                out[q] += a * values[i, q] + b * values[i + 1, q] + c * slopes[i, q] + d * slopes[i + 1, q]
+            load, values, slopes = line * v[j], stress[k + reach], rise[k + reach]
+            first, last = (1, 1 + forces[j]) if k == 0 and forces[j] > 0 else (0, 1)
+            for n in range(first, last):
+                i, w = at[j, n], weights[j, n]
+                a, b, c, d = load * w[0], load * w[1], load * w[2], load * w[3]
+                for q in range(out.size):
+                    out[q] += a * values[i, q] + b * values[i + 1, q] + c * slopes[i, q] + d * slopes[i + 1, q]
 
 
 def search_end(length, low, high, base, at):
@@ -184,15 +223,15 @@ def largest(values, sign, end, length, arc, fit, fit_slope, height, rise):  # no
 
 
 def stressed(
-    n, first, numbers, x, load, state, v, stress1, stress2, rise1, rise2, length, over, arc, fit, fit_slope, at,
-    weights, values, height, rise, top, least, whole, out,
+    n, first, numbers, x, load, state, v, stress1, stress2, rise1, rise2, length, nearest, over, arc, fit, fit_slope,
+    at, weights, forces, values, height, rise, top, least, whole, out,
 ):  # fmt: skip
     """Largest stress of each fillet at a roll position that is solved for, in every row of teeth.
 
     Parameters
     ----------
-    length : ndarray, shape (2,)
-        Of the fillets [modules].
+    length, nearest : ndarray, shape (2,)
+        Of the fillets, and how near to the flank's start contacts press [modules].
     over : ndarray
         Contacts of the tables.
     top, least : ndarray, shape (2, 2), (2,)
@@ -211,17 +250,23 @@ def stressed(
         for j in range(numbers):
             if v[j] > 0.0:
                 share = min(max((state[j, contact] - low) / (high - low), 0.0), 1.0)
-                weighed(over, share, at[j], weights[j])
+                weighed(over, share, at[j], weights[j, 0])
         for side in range(2):
             sign = 1.0 if side == TENSION else -1.0
+            for j in range(numbers):
+                forces[j] = 0
+                if side == TENSION and v[j] > 0.0:
+                    touched = min(max(state[j, contact], low), high) / m
+                    forces[j] = pressed(over, touched, low / m, high / m, base / m, nearest[member], at[j], weights[j])
             for row in range(numbers + 2):
                 out[member, side, row] = -math.inf
                 place = x + (first + row - 1) * n[PITCH]
                 if not n[START] - n[PITCH] < place < n[END] + n[PITCH]:
                     continue
                 superposed(
-                    stress[side], slopes[side], row - 1, 1 if member == 0 else -1, numbers, v, line, at, weights, values
-                )
+                    stress[side], slopes[side], row - 1, 1 if member == 0 else -1, numbers, v, line, at, weights,
+                    forces, values,
+                )  # fmt: skip
                 end = 1.0
                 if side == TENSION and 0 < row <= numbers and v[row - 1] > 0.0:
                     end = search_end(length[member], low / m, high / m, base / m, state[row - 1, contact] / m)
@@ -262,8 +307,8 @@ def narrowed(x, f, place, value):
 
 
 def root_stresses(  # noqa: C901  (one loop over positions)
-    numbers_of, own1, own2, beside1, beside2, corners, loads, samples, stress1, stress2, length, over, arc, fit,
-    fit_slope, out,
+    numbers_of, own1, own2, beside1, beside2, corners, loads, samples, stress1, stress2, length, nearest, over, arc,
+    fit, fit_slope, out,
 ):  # fmt: skip
     """Largest root tension, most negative root compression and range of root tension over the mesh.
 
@@ -271,8 +316,8 @@ def root_stresses(  # noqa: C901  (one loop over positions)
     ----------
     stress1, stress2 : ndarray, shape (N, 2, 2 K + 1, contacts, points)
         By fillet and tooth, per unit line load, of module 1.
-    length : ndarray, shape (N, 2)
-        Of the fillets [modules].
+    length, nearest : ndarray, shape (N, 2)
+        Of the fillets, and how near to the flank's start contacts press [modules].
     samples : int
         Positions of a base pitch.
     out : ndarray, shape (N, L, 2, 3)
@@ -282,7 +327,7 @@ def root_stresses(  # noqa: C901  (one loop over positions)
     x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     edges, found, every = np.empty(_PIECES), np.empty(_PIECES), np.empty(2 * _PIECES)
     rise1, rise2 = np.empty(stress1.shape[1:]), np.empty(stress1.shape[1:])
-    at, weights = np.zeros((MOST, 1), dtype=np.int64), np.zeros((MOST, 4))
+    at, weights, forces = np.zeros((MOST, 4), dtype=np.int64), np.zeros((MOST, 4, 4)), np.zeros(MOST, dtype=np.int64)
     points, contacts = arc.size, over.size
     values, height, rise = np.empty(points), np.empty(points), np.empty(points)
     lower, upper = np.empty(contacts), np.empty(contacts)
@@ -325,8 +370,9 @@ def root_stresses(  # noqa: C901  (one loop over positions)
                     )
                     good = good and settled
                     stressed(
-                        n, first, numbers, where, load, state, v, stress1[p], stress2[p], rise1, rise2, length[p], over,
-                        arc, fit, fit_slope, at, weights, values, height, rise, top, least, False, rows,
+                        n, first, numbers, where, load, state, v, stress1[p], stress2[p], rise1, rise2, length[p],
+                        nearest[p], over, arc, fit, fit_slope, at, weights, forces, values, height, rise, top, least,
+                        False, rows,
                     )  # fmt: skip
                     place[positions], piece[positions] = where, i
                     for member in range(2):
@@ -354,7 +400,8 @@ def root_stresses(  # noqa: C901  (one loop over positions)
                                work)  # fmt: skip
                         stressed(
                             n, first, numbers, where, load, state, v, stress1[p], stress2[p], rise1, rise2, length[p],
-                            over, arc, fit, fit_slope, at, weights, values, height, rise, top, least, False, rows,
+                            nearest[p], over, arc, fit, fit_slope, at, weights, forces, values, height, rise, top,
+                            least, False, rows,
                         )  # fmt: skip
                         value = rows[member, side, : numbers + 2].max()
                         if first_try:
@@ -370,8 +417,8 @@ def root_stresses(  # noqa: C901  (one loop over positions)
 
 
 def root_stress_at(
-    numbers_of, own1, own2, beside1, beside2, corners, load, x_of, stress1, stress2, length, over, arc, fit, fit_slope,
-    out, first_out,
+    numbers_of, own1, own2, beside1, beside2, corners, load, x_of, stress1, stress2, length, nearest, over, arc, fit,
+    fit_slope, out, first_out,
 ):  # fmt: skip
     """Largest root tension and most negative compression of every tooth at roll positions in the first base pitch.
 
@@ -389,7 +436,7 @@ def root_stress_at(
     size = own1.shape[1]
     x, y_slopes, thomas, state, c, v, work, ways = room_for(size)
     rise1, rise2 = np.empty(stress1.shape[1:]), np.empty(stress1.shape[1:])
-    at, weights = np.zeros((MOST, 1), dtype=np.int64), np.zeros((MOST, 4))
+    at, weights, forces = np.zeros((MOST, 4), dtype=np.int64), np.zeros((MOST, 4, 4)), np.zeros(MOST, dtype=np.int64)
     values, height, rise = np.empty(arc.size), np.empty(arc.size), np.empty(arc.size)
     lower, upper = np.empty(over.size), np.empty(over.size)
     top, least, rows = np.empty((2, 2)), np.empty(2), np.empty((2, 2, MOST + 2))
@@ -414,8 +461,9 @@ def root_stress_at(
             )
             top[:], least[:] = -math.inf, math.inf
             stressed(
-                n, first, numbers, x_of[p, i], load[p], state, v, stress1[p], stress2[p], rise1, rise2, length[p], over,
-                arc, fit, fit_slope, at, weights, values, height, rise, top, least, True, rows,
+                n, first, numbers, x_of[p, i], load[p], state, v, stress1[p], stress2[p], rise1, rise2, length[p],
+                nearest[p], over, arc, fit, fit_slope, at, weights, forces, values, height, rise, top, least, True,
+                rows,
             )  # fmt: skip
             for member in range(2):
                 for side in range(2):

@@ -233,6 +233,11 @@ class CutFillet:
         return sign * best, place
 
 
+#: A semi-elliptic pressure as three forces: places over its half-width, and parts of the load. What the forces do is
+#: what the pressure does to fifth order in the half-width (Gauss and Chebyshev, second kind).
+FORCES_OF_PRESSURE = ((-math.sqrt(0.5), 0.25), (0.0, 0.5), (math.sqrt(0.5), 0.25))
+
+
 def contact_width(half_width: ArrayLike, below: Array, above: Array) -> Array:
     """Half-widths of contacts with so much flank on either side, narrowed where they would reach past its end."""
     return np.minimum(half_width, np.maximum(np.minimum(below, above), POINT))
