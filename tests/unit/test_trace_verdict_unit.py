@@ -10,7 +10,7 @@ from fegear.contact.fitted_curve import fit_curve
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.trace_alternatives import alternatives
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
-from fegear.results.pair.trace_verdict import Otherwise, drawn_as, left_out, verdict
+from fegear.results.pair.trace_verdict import Otherwise, drawn_as, left_out, thinned, verdict
 
 ANGLE = np.linspace(-0.4, 0.5, 300)
 STRAIN = 9e-4 * np.interp(ANGLE, [-0.2, -0.15, 0.0, 0.05, 0.1, 0.2, 0.24], [0.0, 0.3, 0.9, 1.0, 0.6, 0.65, 0.0])
@@ -96,7 +96,10 @@ def test_what_is_left_out_is_counted_and_drawn_otherwise():
     found = fit_curve(TURNS, measured, ANGLE, STRAIN, ("offset",))
     count = inside[::17].size
     assert left_out(found).startswith(f"{count} of {found.samples + count} samples are spikes or dropouts; left out")
-    assert drawn_as(found).endswith(" Crosses: samples left out of the comparison.")
+    assert drawn_as(found).endswith(" Crosses: samples left out of the comparison, far ones nearer than they are.")
+    shown, room = thinned(found), np.ptp(found.measured)
+    assert shown.left_out.size == count
+    assert shown.left_out == pytest.approx(np.full(count, found.measured.max() + room))
     cut = fit_curve(TURNS, np.minimum(strain(), 6e-4), ANGLE, STRAIN, ("offset", "scale"))
     assert left_out(cut).endswith(
         "samples are saturated at 600 µm/m (range of the amplifier); left out of the comparison, drawn as crosses"

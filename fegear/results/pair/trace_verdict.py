@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
@@ -151,11 +153,14 @@ class BesideTrace:
 
 
 def thinned(found: FittedCurve) -> FittedCurve:
-    """As many samples as a figure can show."""
+    """As many samples as a figure can show; those that are left out within reach of the others."""
     some, of_left_out = (slice(None, None, max(-(-size // _DRAWN), 1)) for size in (found.samples, found.left_out.size))
+    low, high = (float(edge(found.measured)) for edge in (np.min, np.max))
+    room = high - low  # a dropout to -9999 would leave of the curve a line
     return replace(
         found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some],
-        left_out_angle=found.left_out_angle[of_left_out], left_out=found.left_out[of_left_out],
+        left_out_angle=found.left_out_angle[of_left_out],
+        left_out=np.clip(found.left_out[of_left_out], low - room, high + room),
     )  # fmt: skip
 
 
@@ -232,7 +237,9 @@ def drawn_as(found: FittedCurve | None) -> str:
     done = [f"less the fitted {less}"] if less else []
     done += [f"divided by the fitted scale {found.scale:.3f}"] if "scale" in found.fit else []
     said = f" The measured strain is drawn {' and '.join(done)}." if done else ""
-    return said + (" Crosses: samples left out of the comparison." if found.left_out.size else "")
+    return said + (
+        " Crosses: samples left out of the comparison, far ones nearer than they are." if found.left_out.size else ""
+    )
 
 
 def left_out(found: FittedCurve | None) -> str:
