@@ -21,8 +21,6 @@ from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING
 
-from fegear.engine.processes import cores
-
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -109,6 +107,8 @@ class PictureProcess:
 
 def _pays() -> bool:
     """Whether a second process saves time: not on one core, nor where matplotlib is loaded already."""
+    from fegear.engine.processes import cores  # late: the process that draws asks for none of its rooms
+
     return cores() > 1 and "matplotlib" not in sys.modules
 
 
@@ -170,12 +170,15 @@ def serve(*copy: int) -> None:
         Descriptors on which requests come to a copy of the process, and its answers go.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    gc.set_threshold(100_000)  # as in the program itself; what is drawn is freed figure by figure
+    gc.disable()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
     from fegear.output.draw_png import warm_up
 
     warm_up()
+    gc.freeze()  # what is loaded stays: looking for cycles in it took a twelfth of the time until all was
+    gc.set_threshold(100_000)  # as in the program itself; what is drawn is freed figure by figure
+    gc.enable()
     if copy:
         with contextlib.suppress(OSError):  # where no copy is to be had, this process draws what it can
             if os.fork() == 0:  # it holds no end of a pipe that the other process reads or writes

@@ -145,7 +145,7 @@ def test_where_no_process_is_to_be_had_everything_is_drawn_here(held, monkeypatc
     def refuse(*_arguments, **_more):
         raise OSError(11, "no more processes")
 
-    monkeypatch.setattr("fegear.output.picture_process.cores", lambda: 1 if held == "cores" else 2)
+    monkeypatch.setattr("fegear.engine.processes.cores", lambda: 1 if held == "cores" else 2)
     if held != "matplotlib":
         monkeypatch.delitem(sys.modules, "matplotlib", raising=False)
     else:

@@ -15,7 +15,6 @@ from fegear.case.nearest import nearest
 from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.geometry.plausible import THICKEST_BELOW_GEARS
-from fegear.shafts.life import EXPONENT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -210,6 +209,8 @@ def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
                 )
     rated = part.rating
     if rated is not None and printed.dynamic_rating is None:
+        from fegear.shafts.life import EXPONENT  # late: most cases have no bearings
+
         off = (1.0 + printed.rating_error) ** EXPONENT[rated.kind]
         yield assuming(
             f"Bearing {name}: C = {figures(rated.dynamic_rating * 1e-3)} kN estimated from the dimensions, error "

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import InputError, RangeError
 from fegear.base.printed import percent
-from fegear.case.built.rack import is_wide_rack, rack_inputs
 from fegear.case.built.tooth_influence import given_settings, planets_taken_alone, teeth_on_pins_differ
 from fegear.case.part import at
 
@@ -159,9 +158,12 @@ def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     for key in _pairs_of(scene, name, flank_pairs(scene)):
         # As far as two pairs of one mesh can stand apart.
         reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
-    for key, rack in scene.case.rack.items():
-        if rack.pinion == name and is_wide_rack(scene, key):
-            reach = max(reach, math.ceil(rack_inputs(scene, key).pair.total_contact_ratio))
+    if scene.case.rack:
+        from fegear.case.built.rack import is_wide_rack, rack_inputs  # late: few cases have racks
+
+        for key, rack in scene.case.rack.items():
+            if rack.pinion == name and is_wide_rack(scene, key):
+                reach = max(reach, math.ceil(rack_inputs(scene, key).pair.total_contact_ratio))
     return SolidGearToSolve(scene.gears[name], solid_settings_of(scene, name), accuracy.tolerance, reach, name)
 
 

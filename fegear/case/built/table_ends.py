@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.notes import assuming
-from fegear.geometry.flank_modification import LeadTable, Topography
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -43,6 +42,10 @@ def _profile_notes(pair: GearPair, member: Member, flank: FlankSpec) -> Iterator
 
 
 def _face_notes(pair: GearPair, member: Member, flank: FlankSpec) -> Iterator[str]:
+    if not flank.face:
+        return
+    from fegear.geometry.flank_modification import LeadTable, Topography  # late: most flanks have none over the face
+
     for part in flank.face:
         if isinstance(part, Topography):
             ends = part.values.mean(axis=1)

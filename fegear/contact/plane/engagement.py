@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +14,6 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array, Index
 from fegear.base.brief import Brief
 from fegear.base.tally import note
-from fegear.contact.odd_flank import OddFlank
 from fegear.contact.plane.coupled_teeth import PairMatrices
 from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.plane.meshing import Contacts, Meshing
@@ -22,6 +22,9 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.roll_grids import RollGrid, RollGrids, columns_of
 from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import UNMODIFIED, Relief
+
+if TYPE_CHECKING:
+    from fegear.contact.odd_flank import OddFlank
 
 #: Roll positions nearer to each other are one [base pitches]: beyond round-off, below any length that a shop measures.
 _APART = 1e-12

@@ -10,7 +10,6 @@ import numpy as np
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.contact.odd_flank import odd_flanks
 from fegear.contact.plane.engagement import Engagement
 from fegear.geometry.pair import MEMBERS
 
@@ -74,6 +73,8 @@ def relieved(spec: PairSpec, engagement: Engagement) -> Engagement:
     driver, driven = (flank.profile(pair, member, delta) for member, flank in zip(MEMBERS, spec.both, strict=True))
     found = replace(engagement, driver_relief=driver, driven_relief=driven)
     if any(flank.profiles for flank in spec.both):
+        from fegear.contact.odd_flank import odd_flanks  # late: few teeth are odd
+
         odd = (engagement.driver_odd, engagement.driven_odd)
         first, second = (
             odd_flanks(flanks.items(), flank.profiles, pair, member, delta)

@@ -22,8 +22,6 @@ import numpy as np
 from fegear.base.arrays import same
 from fegear.base.errors import InputError
 from fegear.contact.plane.meshing import Contacts, Meshing
-from fegear.formulas.weber_banaschek import contact_approach
-from fegear.geometry.custom_fillet_tooth import with_tip
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -180,6 +178,8 @@ def _with_tips(pair: GearPair, tips: list[float]) -> GearPair:
 
 
 def _with_tip(gear: Gear, radius: float) -> Gear:
+    from fegear.geometry.custom_fillet_tooth import with_tip  # late: few teeth are odd
+
     if math.isnan(radius):
         return gear
     return replace(gear, tooth=with_tip(gear.symmetric_tooth, radius / gear.module))
@@ -201,6 +201,8 @@ def refuse_no_contact(separation: Array) -> None:
 
 def on_less_face(matrices: PairMatrices, share: Array, at: Contacts, compliance: PairCompliance) -> PairMatrices:
     """Compliances of pairs whose contact lines are shorter, at shares of the face, shape (n, P)."""
+    from fegear.formulas.weber_banaschek import contact_approach  # late: few teeth are odd
+
     if compliance.hertz == "none" or (share >= 1.0).all():
         return matrices
     load, face = compliance.contact_load, compliance.face_width

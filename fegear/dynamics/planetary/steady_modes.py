@@ -10,10 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Complex
 from fegear.base.errors import RangeError
@@ -48,7 +46,7 @@ class PiecewiseForces:
 
     def at(self, piece: Array, v: Array) -> Array:
         """Values in pieces, shape (Q,), at places v of them, shape (Q, M): shape (F, Q, M)."""
-        return np.asarray(_polynomial(self.rows, piece, v))
+        return _polynomial(np.moveaxis(self.rows, 2, 0), piece, v)
 
 
 def on_common_pieces(functions: Sequence[Periodic], delays: Array) -> PiecewiseForces:
@@ -85,15 +83,15 @@ class SteadyModes:
         Of every mode: its damping and damped frequency [1/s].
     halves : ndarray, shape (S,)
         Half the durations of the pieces [s].
-    polynomials : ndarray, complex, shape (J, S, N)
-        P, powers of v.
+    polynomials : ndarray, shape (N, J, S)
+        Im P, powers of v, lowest first: v is real.
     ringing : ndarray, complex, shape (J, S)
         A.
     """
 
     rate: Complex
     halves: Array
-    polynomials: Complex
+    polynomials: Array
     ringing: Complex
 
     def at(self, piece: Array, v: Array) -> Array:
@@ -101,15 +99,14 @@ class SteadyModes:
         steady = _polynomial(self.polynomials, piece, v)
         late = self.halves[piece][:, None] * (v + 1.0)
         ringing = self.ringing[:, piece, None] * np.exp(self.rate[:, None, None] * late)
-        return np.asarray((steady + ringing).imag / self.rate.imag[:, None, None])
+        return np.asarray((steady + ringing.imag) / self.rate.imag[:, None, None])
 
 
-def _polynomial(rows: Array | Complex, piece: Array, v: Array) -> NDArray[Any]:
-    own = rows[:, piece]
-    found: NDArray[Any] = np.zeros((*own.shape[:2], v.shape[1]), dtype=rows.dtype)
-    for power in range(rows.shape[2] - 1, -1, -1):
+def _polynomial(powers: Array, piece: Array, v: Array) -> Array:
+    found = np.zeros((powers.shape[1], *v.shape))
+    for power in powers[::-1, :, piece]:
         found *= v
-        found += own[..., power, None]
+        found += power[..., None]
     return found
 
 
@@ -145,9 +142,10 @@ def steady_modes(
     rate: Complex = np.asarray(natural * complex(-damping_ratio, math.sqrt(1.0 - damping_ratio**2)), dtype=complex)
     halves = 0.5 * periods[:, None] * widths  # (W, S)
     step: Complex = np.asarray(rate[None, :, None] * halves[:, None, :], dtype=complex)  # (W, J, S)
-    polynomials = _particular(step, halves[:, None, :, None] * forces)
-    signs = (-1.0) ** np.arange(polynomials.shape[-1])
-    gap = polynomials.sum(axis=-1) - np.roll(polynomials @ signs, -1, axis=-1)  # at the end of each piece
+    polynomials = _particular(step, halves[:, None, :] * np.moveaxis(forces, 2, 0)[:, None])  # (N, W, J, S)
+    odd = polynomials[1::2].sum(axis=0)
+    even = polynomials[::2].sum(axis=0)
+    gap = even + odd - np.roll(even - odd, -1, axis=-1)  # at the end of each piece
     decay = np.exp(2.0 * step)
     first = np.zeros(step.shape[:2], dtype=complex)
     for piece in range(widths.size):
@@ -157,7 +155,8 @@ def steady_modes(
     for piece in range(widths.size):
         ringing[..., piece] = first
         first = first * decay[..., piece] + gap[..., piece]
-    return [SteadyModes(rate, *parts) for parts in zip(halves, polynomials, ringing, strict=True)]
+    each = np.ascontiguousarray(np.moveaxis(polynomials.imag, 1, 0))
+    return [SteadyModes(rate, *parts) for parts in zip(halves, each, ringing, strict=True)]
 
 
 def _particular(step: Complex, force: Array) -> Complex:
@@ -166,15 +165,20 @@ def _particular(step: Complex, force: Array) -> Complex:
     Parameters
     ----------
     step : ndarray, complex, shape (...)
-    force : ndarray, shape (..., degree + 1)
+    force : ndarray, shape (degree + 1, ...)
+
+    Returns
+    -------
+    ndarray, complex, shape (N, ...)
+        One power after the other, lowest first: each is read and written at once.
     """
-    degree, size = force.shape[-1] - 1, np.abs(step)
+    degree, size = force.shape[0] - 1, np.abs(step)
     small = size <= _UPWARDS
-    down = np.zeros((*step.shape, degree + 1), dtype=complex)
+    down = np.zeros((degree + 1, *step.shape), dtype=complex)
     over = 1.0 / np.where(small, 1.0, step)
     higher: Complex = np.zeros_like(step)
     for n in range(degree, -1, -1):
-        down[..., n] = higher = ((n + 1) * higher - force[..., n]) * over
+        down[n] = higher = ((n + 1) * higher - force[n]) * over
     if not small.any():
         return down
     count, most = degree + 1, float(size[small].max())
@@ -182,9 +186,10 @@ def _particular(step: Complex, force: Array) -> Complex:
     while term > 1e-17 or count < degree + 3:
         count += 1
         term *= most / (count - degree)
-    up = np.zeros((*step.shape, count + 1), dtype=complex)
+    up = np.zeros((count + 1, *step.shape), dtype=complex)
     bounded = np.where(small, step, 0.0)
     for n in range(count):
-        up[..., n + 1] = (bounded * up[..., n] + (force[..., n] if n <= degree else 0.0)) / (n + 1)
-    up[~small] = np.pad(down[~small], ((0, 0), (0, count - degree)))
+        up[n + 1] = (bounded * up[n] + (force[n] if n <= degree else 0.0)) / (n + 1)
+    np.copyto(up[: degree + 1], down, where=~small)
+    up[degree + 1 :, ~small] = 0.0
     return up
