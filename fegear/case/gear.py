@@ -13,7 +13,6 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.case.gear_checks import check_asymmetric, check_helical, check_internal, check_odd_teeth, check_web
 from fegear.case.gear_keys import GearKeys
 from fegear.case.part import at, refuse
-from fegear.case.relief import LeadPart, MeasuredPart, ReliefPart
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
@@ -22,6 +21,7 @@ from fegear.geometry.involute_side import Flank
 
 if TYPE_CHECKING:
     from fegear.case.fillet import FindFile
+    from fegear.case.relief import LeadPart, MeasuredPart, ReliefPart
     from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
 

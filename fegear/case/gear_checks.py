@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import shown
 from fegear.case.gear_teeth import MEASURES
-from fegear.case.odd_tooth import OUTLINES
 from fegear.case.part import refuse
 
 if TYPE_CHECKING:
@@ -88,6 +87,8 @@ def check_odd_teeth(part: GearKeys) -> None:
     """Refuse odd teeth of gears that are not solved with them, that are no teeth of theirs, and twice given."""
     if not part.odd_tooth:
         return
+    from fegear.case.odd_tooth import OUTLINES  # late: few gears have odd teeth
+
     for n, one in enumerate(part.odd_tooth if part.internal else []):
         outline = next((key for key in OUTLINES if getattr(one, key)), None)
         if outline is not None:

@@ -7,36 +7,47 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from fegear.case.deviations import DeviationsPart
-from fegear.case.gear_body import GearBodyPart, RimSupportPart
 from fegear.case.gear_material import MaterialPart
 from fegear.case.gear_teeth import TeethPart
 from fegear.case.gear_tool import CutterPart, RackPart
-from fegear.case.odd_tooth import OddToothPart
 from fegear.case.part import (
     Later,
     LengthOrZero,
     PositiveLength,
     Table,
-)
-from fegear.case.relief import (
-    BiasPart,
-    LeadPart,
-    MeasuredPart,
-    ReliefPart,
-    SpacingErrorsPart,
-    TopographyPart,
     several,
 )
-from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.case.tolerance_class import ToleranceClass
 from fegear.geometry.gear import USUAL_RING_RIM
 
 if TYPE_CHECKING:
+    from fegear.case.deviations import DeviationsPart
     from fegear.case.fillet import FilletPart
-else:  # few gears have one
+    from fegear.case.gear_body import GearBodyPart, RimSupportPart
+    from fegear.case.odd_tooth import OddToothPart
+    from fegear.case.relief import (
+        BiasPart,
+        LeadPart,
+        MeasuredPart,
+        ReliefPart,
+        SpacingErrorsPart,
+        TopographyPart,
+    )
+    from fegear.case.strength import StrengthPart
+else:  # tables that few gears have
+    BiasPart = Later("fegear.case.relief", "BiasPart")
+    DeviationsPart = Later("fegear.case.deviations", "DeviationsPart")
     FilletPart = Later("fegear.case.fillet", "FilletPart")
+    GearBodyPart = Later("fegear.case.gear_body", "GearBodyPart")
+    LeadPart = Later("fegear.case.relief", "LeadPart")
+    MeasuredPart = Later("fegear.case.relief", "MeasuredPart")
+    OddToothPart = Later("fegear.case.odd_tooth", "OddToothPart")
+    ReliefPart = Later("fegear.case.relief", "ReliefPart")
+    RimSupportPart = Later("fegear.case.gear_body", "RimSupportPart")
+    SpacingErrorsPart = Later("fegear.case.relief", "SpacingErrorsPart")
+    StrengthPart = Later("fegear.case.strength", "StrengthPart")
+    TopographyPart = Later("fegear.case.relief", "TopographyPart")
 
 #: Two pressure angles that differ by less [of the angle] are one, as written in deg and in rad.
 _ONE_ANGLE = 1e-12
@@ -157,7 +168,7 @@ class GearKeys(TeethPart):
         description="Cumulative pitch deviation of each tooth in meshing order, positive for missing material; "
         "active with effects.spacing_errors.",
     )
-    odd_tooth: Annotated[list[Table[OddToothPart]], several(OddToothPart)] = Field(
+    odd_tooth: Annotated[list[Table[OddToothPart]], several(Table[OddToothPart])] = Field(
         default_factory=list,
         description="Teeth that differ (crack, missing, broken, shorter, hole, pits), a table for each "
         "([[gear.NAME.odd_tooth]]); active with effects.odd_teeth over a revolution.",

@@ -10,8 +10,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, Length, LengthOrZero, Part, PositiveLength, PositiveNumber, Table, refuse
-from fegear.case.relief import ReliefPart, ReliefTablePart, several
+from fegear.case.part import Angle, Length, LengthOrZero, Part, PositiveLength, PositiveNumber, Table, refuse, several
+from fegear.case.relief import ReliefPart, ReliefTablePart
 
 #: Keys that say where a crack starts, and that say where it ends.
 STARTS = ("tangent_angle", "arc", "radius", "diameter")

@@ -111,6 +111,15 @@ class OnDemand:
 Table = Annotated[T, OnDemand()]
 
 
+def several(part: Any) -> BeforeValidator:
+    """Let one table stand for a list of one."""
+
+    def read(value: Any) -> Any:
+        return [value] if isinstance(value, dict) else value
+
+    return BeforeValidator(read, json_schema_input_type=part | list[part])
+
+
 def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") -> PydanticCustomError:
     """Make the error that a validator raises; `key` goes below the place where pydantic found it."""
     return PydanticCustomError("fegear", "{rule}", {"rule": rule, "remedy": remedy, "shown": value, "key": key})

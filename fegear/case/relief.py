@@ -7,24 +7,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from fegear.case.derived import keys_of
-from fegear.case.part import Angle, Length, Part, PositiveLength, refuse, spelt_also
+from fegear.case.part import Angle, Length, Part, PositiveLength, refuse, several, spelt_also
 from fegear.geometry.relief import Shape
 from fegear.geometry.relief_spec import BiasSpec, CrowningSpec, EndReliefSpec, RootReliefSpec, TipReliefSpec
 
 #: The ways to say where an end relief starts.
 STARTS = ("start_roll_angle", "start_radius", "length", "normalised_length")
-
-
-def several(part: type[Part]) -> BeforeValidator:
-    """Let one table stand for a list of one."""
-
-    def read(value: Any) -> Any:
-        return [value] if isinstance(value, dict) else value
-
-    return BeforeValidator(read, json_schema_input_type=part | list[part])  # type: ignore[valid-type]  # made at run time
 
 
 if TYPE_CHECKING:
