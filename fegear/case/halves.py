@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.nearest import nearest
-from fegear.case.set_pairs import set_of_pair
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,6 +34,8 @@ def half_notes(case: Case, name: str) -> tuple[str, ...]:
     """What results of the pair are of, where it is double helical."""
     if case.pair[name].double_helical is None:
         return ()
+    from fegear.case.set_pairs import set_of_pair  # late: few pairs are double helical
+
     said = f"Pair {name}: one half (end I) of a double helical pair under half of the load"
     return (f"{said}." if set_of_pair(case, name) is not None else f"{said}; see double-helical.",)
 
@@ -50,6 +51,8 @@ def check_double_helical(case: Case, gears: Mapping[str, Gear]) -> None:
     for name, part in case.pair.items():
         if part.double_helical is None:
             continue
+        from fegear.case.set_pairs import set_of_pair  # late: few pairs are double helical
+
         in_set = set_of_pair(case, name)
         prefix = f"pair.{name}" if in_set is None else f"planetary.{in_set}"
         for role in ("driver", "driven"):

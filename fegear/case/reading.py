@@ -24,7 +24,6 @@ from fegear.case.references import check_references
 from fegear.case.renamed import current, current_key, without_old
 from fegear.case.settled import settled
 from fegear.case.text_file import is_below, read_text
-from fegear.case.toml_remedy import toml_remedy
 from fegear.case.working_flanks import with_working_flanks
 
 if TYPE_CHECKING:
@@ -183,6 +182,8 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         ValueError,
         RecursionError,
     ) as error:  # besides what TOML forbids, numbers and nests that Python cannot hold
+        from fegear.case.toml_remedy import toml_remedy
+
         raise InputError("case", name, f"invalid TOML: {error}", toml_remedy(text, error)) from None
     _refuse_decimal_commas(text)
     return document

@@ -68,7 +68,7 @@ def test_bodies_on_two_shafts_that_cut_each_other_are_named_with_radii_and_dista
     # the output shaft under the wheel of the first stage: 87.6 mm of tip radius and 85 mm of shaft, axes 170.3 mm apart
     (note,) = notes_of({"shaft.output.sections.1.outer": "170 mm"})
     assert class_of(note) is NoteClass.FAILS
-    assert "Gear wheel_1 (diameter 175.2 mm) and shaft output (diameter 170 mm) cut each other" in note
+    assert "Gear wheel_1 (diameter 175.2 mm) and shaft output (diameter 170 mm) intersect" in note
     assert "radii 172.6 mm, axes of shafts middle and output 170.3 mm apart" in note
     assert not notes_of({"shaft.output.sections.1.outer": "164 mm"})
 
@@ -79,6 +79,6 @@ def test_a_bearing_beside_a_gear_overlaps_it_along_the_shaft():
     at = float(place["gears"][0]["at"].split()[0])
     thick = {"shaft.input.sections.0.outer": "35 mm", "shaft.input.sections.1.outer": "35 mm"}
     note, cut = notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width) + 2.0} mm"})
-    assert "Bearing input_floating (diameter 72 mm) and gear wheel_1 (diameter 175.2 mm) cut each other" in cut
+    assert "Bearing input_floating (diameter 72 mm) and gear wheel_1 (diameter 175.2 mm) intersect" in cut
     assert "Gear pinion_1 and bearing input_floating on shaft input overlap by 2 mm along it" in note
     assert not notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width)} mm"})

@@ -79,7 +79,7 @@ def test_oil_hotter_than_it_scuffs_is_said():
         "flank-surface", lubricant=hot | {"temperature": "120 degC", "scuffing_temperature": "110 degC"}
     )
     assert values["S_B"] < 0.0
-    assert any("no cooler than its scuffing temperature" in remark for remark in found.remarks)
+    assert any("is not below the scuffing temperature" in remark for remark in found.remarks)
 
 
 def test_load_factors_heat_the_flanks_and_ones_change_nothing():

@@ -122,7 +122,7 @@ def _cut(scene: Scene, one: _Body, two: _Body) -> Iterator[Note]:
         return
     yield failing(
         f"{_said(one)} (diameter {figures(2e3 * one.radius, 4)} mm) and {two.kind} {two.name} (diameter "
-        f"{figures(2e3 * two.radius, 4)} mm) cut each other: radii {figures(needed * 1e3, 4)} mm, axes of shafts "
+        f"{figures(2e3 * two.radius, 4)} mm) intersect: radii {figures(needed * 1e3, 4)} mm, axes of shafts "
         f"{one.shaft} and {two.shaft} {figures(apart * 1e3, 4)} mm apart; move one along its shaft or reduce its "
         "diameter",
         apart / needed,

@@ -373,7 +373,7 @@ def _material_factor(scene: Scene, name: str, told: list[str]) -> float:
         if steel not in MATERIAL_FACTOR:
             told.append(
                 assuming(
-                    f"Gear {gear}: W_W = 1 of carburized flanks was taken for micropitting, on the safe side "
+                    f"Gear {gear}: W_W = 1 of carburized flanks assumed for micropitting, conservative "
                     "(flank_treatment, strength, or micropitting_material_factor of iso_6336)."
                 )
             )

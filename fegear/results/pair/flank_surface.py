@@ -118,7 +118,7 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
     if data.scuffing <= oil:
         told.append(
             failing(
-                f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of "
+                f"Pair {name}: the oil temperature of {oil:.4g} degC is not below the scuffing temperature of "
                 f"{data.scuffing:.4g} degC: S_B is zero or negative and has no quantitative meaning."
             )
         )
