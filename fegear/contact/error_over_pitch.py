@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from fegear.contact.fourier import FourierSeries
     from fegear.geometry.pair import GearPair
 
+#: Harmonics on either side of one that tell of its error, too (of one pair the fourth was 1.6 times off what one on
+#: either side told).
+_BESIDE = 2
+
 
 @dataclass(frozen=True)
 class TransmissionErrorShift:
@@ -35,12 +39,12 @@ class TransmissionErrorShift:
 
 
 def no_less_than_beside(error: Array) -> Array:
-    """Errors of harmonics, shape (N,), none below the root mean square of it and those beside it.
+    """Errors of harmonics, shape (N,), none below the root mean square of it and two on either side.
 
     What a change of the flank's ends adds to one harmonic may cancel, and does not in the next, whose phases differ.
     """
-    square = np.pad(error**2, 1, mode="edge")
-    return np.maximum(error, np.sqrt((square[:-2] + square[1:-1] + square[2:]) / 3.0))
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(error**2, _BESIDE, mode="edge"), 2 * _BESIDE + 1)
+    return np.maximum(error, np.sqrt(around.mean(axis=-1)))
 
 
 @dataclass(frozen=True)
