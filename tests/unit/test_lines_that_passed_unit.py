@@ -13,6 +13,7 @@ from fegear.contact.wide import over_revolution
 from fegear.design.flanks import tip_bench
 from fegear.design.tip_relief.search import _followed
 from fegear.dynamics.compound.compound_modes import CompoundModel
+from fegear.formulas.many.shared import ManyQualities
 from fegear.studies.cost import measure
 from fegear.verify import calculix
 
@@ -121,3 +122,10 @@ def test_a_formula_of_stress_has_no_compliance_to_be_right(monkeypatch, family, 
     measure._record(SimpleNamespace(asked="asked"), SimpleNamespace(family=family), "source", {})
     alone = "without neighbours" if family == "compliance-formula" else "asked"
     assert looked == ([(alone, "source")] if checked else [])
+
+
+def test_qualities_without_a_favourable_contact_pattern_have_none_for_some_of_the_pairs_either():
+    each = np.arange(6.0).reshape(2, 3)
+    some = ManyQualities(6, each, each, each, (1.0, 1.0), (2.0, 2.0)).at(np.array([2, 0]))
+    assert some.base_pitch.tolist() == [[2.0, 0.0], [5.0, 3.0]]
+    assert some.helix_slope_5.size == 0
