@@ -116,11 +116,14 @@ def _with_rings(external: ManyForms, pairs: ManyPairs) -> ManyForms:
         exists, (q >= 1.0) & (q < 8.0),
     )  # fmt: skip
 
-    def both(name: str) -> Array:
-        outer = getattr(external, name)
-        return np.stack([outer[0], np.where(internal, getattr(forms, name), outer[1])])
-
-    return ManyForms(*(both(name) for name in ("Y_F", "Y_S", "notch", "exists", "notch_in_range")))
+    values, masks = (
+        [np.stack([outer[0], np.where(internal, inner, outer[1])]) for outer, inner in of]
+        for of in (
+            ((external.Y_F, forms.Y_F), (external.Y_S, forms.Y_S), (external.notch, forms.notch)),
+            ((external.exists, forms.exists), (external.notch_in_range, forms.notch_in_range)),
+        )
+    )
+    return ManyForms(values[0], values[1], values[2], masks[0], masks[1])
 
 
 def _load_distribution(ratio: Array, overlap: Array, edition: Edition) -> Array | float:
