@@ -1,6 +1,6 @@
 """``[[gear.NAME.odd_tooth]]``: one tooth of a gear that differs: cracked, missing, broken, shorter, pitted, ground.
 
-Or above a hole in the gear body.
+Or above a hole in the gear body, or a keyway.
 """
 
 from __future__ import annotations
@@ -138,6 +138,24 @@ class HolePart(Part):
     )
 
 
+class KeywayPart(Part):
+    """``keyway = { width, depth, angle }``."""
+
+    width: PositiveLength | None = Field(
+        default=None, description="Width of the keyway. Default: DIN 6885-1 for the bore."
+    )
+    depth: PositiveLength | None = Field(
+        default=None,
+        description="Depth from the bore to the floor of the keyway, at its middle. Default: t_2 of DIN 6885-1 for the "
+        "bore.",
+    )
+    angle: Angle = Field(
+        default=0.0,
+        description="Angle about the gear axis from the tooth centre line to the middle of the keyway, positive "
+        "towards the loaded flank, at most half a pitch. Default: 0 deg.",
+    )
+
+
 #: What a tooth may be other than cracked, and which of them exclude each other.
 OUTLINES = ("missing", "broken_at", "tip_diameter")
 
@@ -165,6 +183,11 @@ class OddToothPart(Part):
         description="Round hole through the gear body over the full face width, within the sector of this tooth (one "
         "pitch).",
     )
+    keyway: Table[KeywayPart] | None = Field(
+        default=None,
+        description="Keyway in the bore below this tooth, over the full face width; {} for one of DIN 6885-1. Its "
+        "walls are free, the bore beside it is fixed.",
+    )
     pits: Annotated[list[Table[PitPart]], several(PitPart)] = Field(
         default_factory=list, description="Pits or spalls of the loaded flank, a table for each."
     )
@@ -184,7 +207,7 @@ class OddToothPart(Part):
         outlines = [key for key in OUTLINES if getattr(self, key)]
         if not self.reshaped and not self.pits and not self.profiled:
             raise refuse(
-                "is required, or missing, broken_at, tip_diameter, hole, pits, relief or deviation",
+                "is required, or missing, broken_at, tip_diameter, hole, keyway, pits, relief or deviation",
                 'set crack = { depth = "0.5 mm" }', key="crack",
             )  # fmt: skip
         if len(outlines) > 1:
@@ -197,6 +220,12 @@ class OddToothPart(Part):
             raise refuse(
                 f"is not available together with {other}", f"remove it, or remove {other}", key="hole", value="(given)"
             )
+        others = [*outlines, *(key for key in ("crack", "hole") if getattr(self, key) is not None)]
+        if self.keyway is not None and others:
+            raise refuse(
+                f"is not available together with {others[0]}", f"remove it, or remove {others[0]}", key="keyway",
+                value="(given)",
+            )  # fmt: skip
         for key in ("pits", "relief", "deviation"):
             if self.missing and getattr(self, key):
                 raise refuse("contradicts missing", "remove it: there is no flank", key=key)
@@ -210,4 +239,5 @@ class OddToothPart(Part):
     @property
     def reshaped(self) -> bool:
         """Whether its body differs, not only its flank."""
-        return self.crack is not None or self.hole is not None or any(getattr(self, key) for key in OUTLINES)
+        body = self.crack, self.hole, self.keyway
+        return any(one is not None for one in body) or any(getattr(self, key) for key in OUTLINES)

@@ -152,6 +152,28 @@ class Gear(Described):
         """
         return self._with_odd_tooth(tooth, hole=hole)
 
+    def with_keyway(self, tooth: int = 0, **keyway: Any) -> Gear:
+        """A gear with a keyway in its bore, below a tooth, through the full face width (plane pairs).
+
+        Parameters
+        ----------
+        tooth : int
+            Number of the tooth in meshing order; one that differs already has the keyway instead.
+        **keyway
+            Keys of ``[[gear.NAME.odd_tooth]] keyway`` of a case file: ``width``, ``depth`` (by default those of
+            DIN 6885-1 for the bore) and ``angle``.
+
+        Raises
+        ------
+        InputError
+            If the gear can have no such keyway: key, value, rule, remedy.
+
+        Examples
+        --------
+        >>> keyed = pinion.with_keyway(tooth=0)
+        """
+        return self._with_odd_tooth(tooth, keyway=keyway)
+
     def _with_odd_tooth(self, tooth: int, **what: Any) -> Gear:
         """A gear of which one tooth is another one."""
         given = self.keys.get("odd_tooth", [])

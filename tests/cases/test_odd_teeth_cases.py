@@ -460,3 +460,13 @@ def test_a_crack_grows_in_a_case():
 def test_growth_that_has_no_law_is_refused_in_words(growth, words):
     with pytest.raises(InputError, match=words):
         read_scene(CASE, ['results=["crack-path"]', f"crack_growth={growth}"])
+
+
+def test_a_keyway_is_refused_where_it_cannot_be():
+    for keys, rule in (
+        ("[{ keyway = {} }, { tooth = 5, missing = true }]", "beside other teeth with a different body"),
+        ("[{ keyway = {}, crack = { depth = '1 mm' } }]", "is not available together with crack"),
+        ("[{ keyway = { depth = '11 mm' } }]", r"keyway.depth = 11 mm: leaves"),
+    ):
+        with pytest.raises(InputError, match=rule):
+            make_plan(read_scene(CASE, (REVOLUTION, f"gear.pinion.odd_tooth={keys}")), STAGES)

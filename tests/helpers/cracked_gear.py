@@ -29,7 +29,7 @@ def turned(points, angle):
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=None, factor=1.0):
+def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=None, factor=1.0, keyway=None):
     """Six-node triangles of the whole gear.
 
     Parameters
@@ -50,6 +50,8 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=Non
         Radius, and centre in the frame of tooth 0, of a round hole.
     factor : float
         Of all edges.
+    keyway : (float, float, float), optional
+        Width, depth, and clockwise angle from tooth 0 of a keyway in the bore.
 
     Returns
     -------
@@ -85,8 +87,7 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=Non
                     if mark is not None:
                         marked[mark] = end
         centre = geo.addPoint(0.0, 0.0, 0.0)
-        turn = [geo.addPoint(bore * math.sin(a), bore * math.cos(a), 0.0, 0.4) for a in 0.5 * math.pi * np.arange(4)]
-        held = [geo.addCircleArc(turn[i], centre, turn[(i + 1) % 4]) for i in range(4)]
+        held = _bore(geo, bore, centre, keyway)
         loops = [geo.addCurveLoop(loop), geo.addCurveLoop(held)]
         if hole is not None:
             radius, x, y = hole
@@ -131,6 +132,23 @@ def cracked_gear(tooth, bore, path, radii, size, tip=0.05, fillet=None, hole=Non
     if path is not None:
         points = _quartered(points, six, int(np.hypot(*(points - path[:, 1:])).argmin()))
     return points, six, {key: int(new[node]) for key, node in nodes.items()}
+
+
+def _bore(geo, bore, centre, keyway):
+    """Lines of the bore, clockwise."""
+    if keyway is None:
+        turn = [geo.addPoint(bore * math.sin(a), bore * math.cos(a), 0.0, 0.4) for a in 0.5 * math.pi * np.arange(4)]
+        return [geo.addCircleArc(turn[i], centre, turn[(i + 1) % 4]) for i in range(4)]
+    width, depth, angle = keyway
+    inner, outer, edge = math.sqrt(bore**2 - 0.25 * width**2), bore + depth, 0.03
+    xy = turned(0.5 * width * np.array([[-1.0, -1.0, 1.0, 1.0], [0.0] * 4]) + [[0.0] * 4, [inner, outer, outer, inner]],
+                angle)  # fmt: skip
+    corners = [geo.addPoint(*at, 0.0, edge) for at in xy.T]
+    first = math.asin(0.5 * width / bore)
+    angles = angle + first + (2.0 * math.pi - 2.0 * first) * np.array([0.25, 0.5, 0.75])
+    around = [corners[3], *(geo.addPoint(bore * math.sin(a), bore * math.cos(a), 0.0, 0.4) for a in angles), corners[0]]
+    walls = [geo.addLine(*corners[n : n + 2]) for n in range(3)]
+    return [*walls, *(geo.addCircleArc(around[n], centre, around[n + 1]) for n in range(4))]
 
 
 def _quartered(points, six, tip):

@@ -94,8 +94,9 @@ def check_odd_solid_gear(scene: Scene, name: str) -> None:
 
 
 def _check_tooth(tooth: OddToothPart, prefix: str) -> None:
-    if tooth.hole is not None:
-        raise InputError(f"{prefix}.hole", "(given)", "is available for plane (2D) pairs only", "remove it")
+    for key in ("hole", "keyway"):
+        if getattr(tooth, key) is not None:
+            raise InputError(f"{prefix}.{key}", "(given)", "is available for plane (2D) pairs only", "remove it")
     for outline in ("broken_at", "tip_diameter"):
         if getattr(tooth, outline) is not None:
             raise InputError(

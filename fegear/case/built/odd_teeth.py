@@ -18,10 +18,11 @@ from fegear.contact.odd_flank import OddFlank, Pit, ToothProfile
 from fegear.fem.alike_teeth import meshing_order
 from fegear.fem.plane.odd.crack import Crack
 from fegear.fem.plane.odd.hole import Hole, hole_at, refuse_hole
+from fegear.fem.plane.odd.keyway import Keyway, din_6885, refuse_keyway
 from fegear.fem.plane.odd.other_outline import SHORTEST_FLANK, Missing, OtherTip
 
 if TYPE_CHECKING:
-    from fegear.case.odd_tooth import CrackPart, HolePart, OddToothPart, PitPart
+    from fegear.case.odd_tooth import CrackPart, HolePart, KeywayPart, OddToothPart, PitPart
     from fegear.case.reading import Scene
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import Member
@@ -38,7 +39,7 @@ class OddTeeth:
     Parameters
     ----------
     cracks : tuple of (int, Crack)
-    outlines : tuple of (int, OtherTip, Missing or Hole)
+    outlines : tuple of (int, OtherTip, Missing, Hole or Keyway)
     flanks : tuple of (int, OddFlank)
     profiles : tuple of (int, ToothProfile)
     member : {"driver", "driven"}
@@ -47,13 +48,13 @@ class OddTeeth:
     """
 
     cracks: tuple[tuple[int, Crack], ...]
-    outlines: tuple[tuple[int, OtherTip | Missing | Hole], ...]
+    outlines: tuple[tuple[int, OtherTip | Missing | Hole | Keyway], ...]
     flanks: tuple[tuple[int, OddFlank], ...]
     profiles: tuple[tuple[int, ToothProfile], ...]
     member: Member
     name: str = field(compare=False)
 
-    def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing | Hole]:
+    def by_number(self, teeth: int) -> dict[int, Crack | OtherTip | Missing | Hole | Keyway]:
         """Cracks and outlines by the tooth's own number, as of `fegear.fem.alike_teeth`."""
         return {meshing_order(tooth, teeth, self.member): one for tooth, one in (*self.cracks, *self.outlines)}
 
@@ -73,7 +74,9 @@ class OddTeeth:
             for tooth, flank in self.flanks
             if flank.missing or not math.isnan(flank.tip_radius)
         )
-        outlines = tuple((tooth, one.mirrored() if isinstance(one, Hole) else one) for tooth, one in self.outlines)
+        outlines = tuple(
+            (tooth, one.mirrored() if isinstance(one, Hole | Keyway) else one) for tooth, one in self.outlines
+        )
         return OddTeeth(cracks, outlines, flanks, (), "driver", self.name)
 
     @property
@@ -91,6 +94,7 @@ class OddTeeth:
             "shorter": [tooth for tooth, flank in known.items() if not math.isnan(flank.tip_radius)],
             "pitted": [tooth for tooth, flank in known.items() if flank.pits],
             "above a hole": [tooth for tooth, one in self.outlines if isinstance(one, Hole)],
+            "above a keyway": [tooth for tooth, one in self.outlines if isinstance(one, Keyway)],
             "with another profile": [tooth for tooth, _ in self.profiles],
         }
         return ", ".join(
@@ -115,7 +119,7 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
         If a crack, a tip or a pit does not fit its tooth.
     """
     gear, cracks, flanks, profiles = scene.gears[name], [], [], []
-    outlines: list[tuple[int, OtherTip | Missing | Hole]] = []
+    outlines: list[tuple[int, OtherTip | Missing | Hole | Keyway]] = []
     for n, part in enumerate(scene.case.gear[name].odd_tooth):
         prefix = f"gear.{name}.odd_tooth[{n}]"
         if part.crack is not None:
@@ -125,6 +129,8 @@ def odd_teeth_of(scene: Scene, name: str) -> OddTeeth:
             outlines.append((part.tooth, outline))
         if part.hole is not None:
             outlines.append((part.tooth, hole_of(gear, part.hole)))
+        if part.keyway is not None:
+            outlines.append((part.tooth, keyway_of(gear, part.keyway, f"{prefix}.keyway")))
         pits = tuple(_pit(gear, pit, f"{prefix}.pits[{at}]") for at, pit in enumerate(part.pits))
         if outline is not None or pits:
             tip = outline.radius * gear.module if isinstance(outline, OtherTip) else math.nan
@@ -158,6 +164,55 @@ def _outline(gear: Gear, part: OddToothPart, prefix: str) -> OtherTip | Missing 
 def hole_of(gear: Gear, part: HolePart) -> Hole:
     """A hole beside a gear's tooth, lengths in modules."""
     return hole_at(0.5 * part.diameter / gear.module, part.position_radius / gear.module, part.angle)
+
+
+def keyway_of(gear: Gear, part: KeywayPart, prefix: str) -> Keyway:
+    """A keyway below a gear's tooth, lengths in modules.
+
+    Raises
+    ------
+    InputError
+        If a dimension is not given and DIN 6885-1 has none for the bore.
+    """
+    width, depth = part.width, part.depth
+    if width is None or depth is None:
+        try:
+            usual = din_6885(2.0 * gear.bore_radius)
+        except InputError as error:
+            key = "width" if width is None else "depth"
+            raise InputError(
+                f"{prefix}.{key}", f"(not specified, bore diameter {error.value})", error.rule, error.remedy
+            ) from None  # fmt: skip
+        width, depth = usual[0] if width is None else width, usual[1] if depth is None else depth
+    return Keyway(width / gear.module, depth / gear.module, part.angle)
+
+
+def check_keyway(scene: Scene, gear: str, number: int) -> None:
+    """Refuse a keyway that its gear has no room for, or that is not the only odd tooth, before anything is solved.
+
+    Raises
+    ------
+    InputError
+        Under its key in the case.
+    """
+    made, described = scene.gears[gear], scene.case.gear[gear]
+    part, key = described.odd_tooth[number].keyway, f"gear.{gear}.odd_tooth[{number}].keyway"
+    if part is None:
+        return
+    keyway = keyway_of(made, part, key)
+    if sum(one.reshaped for one in described.odd_tooth) > 1:
+        raise InputError(
+            key, "(given)", "is not available beside other teeth with a different body", "remove one of them"
+        )
+    if described.rim_support is not None:
+        raise InputError(key, "(given)", "is not available with rim_support (the bore is fixed)", "remove rim_support")
+    if made.tooth.internal:
+        raise InputError(key, "(given)", "is available for external gears only", "remove it")
+    try:
+        refuse_keyway(made.symmetric_tooth, made.bore_radius / made.module, keyway)
+    except InputError as error:
+        value, rule = (_in_mm(text, 1e3 * made.module) for text in (error.value, error.rule))
+        raise InputError(f"{key}.{error.key}", value, rule, error.remedy) from None
 
 
 def check_hole(scene: Scene, gear: str, number: int) -> None:
@@ -272,6 +327,7 @@ def check_odd_gear(scene: Scene, name: str) -> None:
     for n in range(len(scene.case.gear[name].odd_tooth)):
         check_crack(scene, name, n)
         check_hole(scene, name, n)
+        check_keyway(scene, name, n)
 
 
 def _is_planet(scene: Scene, name: str) -> bool:

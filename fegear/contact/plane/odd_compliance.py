@@ -233,8 +233,8 @@ class OddCompliance:
         """Return what it includes."""
         fine = self.influence.fine
         cracked = [number for number, kind in fine.odd.items() if kind.cracked]
-        shorter = [number for number in fine.odd if number not in cracked]
-        said = [self.ordinary.describe()]
+        shorter = [number for number in fine.odd if number not in cracked and fine.patch is None]
+        said = [self.ordinary.describe(), *(["keyway"] if fine.patch is not None else [])]
         for numbers, what in ((cracked, "cracked"), (shorter, "shorter"), (fine.missing, "missing")):
             odd = sorted((self.influence.middle + number) % self.period for number in numbers)
             if odd:

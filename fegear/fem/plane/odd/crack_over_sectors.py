@@ -30,6 +30,8 @@ from fegear.fem.plane.supported_section import (
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.base.arrays import Array, Mask
     from fegear.fem.plane.elasticity import SectorElasticity
     from fegear.fem.plane.mesh import SectorMesh
@@ -155,13 +157,17 @@ def patch_boundary(
     end, coarse = bore_end(settings, support), settings_at(_BESIDE)
     own = {k: (settings if k == 0 else coarse) for k in range(-half, half + 1)}
     kinds = {id(one): sector_boundary(tooth, bore_radius, one, bore_end=end) for one in own.values()}
-    pitch = 2.0 * math.pi / tooth.teeth
-    fine = kinds[id(settings)]
-    sides = {chain.name: chain for chain in fine if chain.name in ("side_a", "side_b")}
-    chains = [_turned(kinds[id(own[k])][0], k * pitch) for k in range(-half, half + 1)]
+    return joined_sectors({k: kinds[id(one)] for k, one in own.items()}, 2.0 * math.pi / tooth.teeth)
+
+
+def joined_sectors(outlines: Mapping[int, list[Chain]], pitch: float) -> list[Chain]:
+    """The closed boundary of sectors -h..h, their bores first, from the boundary of each (`sector_boundary`)."""
+    half = max(outlines)
+    sides = {chain.name: chain for chain in outlines[0] if chain.name in ("side_a", "side_b")}
+    chains = [_turned(outlines[k][0], k * pitch) for k in range(-half, half + 1)]
     chains.append(_turned(sides["side_b"], half * pitch))
     for k in range(half, -half - 1, -1):
-        for chain in kinds[id(own[k])][1:]:
+        for chain in outlines[k][1:]:
             if chain.name not in sides:
                 name = chain.name if k == 0 else f"{chain.name}@{k}"
                 chains.append(replace(_turned(chain, k * pitch), name=name))

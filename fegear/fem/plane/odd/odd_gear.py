@@ -86,7 +86,12 @@ class OddGearInfluence:
 
     @property
     def touched(self) -> range:
-        """Teeth from the middle one that answer otherwise than ordinary ones: odd, between odd ones or next to one."""
+        """Teeth from the middle one that answer otherwise than ordinary ones: odd, between odd ones or next to one.
+
+        All that are known beside a keyway, which is felt farther than a crack.
+        """
+        if self.fine.patch is not None:
+            return self.known
         odd, reach = self.fine.unlike, self.fine.reach
         return range(max(min(odd) - TOUCHED, -reach), min(max(odd) + TOUCHED, reach) + 1)
 

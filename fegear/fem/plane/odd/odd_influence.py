@@ -21,7 +21,8 @@ from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import SIDES, Influence, Side
 from fegear.fem.plane.odd.crack_faces import CrackFaces, pressed
-from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
+from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring, patched_ring
+from fegear.fem.plane.odd.patch_kinds import Patch, patch_kinds
 from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, ordinary_kind, tooth_kind
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import between_sides, bore_of_side, condensed_sector
@@ -61,6 +62,8 @@ class OddInfluence:
     held : ToothKind, optional
         Ordinary teeth beyond the free arc of a bore, which `half` teeth on either side of tooth 0 are above.
     half : int
+    patch : Patch, optional
+        Teeth whose sectors are meshed as one.
     """
 
     poisson_ratio: float
@@ -74,6 +77,7 @@ class OddInfluence:
     missing: tuple[int, ...] = ()
     held: ToothKind | None = None
     half: int = 0
+    patch: Patch | None = None
 
     @property
     def unlike(self) -> tuple[int, ...]:
@@ -256,6 +260,8 @@ class OddInfluence:
         found = (there.T @ self.kind(i).flank_follows) @ self._sides(i, j, here)
         if i == j:
             found = found + there.T @ self.kind(i).flank_own @ here
+        elif self.patch is not None and (i, j) in self.patch.flank:
+            found = found + there.T @ self.patch.flank[i, j] @ here
         for k in () if free else self.closing:
             if k == i != j:
                 found = found + self.face_forces(k, i, there).T @ self.opening(k, j, here)
@@ -281,8 +287,10 @@ class OddInfluence:
         if i == j:
             found = self.tooth(i).fillet_stress(0, side, radius_q, half_width)
         else:
-            loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T
-            found = self.kind(i).stress_follows[side] @ self._sides(i, j, loads.toarray())
+            loads = self.tooth(j).fillet_loads(radius_q, half_width)[0].T.toarray()
+            found = self.kind(i).stress_follows[side] @ self._sides(i, j, loads)
+            if self.patch is not None and (i, j) in self.patch.flank:
+                found = found + self.patch.stress[i, j, side] @ loads
         for k in () if free else self.closing:
             faces = self._faces(k)
             forces = self.face_forces(k, j, self.tooth(j).remote(radius_q, REFERENCE_HALF_WIDTH))
@@ -445,6 +453,68 @@ def solve_odd_influence(
                     poisson_ratio, plane, distance, usual, kinds, ring, seconds, None, empty_sectors, far, half or 0
                 )
             )
+    return replace(found[0], lower=found[1]) if two_orders else found[0]
+
+
+@tallied("tooth shapes")
+@tallied("odd sectors")
+def solve_patched_influence(
+    tooth: InvoluteTooth,
+    mesh: SectorMesh,
+    patch: SectorMesh,
+    half: int,
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    *,
+    reach: int,
+    two_orders: bool = False,
+    known: Influence | None = None,
+) -> OddInfluence:
+    """Solve one ring whose sectors -half..half are meshed as one, on a bore that is held.
+
+    Parameters
+    ----------
+    tooth, mesh, poisson_ratio, plane, settings, reach, two_orders, known
+        As of `solve_odd_influence`.
+    patch : SectorMesh
+        Its ends as the ordinary sector's sides.
+    half : int
+
+    Raises
+    ------
+    InputError
+        If its ends are not the ordinary sector's sides, or there are too few teeth.
+    FegearError
+        If a stiffness is not positive definite.
+    """
+    solved = _solved_already(known, two_orders)
+    with one_thread():
+        order, solver = settings.order, settings.solver
+        meshes = [patch] if solved else [patch, mesh]
+        if two_orders:
+            pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, None) for one in meshes]
+            orders = [list(each) for each in zip(*pairs, strict=True)]
+        else:
+            orders = [[assemble_section(one, poisson_ratio, plane, order, solver, None) for one in meshes]]
+        found = []
+        for n, elasticity in enumerate(orders):
+            started = time.perf_counter()
+            if solved:
+                usual, between = solved[n]
+            else:
+                usual, part = tooth_kind(OddTooth(tooth, mesh), elasticity[1], poisson_ratio, plane)
+                between = part.held
+            kinds, coupled, held = patch_kinds(tooth, patch, elasticity[0], half, poisson_ratio, plane)
+            condensed = time.perf_counter()
+            ring = patched_ring(between, held, half, tooth.teeth, reach)
+            seconds = {
+                "mesh": mesh.seconds + patch.seconds,
+                "condensation": condensed - started,
+                "ring": time.perf_counter() - condensed,
+            }
+            distance = settings.corner_distance
+            found.append(OddInfluence(poisson_ratio, plane, distance, usual, kinds, ring, seconds, patch=coupled))
     return replace(found[0], lower=found[1]) if two_orders else found[0]
 
 

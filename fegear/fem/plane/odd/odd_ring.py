@@ -37,15 +37,26 @@ class OddRing:
         R: sectors -R..R can be loaded and watched.
     motion : ndarray, shape (2 R + 2, m, 2 R + 2, m)
         H, motions of the sides -R..R + 1 under forces on them, in polar components.
+    patch : int
+        h of sectors -h..h that are one: their sides are its ends; -1 without.
     """
 
     reach: int
     motion: Array
+    patch: int = -1
 
     def between(self, watched: int, loaded: int) -> Array:
         """Motion of the sides A and B of one sector under forces on those of another, shape (2 m, 2 m)."""
-        i, j, m = watched + self.reach, loaded + self.reach, self.motion.shape[1]
-        return self.motion[i : i + 2, :, j : j + 2].reshape(2 * m, 2 * m)
+        m = self.motion.shape[1]
+        i, j = self._sides(watched), self._sides(loaded)
+        return np.asarray(self.motion[i, :, j].reshape(2 * m, 2 * m))
+
+    def _sides(self, sector: int) -> slice:
+        """Sides A and B of a sector, or of the patch that it is in."""
+        if abs(sector) <= self.patch:
+            low, high = self.reach - self.patch, self.reach + self.patch + 1
+            return slice(low, high + 1, high - low)
+        return slice(sector + self.reach, sector + self.reach + 2)
 
 
 @dataclass(frozen=True)
@@ -154,6 +165,35 @@ def odd_ring(
     motion = _motion(closed_stiffness(chains, count, m), fixed, held)
     twice = np.arange(sides * m) if others else np.r_[np.arange((sides - 1) * m), np.arange(m)]
     return OddRing(reach, motion[np.ix_(twice, twice)].reshape(sides, m, sides, m))
+
+
+def patched_ring(ordinary: Array, patch: Array, half: int, teeth: int, reach: int) -> OddRing:
+    """Close a ring whose sectors -half..half are one; stiffness between the sides of either, (2 m, 2 m) each.
+
+    Raises
+    ------
+    InputError
+        If the ends of the patch are not the ordinary sector's sides, or there are not so many sectors.
+    FegearError
+        If the stiffness is not positive definite.
+    """
+    m = ordinary.shape[0] // 2
+    if patch.shape != ordinary.shape:
+        raise InputError("mesh", "side_a", "of an odd sector has other nodes than the ordinary sector's")
+    if not half <= reach <= (teeth - 2) // 2:
+        raise InputError("reach", reach, f"must be at least {half} and at most {(teeth - 2) // 2}")
+    sides = [side for side in range(-reach, reach + 2) if not -half < side <= half]
+    place = {side: n for n, side in enumerate(sides)}
+    chains: list[tuple[Array | None, int, int]] = [
+        (ordinary, place[k], place[k + 1]) for k in range(-reach, reach + 1) if abs(k) > half
+    ]
+    chains.append((patch, place[-half], place[half + 1]))
+    chains.append((chain_of(ordinary, teeth - 2 * reach - 1), place[reach + 1], 0))
+    count = len(sides)
+    found = _inverse(closed_stiffness(chains, count, m).reshape(count * m, -1)).reshape(count, m, count, m)
+    motion, known = np.zeros((2 * reach + 2, m, 2 * reach + 2, m)), np.array(sides) + reach
+    motion[np.ix_(known, np.arange(m), known, np.arange(m))] = found
+    return OddRing(reach, motion, half)
 
 
 def _motion(whole: Array, fixed: set[int], held: Held | None) -> Array:

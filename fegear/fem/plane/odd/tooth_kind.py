@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 #: How far below the flank a patch may reach into the fillet [modules], and how near to a crack's mouth, as a share of
 #: the way there.
-_MARGIN, _ABOVE_MOUTH = 0.15, 0.97
-_FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
+MARGIN, _ABOVE_MOUTH = 0.15, 0.97
+FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
 @dataclass(frozen=True)
@@ -133,8 +133,8 @@ def tooth_kind(
     Its bore may be `free`; or it is held, in terms of free sectors, of whose sides `bore` says what is on it.
     """
     tooth, mesh, cracked = odd.tooth, odd.mesh, isinstance(odd.sector, CrackedSector)
-    fillets = {side: fillet_strain(mesh, elasticity, name, tooth.side) for side, name in _FILLETS.items()}
-    margin, mouth, back = _MARGIN, 0.0, False
+    fillets = {side: fillet_strain(mesh, elasticity, name, tooth.side) for side, name in FILLETS.items()}
+    margin, mouth, back = MARGIN, 0.0, False
     if isinstance(odd.sector, CrackedSector):
         mouth, back = odd.sector.mouth, odd.sector.back
         margin = margin if back else min(margin, _ABOVE_MOUTH * (fillets["tension"].length - mouth))
