@@ -7,8 +7,8 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.fem.plane.odd.keyway import DIN_6885, Keyway, din_6885, keyed_patch, refuse_keyway
-from fegear.fem.plane.odd.odd_influence import solve_patched_influence
 from fegear.fem.plane.odd.odd_solution import solve_cracked_gear
+from fegear.fem.plane.odd.patched_influence import solve_patched_influence
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.plane.tooth_meshing import mesh_sector

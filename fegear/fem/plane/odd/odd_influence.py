@@ -21,8 +21,7 @@ from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.influence import SIDES, Influence, Side
 from fegear.fem.plane.odd.crack_faces import CrackFaces, pressed
-from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring, patched_ring
-from fegear.fem.plane.odd.patch_kinds import Patch, patch_kinds
+from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
 from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, ordinary_kind, tooth_kind
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import between_sides, bore_of_side, condensed_sector
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.odd.patch_kinds import Patch
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
@@ -402,7 +402,7 @@ def solve_odd_influence(
         If a stiffness is not positive definite.
     """
     half = support.free_teeth // 2 if support is not None and support.kind == "free_arc" else None
-    solved = _solved_already(known, two_orders) if half is None else []
+    solved = solved_already(known, two_orders) if half is None else []
     ordinary, bare = [] if solved else [OddTooth(tooth, mesh)], missing or {}
     every = [*ordinary, *odd.values()]
     meshes = [*(one.mesh for one in every), *bare.values()]
@@ -456,69 +456,7 @@ def solve_odd_influence(
     return replace(found[0], lower=found[1]) if two_orders else found[0]
 
 
-@tallied("tooth shapes")
-@tallied("odd sectors")
-def solve_patched_influence(
-    tooth: InvoluteTooth,
-    mesh: SectorMesh,
-    patch: SectorMesh,
-    half: int,
-    poisson_ratio: float,
-    plane: Plane,
-    settings: MeshSettings,
-    *,
-    reach: int,
-    two_orders: bool = False,
-    known: Influence | None = None,
-) -> OddInfluence:
-    """Solve one ring whose sectors -half..half are meshed as one, on a bore that is held.
-
-    Parameters
-    ----------
-    tooth, mesh, poisson_ratio, plane, settings, reach, two_orders, known
-        As of `solve_odd_influence`.
-    patch : SectorMesh
-        Its ends as the ordinary sector's sides.
-    half : int
-
-    Raises
-    ------
-    InputError
-        If its ends are not the ordinary sector's sides, or there are too few teeth.
-    FegearError
-        If a stiffness is not positive definite.
-    """
-    solved = _solved_already(known, two_orders)
-    with one_thread():
-        order, solver = settings.order, settings.solver
-        meshes = [patch] if solved else [patch, mesh]
-        if two_orders:
-            pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, None) for one in meshes]
-            orders = [list(each) for each in zip(*pairs, strict=True)]
-        else:
-            orders = [[assemble_section(one, poisson_ratio, plane, order, solver, None) for one in meshes]]
-        found = []
-        for n, elasticity in enumerate(orders):
-            started = time.perf_counter()
-            if solved:
-                usual, between = solved[n]
-            else:
-                usual, part = tooth_kind(OddTooth(tooth, mesh), elasticity[1], poisson_ratio, plane)
-                between = part.held
-            kinds, coupled, held = patch_kinds(tooth, patch, elasticity[0], half, poisson_ratio, plane)
-            condensed = time.perf_counter()
-            ring = patched_ring(between, held, half, tooth.teeth, reach)
-            seconds = {
-                "mesh": mesh.seconds + patch.seconds,
-                "condensation": condensed - started,
-                "ring": time.perf_counter() - condensed,
-            }
-            distance = settings.corner_distance
-            found.append(OddInfluence(poisson_ratio, plane, distance, usual, kinds, ring, seconds, patch=coupled))
-    return replace(found[0], lower=found[1]) if two_orders else found[0]
-
-
-def _solved_already(known: Influence | None, two_orders: bool) -> list[tuple[ToothKind, Array]]:
+def solved_already(known: Influence | None, two_orders: bool) -> list[tuple[ToothKind, Array]]:
     """Ordinary teeth of each order, and the stiffness between their sides; of none where one is not known."""
     orders = [] if known is None else [known, known.lower] if two_orders else [known]
     found = [

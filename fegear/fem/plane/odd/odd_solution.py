@@ -19,11 +19,12 @@ from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.hole import Hole, holed_sector
 from fegear.fem.plane.odd.keyway import Keyway, keyed_patch, refuse_keyway
 from fegear.fem.plane.odd.odd_gear import TOUCHED, OddGearInfluence
-from fegear.fem.plane.odd.odd_influence import OddInfluence, solve_odd_influence, solve_patched_influence
+from fegear.fem.plane.odd.odd_influence import OddInfluence, solve_odd_influence
 from fegear.fem.plane.odd.odd_ring import OddRing
 from fegear.fem.plane.odd.other_outline import Missing, OtherTip
 from fegear.fem.plane.odd.other_sector import empty_sector, shorter_sector
 from fegear.fem.plane.odd.patch_kinds import Patch
+from fegear.fem.plane.odd.patched_influence import solve_patched_influence
 from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind
 from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.solution import shape_codec
