@@ -52,7 +52,7 @@ def test_the_first_step_is_the_ring_with_one_cracked_sector():
     assert found.end == "tooth"
     assert found.stopped == "steps"
     arc = grown(1.0, RimSupport(free_teeth=3), steps=0)
-    assert [*arc.k_1, *arc.k_2, *arc.compliance] == pytest.approx([1.424518, 0.065339, 6.510912], rel=1e-4)
+    assert [*arc.k_1, *arc.k_2, *arc.compliance] == pytest.approx([1.424186, 0.065307, 6.510912], rel=1e-4)
     assert arc.end == "rim"
 
 
@@ -64,10 +64,11 @@ def test_a_step_goes_on_where_the_stress_is_largest_and_numbers_are_in_si():
         patch.setattr("fegear.fem.plane.odd.growth.LEVEL", -5.0)
         found = growing_crack(gear, CRACK, (3e-3 * LOADS[0], 1e5 * LOADS[1]), step=0.6e-3, steps=1, law=law,
                               toughness=2.8e6, factors=(1.0, 0.5), shares=(0.9, 0.1))  # fmt: skip
-    # what was found when a step of the fine mesh was that of the ring (`test_crack_growth_closed_form`)
+    # what was found when a step of the fine mesh was that of the ring (`test_crack_growth_closed_form`); K_I with edges
+    # that meet their circles: 2e-4 less
     scale = 1e5 / math.sqrt(3e-3)
-    assert found.k_1 / scale == pytest.approx([1.42777, 1.63841], rel=1e-4)
-    assert found.k_2 / scale == pytest.approx([0.06101, 0.03410], abs=1e-4)
+    assert found.k_1 / scale == pytest.approx([1.42744, 1.63811], rel=1e-4)
+    assert found.k_2 / scale == pytest.approx([0.06098, 0.03434], abs=1e-4)
     assert found.stiffness == pytest.approx(2e11 / np.array([9.71311, 10.65714]), rel=1e-4)
     assert found.stiffness_loss == pytest.approx([0.0, 1.0 - 9.71311 / 10.65714], abs=1e-5)
     assert (found.stiffness_error > 1e-5 * found.stiffness).all()  # as a share that of the compliance
