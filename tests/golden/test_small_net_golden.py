@@ -606,9 +606,14 @@ def test_the_first_screen_of_further_cases_has_the_answer(name):
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_fresh_template_has_no_open_note(kind, tmp_path):
-    """All that stands open on a report are failures, tolerances, neglected effects and assumptions."""
+    """All that stands open on a report are failures, tolerances, neglected effects and assumptions.
+
+    Bearings of a drafted gearbox are known by their designations: that C and the law of rollers are estimated is open.
+    """
     path = tmp_path / f"{kind}.toml"
     path.write_text(draft(Answers(kind, {}), kind), encoding="utf-8")
     found = fegear.run(path, progress=False)
     check_first_screen(found)
-    assert found.notes(information=False) == ()
+    open_notes = [one for one in found.notes(information=False) if not one.startswith(("Bearings ", "Shafts: roller"))]
+    assert open_notes == []
+    assert "gearbox" in kind or found.notes(information=False) == ()
