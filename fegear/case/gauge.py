@@ -24,6 +24,16 @@ class MeasuredStrainPart(Part):
     )
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     strain_column: str = Field(default="strain", description="Name of the strain column.")
+    torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
+    torque_column: str = Field(
+        default="torque",
+        description="Name of the column of the torque on the driver, where the file has it: each torque of the pair "
+        "takes the longest run of samples within `torque_band`, averaged over a tooth pitch; the rest (run-up) is left "
+        "out. The verdict is that at the nominal load.",
+    )
+    torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
+        default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
+    )
     fit: list[Literal["offset", "scale", "shift", "drift"]] = Field(
         default_factory=list,
         description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load), "
@@ -42,6 +52,9 @@ class MeasuredStrainPart(Part):
             raise refuse("contains drift without offset", "add offset", value=list(self.fit), key="fit")
         if self.angle_column == self.strain_column:
             raise refuse("is the column of the angle", "specify another column", key="strain_column")
+        if self.torque_column in (self.angle_column, self.strain_column):
+            other = "angle" if self.torque_column == self.angle_column else "strain"
+            raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
         return self
 
 

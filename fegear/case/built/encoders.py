@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.base.printed import percent
+from fegear.case.built.trace_levels import no_level, of_driven, said_of_pair, torque_levels
 from fegear.case.csv_file import read_columns
 
 if TYPE_CHECKING:
@@ -92,17 +92,6 @@ def pair_of_encoders(scene: Scene, name: str) -> str:
     return pairs[0]
 
 
-def _of_driven(torque: float, known: Array, ratio: float, band: float) -> str:
-    """What to do where a torque [N m] is one of the pair's on the driven shaft; empty where it is none."""
-    near = float(known[np.argmin(np.abs(known * ratio - torque))]) if known.size else 0.0
-    if not near or abs(torque - near * ratio) > band * near * ratio:
-        return ""
-    return (
-        f"specify torques of the driver: {torque:.5g} N*m on the driven gear is {torque / ratio:.5g} N*m (divided by "
-        f"the ratio {ratio:.5g})"
-    )
-
-
 def encoders_of(scene: Scene, name: str) -> Encoders:
     """Measured transmission errors of a case.
 
@@ -115,7 +104,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     placed, mesh = scene.pairs[pair], scene.case.pair[pair]
     loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
     lever, traces, of_angle = placed.driver.base_radius, [], part.te_at != "line-of-action"
-    said = f"pair {pair} ({', '.join(f'{load * lever:.5g}' for load in loads)} N m)"
+    said = said_of_pair(pair, np.array(loads) * lever)
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
         wanted = nominal if one.torque is None else one.torque / lever
@@ -125,14 +114,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
             pitch = 2.0 * np.pi / abs((placed.driver if part.shaft == "driver" else placed.driven).teeth)
             found = torque_levels(read.torque, read.angle, pitch, torques, part.torque_band)
             if not found:
-                low, high = (float(edge) for edge in np.percentile(read.torque, [5.0, 95.0]))
-                raise InputError(
-                    f"{key}.file", f'"{one.file}"',
-                    f"has no run of samples within ±{percent(part.torque_band)} of a torque of {said}; its column "
-                    f"{part.torque_column} has {low:.4g} to {high:.4g} N m",
-                    _of_driven(float(np.median(read.torque)), torques, placed.ratio, part.torque_band)
-                    or f"add the measured torques to pair.{pair}.torques, or set torque_band",
-                )  # fmt: skip
+                raise no_level(f"{key}.file", one.file, pair, read.torque, torques, placed.ratio, part)
             rest = read.angle.size - sum(run.stop - run.start for run in found.values())
             reading = [read.reading] if read.reading else []
             reading += [f"{rest} samples at other torques left out"] if rest else []
@@ -145,7 +127,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
         if wanted is not None and not known:
             raise InputError(
                 f"{key}.torque", f"{wanted * lever:.6g} N*m", f"is not a torque of {said}",
-                _of_driven(wanted * lever, np.array(loads) * lever, placed.ratio, _ABOUT)
+                of_driven(wanted * lever, np.array(loads) * lever, placed.ratio, _ABOUT)
                 or f"add it to pair.{pair}.torques",
             )  # fmt: skip
         load = known[0] if known else 0.0
@@ -170,39 +152,6 @@ class _Columns:
     te: Array
     torque: Array | None
     reading: str
-
-
-def torque_levels(torque: Array, angle: Array, pitch: float, levels: Array, band: float) -> dict[int, slice]:
-    """The longest run of samples at each torque that was measured, by the number of the level.
-
-    The torque of a sample is the mean over a tooth pitch around it, which sheds what the mesh and noise add.
-
-    Parameters
-    ----------
-    torque, angle : ndarray, shape (N,)
-        [N m], [rad].
-    pitch : float
-        Of the teeth [rad].
-    levels : ndarray, shape (L,)
-        [N m].
-    band : float
-        Relative deviation from a level within which samples belong to it.
-    """
-    step = float(np.median(np.abs(np.diff(angle)))) if angle.size > 1 else 0.0
-    window = min(max(int(pitch / step) if step > 0.0 else 1, 1), torque.size)
-    total, at = np.concatenate([[0.0], np.cumsum(torque)]), np.arange(torque.size)
-    low, high = np.maximum(at - window // 2, 0), np.minimum(at - window // 2 + window, torque.size)
-    mean = (total[high] - total[low]) / (high - low)
-    found = {}
-    nearest = np.argmin(np.abs(mean[:, None] - levels), axis=1)
-    near = np.abs(mean - levels[nearest]) <= band * levels[nearest]
-    for k in range(levels.size):
-        on = np.concatenate([[False], near & (nearest == k), [False]])
-        starts, stops = (np.flatnonzero(one) for one in (on[1:] & ~on[:-1], ~on[1:] & on[:-1]))
-        if starts.size:
-            longest = int(np.argmax(stops - starts))
-            found[k] = slice(int(starts[longest]), int(stops[longest]))
-    return found
 
 
 def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> _Columns:

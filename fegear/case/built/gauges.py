@@ -6,53 +6,21 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
-import numpy as np
-
-from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.csv_file import read_columns
+from fegear.case.built.measured_strain import MeasuredStrain, measured_strain
 from fegear.case.gauge import PLACES
 from fegear.case.nearest import nearest
-from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST, turns_along
-from fegear.contact.trace_outliers import suspected
 from fegear.fem.plane.gauge import ISO_TANGENT, ISO_TANGENT_INTERNAL, FilletProfile, Grid, PlaceKey
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
-    from fegear.case.gauge import GaugePart, MeasuredStrainPart
+    from fegear.case.gauge import GaugePart
     from fegear.case.reading import Scene
-    from fegear.contact.fitted_curve import Fitted
     from fegear.fem.plane.influence import Side
     from fegear.geometry.pair import Member
 
-#: Largest strain that a gauge in steel survives.
-_LARGEST_STRAIN = 0.05
 #: Part of the strain along the profile below which a direction measures nothing.
 _NOTHING = 1e-3
-#: Part of its turns that a trace may lack.
-_SLACK = 1e-3
-
-
-@dataclass(frozen=True)
-class MeasuredStrain:
-    """A trace of a gauge.
-
-    Parameters
-    ----------
-    angle, strain : ndarray, shape (N,)
-        In the sense of the gear's rotation [rad], and as measured.
-    fit : tuple of str
-        What is fitted.
-    reading : str
-        What had to be understood in the file: decimal commas, lines that were passed over.
-    file : str
-    """
-
-    angle: Array
-    strain: Array
-    fit: tuple[Fitted, ...]
-    reading: str
-    file: str = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -112,7 +80,7 @@ def gauge_of(scene: Scene, name: str) -> Gauge:
             f"gauge.{name}.direction", f"{math.degrees(part.direction):.6g} deg", "must be between -90 and 90 deg"
         )
     grid = Grid(part.grid_length, part.grid_width, part.direction)
-    measured = None if part.measured is None else _measured(scene, name, part.measured)
+    measured = None if part.measured is None else measured_strain(scene, name, part.measured, pair, teeth)
     return Gauge(
         pair, part.gear, member, part.tooth - 1, part.fillet, key, value, grid, part.face_position,
         part.placement_tolerance, part.load_tolerance, measured, name,
@@ -204,40 +172,3 @@ def _place_on_fillet(part: GaugePart, *, internal: bool) -> tuple[PlaceKey, floa
         if (value := getattr(part, key)) is not None:
             return cast("PlaceKey", key), float(value)
     return "tangent_angle", ISO_TANGENT_INTERNAL if internal else ISO_TANGENT
-
-
-def _measured(scene: Scene, name: str, part: MeasuredStrainPart) -> MeasuredStrain:
-    key = f"gauge.{name}.measured.file"
-    columns = {part.angle_column: "angle", part.strain_column: "strain"}
-    given = {part.angle_column: part.angle, part.strain_column: part.strain}
-    found = read_columns(
-        scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}, gaps=True
-    )
-    for column, word in ((part.angle_column, "angle_column"), (part.strain_column, "strain_column")):
-        found.require(column, key, part.file, word)
-    angle, strain = found[part.angle_column], found[part.strain_column]
-    if angle.size < FEWEST + len(part.fit):
-        raise InputError(
-            key, f'"{part.file}"', f"has {angle.size} samples, fewer than {FEWEST + len(part.fit)}",
-            "specify a whole engagement",
-        )  # fmt: skip
-    if "drift" in part.fit:
-        along = turns_along(angle)
-        turns = float(np.ptp(along)) * angle.size / (angle.size - 1.0)
-        if turns < DRIFT_TURNS * (1.0 - _SLACK):
-            raise InputError(
-                f"gauge.{name}.measured.fit", "drift",
-                f'requires a trace of {DRIFT_TURNS:g} turns, "{part.file}" has {turns:.3g}: too few to separate a '
-                "drift from the shape of the curve", "remove drift",
-            )  # fmt: skip
-    likely = ~suspected(strain)[0]  # what an amplifier writes for nothing is no strain
-    largest = float(np.abs(strain - np.median(strain))[likely].max(initial=0.0))
-    if largest > _LARGEST_STRAIN:
-        raise InputError(
-            key, f"strain of {largest * 1e2:.3g} %", f"is above {_LARGEST_STRAIN * 1e2:g} %",
-            "check the unit in the head of the column",
-        )  # fmt: skip
-    for what, values in (("angle", angle), ("strain", strain)):
-        if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
-            raise InputError(key, f'"{part.file}"', f"has the same {what} in every line", "check the columns")
-    return MeasuredStrain(-angle if part.reverse else angle, strain, tuple(part.fit), found.reading, part.file)

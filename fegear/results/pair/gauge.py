@@ -34,6 +34,7 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
+from fegear.results.pair.trace_levels import over_torque
 from fegear.results.pair.trace_verdict import Otherwise
 
 if TYPE_CHECKING:
@@ -103,6 +104,7 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         teeth.loads, at, history, place.place, clearance, place.clipped, gauge.load_tolerance, asked.speed,
         found, Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, _torques(history, teeth.loads, at)),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
+        over_torque(gauge, found, history, teeth.loads, at),
     )  # fmt: skip
 
 
@@ -155,6 +157,9 @@ def _peaks(seen: Seen) -> list[str]:
 _CURVES = (
     "x", "angle", "roll_angle", "strain", "strain_opposite", "strain_towards_root", "strain_towards_tip",
 )  # fmt: skip
+_CIRCLES = {"size": 7.0, "symbol": "circle"}
+#: Whether the file of the trace has several torques.
+_SEVERAL = "over_torque.several"
 _ERROR = Off("strain", "history.strain_error")
 
 
@@ -184,6 +189,14 @@ _SHEET = Sheet(
             ("displacement", "peak"), of="places",
         ),
         comparison_table("gauge_measured_{name}", "Measured and computed strain of gauge {name}"),
+        Rows(
+            "gauge_torques_{name}", "Measured and computed strain of gauge {name} for every measured torque",
+            (
+                "torque", "mean_torque", "turns", "samples", "computed_peak", "measured_peak", "gain", "gain_scatter",
+                "gain_at_mean", "rms", "correlation",
+            ),
+            of="over_torque.levels",
+        ),
     ),
     values=(
         Number("peak_strain", "peak_error"),
@@ -200,6 +213,7 @@ _SHEET = Sheet(
         Number("centre_angle", exact, of="place"),
         Number("z", exact, of="place", when=lambda seen: seen.asked.wide),
         *comparison_values(),
+        Number("change", of="over_torque", when=_SEVERAL),
     ),
     figures=(
         Chart(
@@ -229,15 +243,37 @@ _SHEET = Sheet(
             (Over("displacement", (Line("peak"),), marks=lambda _seen: (Mark("x", 0.0),)),),
             of="places", under="{load:said}",
         ),
+        Chart(
+            "gauge_torques_{name}", "Strain of gauge {name} over torque",
+            "Gauge {name}: peak strain over torque, measured (by the fitted curve) and computed, and their ratio with "
+            "two standard errors, the computed strain in proportion to the mean of the measured torque.",
+            (
+                Over(
+                    "torque",
+                    (
+                        Line("measured_peak", "measured", "series:1", kind="points", look=_CIRCLES),
+                        Line("computed_peak", "computed", look={"markers": False}),
+                    ),
+                ),
+                Over(
+                    "torque", (Line("gain_at_mean", error="over_torque.bands"),), marks=lambda _seen: (Mark("y", 1.0),),
+                ),
+            ),
+            of="over_torque.levels", when=_SEVERAL,
+        ),
     ),
     answer=Answer(
         lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.judged else [],
+        lambda seen: [f"Gauge {seen.name}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}",
     ),
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
+        Remark("Gauge {name}: {d.linearity}.", when="linearity"),
+        Remark("Gauge {name}: {d.over_torque.off_nominal}.", when="over_torque.off_nominal"),
+        Remark("Gauge {name}: {d.over_torque.left_out}.", when="over_torque.left_out"),
         Remark("Gauge {name}: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}: {d.without}.", when="without"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),

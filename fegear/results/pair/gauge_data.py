@@ -11,6 +11,7 @@ from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory
+from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, Otherwise, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
@@ -68,6 +69,8 @@ class GaugeData(BesideTrace):
         Whether errors were estimated: a draft, which does not know its own, judges no measurement.
     sharper : str
         The setting that makes the computed strain more accurate.
+    over_torque : OverTorque or None
+        The trace at every torque that its file has; None where it does not say the torque.
     """
 
     loads: Sequence[float]
@@ -83,6 +86,7 @@ class GaugeData(BesideTrace):
     reading: str = ""
     estimated: bool = True
     sharper: str = ""
+    over_torque: OverTorque | None = None
 
     @property
     @shows("s", "time from the first position")
@@ -165,6 +169,13 @@ class GaugeData(BesideTrace):
         """At the nominal load."""
         peaks = self.history.peak_of_places(self.at)
         return float(np.abs(peaks - self.peak_strain[self.at]).max())
+
+    @property
+    def linearity(self) -> str:
+        """How measured / computed strain changes over torque; empty where no verdict is given or the shapes differ."""
+        if self.over_torque is None or not self.estimated or self.otherwise.better:
+            return ""
+        return self.over_torque.said
 
     @property
     def near_contact(self) -> bool:
