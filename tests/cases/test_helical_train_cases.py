@@ -104,7 +104,6 @@ def test_a_tooth_pair_carries_through_the_whole_plane_of_action(outcomes):
          "applies to point contact on the path; the teeth"),
         (["effects.spacing_errors=true", f"gear.wheel_1.spacing_errors={33 * ['1 um']}"],
             "is not supported in a train with the 3D flanks"),
-        (['results=["dynamic-root-stress"]'], "applies to point contact on the path; the teeth"),
         (['train.mesh.second.like={pair="first"}'], "uses a 3D load distribution, which cannot be"),
         (["train.mesh.first.pair=\"third\""], "is not a pair of this case"),
         (['pair.first.torque="50 N*m"'], "make the load and the torques agree"),

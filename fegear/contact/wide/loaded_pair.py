@@ -293,6 +293,10 @@ class LoadedWidePair:
             rooted_lines, self.pair, member, found.lines, solution, coupling=self.coupling
         ).value
 
+    def tooth_stress(self, member: Member, influence: SolidInfluence) -> ToothStress:
+        """Largest root stress over the face of one gear under every load, with its errors."""
+        return self._largest_over_face(member, influence, {})[0]
+
     def _largest_over_face(
         self, member: Member, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
     ) -> tuple[ToothStress, float]:

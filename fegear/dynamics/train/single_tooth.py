@@ -193,7 +193,7 @@ _CROSS = ("cross_least", "cross_reach")
 class ToothRootStress:
     """Largest root tension of one tooth, over the positions of the force on it, shape (n,) [Pa].
 
-    `error` is NaN where the source does not know.
+    `error` is NaN where the source does not know. Of 3D teeth the largest over the face, and where it is there [m].
     """
 
     total: Array = shown(
@@ -206,6 +206,13 @@ class ToothRootStress:
     own: Array = shown("MPa", "without the contribution of the other meshes", name="stress_own_mesh")
     static: Array = shown("MPa", "quasi-static", name="static_stress")
     error: Array = shown("MPa", "estimated error of stress_own_mesh", name="stress_error")
+    z: Array | None = shown(
+        "mm", "face position of the maximum, from mid-face", name="stress_face_position", default=None
+    )
+    static_z: Array | None = shown(
+        "mm", "face position of the quasi-static maximum, from mid-face", name="static_stress_face_position",
+        default=None,
+    )  # fmt: skip
 
 
 def tooth_root_stress(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -28,7 +29,9 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
-from fegear.results.gear.solved_gear import teeth_of
+from fegear.results.forecasts import ROOT_STRESS_CITATIONS
+from fegear.results.gear.solved_gear import solid_solution_of, teeth_of
+from fegear.results.pair.loaded_teeth import loaded_teeth, needs_gears
 from fegear.results.pair.root_stress_data import ending, told
 from fegear.results.pair.root_stress_history import (
     cited_sources,
@@ -38,8 +41,14 @@ from fegear.results.pair.root_stress_history import (
     stress_sources,
     table_names,
 )
-from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, needs_plane_teeth, own_meshes
+from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 from fegear.results.train.tooth_force import ToothForceData, others_of, over_time, rippled
+
+if TYPE_CHECKING:
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
+
+#: Seconds of a gear of a 3D pair: two states of the forces, and the errors of both fillets.
+_SECONDS_WIDE = 1.0
 
 
 @dataclass(frozen=True)
@@ -53,12 +62,14 @@ class DynamicRootStress:
 
 def _check(scene: Scene, name: str) -> None:
     needs_one_speed(scene, name)
-    needs_plane_teeth(scene, name, "results", '"dynamic-root-stress"')
-    check_formulas(scene, train_part(scene).pair_of(name), tips=False)
+    if (pair := train_part(scene).pair_of(name)) not in scene.wide_pairs:
+        check_formulas(scene, pair, tips=False)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (Task("tooth-force", name), *needs_sources(scene, train_part(scene).pair_of(name)))
+    pair = train_part(scene).pair_of(name)
+    of_teeth = needs_gears(scene, pair) if pair in scene.wide_pairs else needs_sources(scene, pair)
+    return (Task("tooth-force", name), *of_teeth)
 
 
 @dataclass(frozen=True)
@@ -79,12 +90,18 @@ class DynamicRootInputs:
         Names of the gears, and ends of the tables' names, by member.
     odd : bool
         Whether some of the teeth differ from the others.
+    wide : bool
+        Whether the gears are 3D.
+    halves : int
+        2 of a double helical pair, whose teeth are one half.
     """
 
     speed: float
     coupled: bool
     effects: RootEffects
     sources: tuple[str, ...]
+    wide: bool
+    halves: int
     mesh: str
     pair: str
     gears: Mapping[Member, str]
@@ -98,13 +115,37 @@ def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
     labels = {member: label.removeprefix(f"{pair}_") for member, label in table_names(scene, pair).items()}
     effects, speed = scene.case.effects, scene.case.dynamics.one_speed
     coupled, roots, odd = effects.neighbour_coupling, RootEffects.of(effects), bool(odd_gears_of(scene, pair))
-    return DynamicRootInputs(speed, coupled, roots, stress_sources(scene, pair), name, pair, gears, labels, odd)
+    wide = pair in scene.wide_pairs
+    sources = (FINITE_ELEMENTS,) if wide else stress_sources(scene, pair)
+    return DynamicRootInputs(
+        speed, coupled, roots, sources, wide, scene.case.pair[pair].halves, name, pair, gears, labels, odd
+    )
 
 
 def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> DynamicRootStress:
+    data: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
+    return (_on_face if asked.wide else _in_plane)(asked, upstream, data, work)
+
+
+def _on_face(asked: DynamicRootInputs, upstream: Upstream, data: ToothForceData, work: Work) -> DynamicRootStress:
+    from fegear.contact.wide.roots_about_load import roots_about_load
+    from fegear.dynamics.train.stress_on_face import stress_on_face
+
+    mesh, teeth = data.train.meshes[data.mesh], cast("LoadedWidePair", loaded_teeth(upstream, asked.pair))
+    load = mesh.force / asked.halves or teeth.nominal
+    stress: dict[Member, dict[str, ToothRootStress]] = {}
+    for member, gear in asked.gears.items():
+        known = roots_about_load(teeth, member, solid_solution_of(upstream, gear), load)
+        stress[member] = {
+            FINITE_ELEMENTS: stress_on_face(data.train, data.mesh, known, data.force.x, asked.speed, data.harmonics)
+        }
+        work.progress((1 + MEMBERS.index(member)) / len(MEMBERS))
+    return DynamicRootStress(data, stress, {member: {} for member in MEMBERS})
+
+
+def _in_plane(asked: DynamicRootInputs, upstream: Upstream, data: ToothForceData, work: Work) -> DynamicRootStress:
     from fegear.dynamics.train.single_tooth import forces_around, tooth_root_stress
 
-    data: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
     mesh = data.train.meshes[data.mesh]
     solved = {} if FINITE_ELEMENTS not in asked.sources else {g: teeth_of(upstream, g) for g in asked.gears.values()}
     stress: dict[Member, dict[str, ToothRootStress]] = {member: {} for member in MEMBERS}
@@ -175,7 +216,8 @@ class SourceStress:
         """Largest of one sum of its parts."""
         at = int(np.argmax(np.where(np.isnan(of), -np.inf, of)))
         error = None if self.error is None else float(self.error[at] * of[at] / self.found.own[at])
-        meaning = f"gear {gear}, {self.by}, {about}contact"
+        along = "" if self.found.z is None else f"face position {self.found.z[at] * 1e3:.4g} mm, "
+        meaning = f"gear {gear}, {self.by}, {about}{along}contact"
         return LargestTension(member, f"{end}{self.end}", meaning, error, float(self.x[at]), float(np.fmax.reduce(of)))
 
 
@@ -259,6 +301,8 @@ _SHEET = Sheet(
                         "found.error", "error", name="stress_error{one.end}",
                         meaning="estimated error of {one.by} in stress_own_mesh{one.end}",
                     ),
+                    Cell("found.z"),
+                    Cell("found.static_z"),
                 ),
             ),
             each="members",
@@ -312,13 +356,16 @@ _SHEET = Sheet(
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     """Root stress from influence functions or formulas, and the neighbours' forces."""
+    if train_part(scene).pair_of(name) in scene.wide_pairs:
+        return forecasts.constant(2.0 * _SECONDS_WIDE)
     sources = stress_sources(scene, train_part(scene).pair_of(name))
     return forecasts.constant((0.12 if scene.case.effects.neighbour_coupling else 0.04) + seconds_of(sources))
 
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:
     yield Citation("mark", "root stress of a single tooth in motion", "Eq. 3.37")
-    yield from cited_sources(scene, train_part(scene).pair_of(name))
+    pair = train_part(scene).pair_of(name)
+    yield from ROOT_STRESS_CITATIONS[FINITE_ELEMENTS] if pair in scene.wide_pairs else cited_sources(scene, pair)
 
 
 DYNAMIC_ROOT_STRESS = Stage(
