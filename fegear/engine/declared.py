@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from fegear.base.arrays import Array
 from fegear.base.shown import columns_declared, declared
 from fegear.base.units import from_si
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import Curve
 from fegear.engine.table import Column
 from fegear.engine.value import Value
+
+if TYPE_CHECKING:
+    from fegear.engine.figure.items import Curve
 
 
 def _class(owner: object) -> type:
@@ -136,6 +138,8 @@ def curve_of(
     load: int | None = None,
 ) -> Curve:  # fmt: skip
     """One quantity over another, both in their units; `error` in SI."""
+    from fegear.engine.figure.items import Curve
+
     unit = declared(type(found), y).unit
     band = None if error is None else error * (from_si(unit) if unit else 1.0)
     return Curve(drawn(found, x), drawn(found, y, load=load), label, role, band)

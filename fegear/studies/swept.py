@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
 from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.family import few, ramp
 from fegear.engine.figure.figure import Figure, View
-from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, few, ramp
+from fegear.engine.figure.items import Curve, HeatMap, Mark, Points
 from fegear.engine.figure.panel import Panel
 from fegear.engine.processes import Failure
 from fegear.studies.sweep import Axis as SweepAxis

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from fegear.base.errors import MissingLibraryError
 from fegear.engine.colours import ROLES
 from fegear.engine.figure.axis import Axis, Scale, round_numbers
+from fegear.engine.figure.family import few
 from fegear.engine.figure.figure import DeferredFigure, Figure, View
 from fegear.engine.figure.items import (
     Bars,
@@ -27,7 +28,6 @@ from fegear.engine.figure.items import (
     Surface,
     TriangleField,
     Zone,
-    few,
 )
 from fegear.engine.figure.panel import Panel
 from fegear.output.draw_plotly.layout import darker, plotly_json, template

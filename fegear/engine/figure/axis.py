@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.engine.figure.items import (
-    fixed,
-)
+from fegear.engine.figure.fixed import fixed
 
 #: Logarithmic axes that span less have plain numbers at 1, 2, 3 and 5 times the powers of ten.
 FEW_DECADES = 100.0

@@ -1,11 +1,11 @@
 """What a panel can hold: curves, points, bars, stems, maps, fields and surfaces, and marks across it.
 
-Lines of drawings and members of families.
+Lines of drawings.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, TypeAlias
 
@@ -13,16 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Alike, Array
+from fegear.engine.figure.fixed import fixed
 
 #: Curves with no more points than this show them.
 _FEW = 15
-
-
-def fixed(values: ArrayLike) -> Array:
-    """A read-only copy as floats."""
-    made = np.array(values, dtype=float)
-    made.setflags(write=False)
-    return made
 
 
 class _Item(Alike):
@@ -297,10 +291,6 @@ Which: TypeAlias = Literal["x", "y"]
 Item: TypeAlias = Curve | Points | Bars | Stems | HeatMap | TriangleField | Surface | Skin | Spot
 
 
-#: More curves of a family than this cannot be distinguished.
-MOST_CURVES = 7
-
-
 def polylines(lines: Iterable[Array]) -> Array:
     """Several lines, each of shape (2, N), as one with gaps."""
     gap = np.full((2, 1), np.nan)
@@ -316,15 +306,3 @@ def edges(points: Array, chains: NDArray[np.int64]) -> Array:
 def outline(points: Array, name: str = "", role: str = "outline", width: float = 1.8, dash: str = "") -> Curve:
     """A line of a drawing, shape (2, N), without marked points."""
     return Curve(points[0], points[1], name, role, dash=dash, width=width, markers=False)
-
-
-def few(count: int, keep: Sequence[int] = (), most: int = MOST_CURVES) -> list[int]:
-    """At most so many of a family, evenly chosen, with those to keep."""
-    if count <= most:
-        return list(range(count))
-    return sorted({round(i) for i in np.linspace(0, count - 1, most)} | set(keep))
-
-
-def ramp(count: int) -> list[str]:
-    """Roles of an ordered family, from the lowest to the highest."""
-    return [f"ramp:{i / (count - 1):.3f}" if count > 1 else "ramp:0.700" for i in range(count)]

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Alike, Array
 from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.fixed import fixed
 from fegear.engine.figure.items import (
     Bars,
     Curve,
@@ -19,7 +20,6 @@ from fegear.engine.figure.items import (
     Stems,
     Which,
     Zone,
-    fixed,
 )
 
 #: Curves that vary by less than this share of their size are drawn level, not their last digits over the whole height.

@@ -1,10 +1,13 @@
-"""Figures of a sheet: curves, bars, stems and maps of declared quantities over one of them, a panel each."""
+"""Figures of a sheet: curves, bars, stems and maps of declared quantities over one of them, a panel each.
+
+What a figure is made of is imported when one is made: a plan reads sheets and draws nothing.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -12,24 +15,15 @@ from fegear.base.arrays import Array
 from fegear.base.shown import declared
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure, View
-from fegear.engine.figure.items import (
-    MOST_CURVES,
-    Bars,
-    Curve,
-    HeatMap,
-    Item,
-    Mark,
-    Points,
-    Stems,
-    Zone,
-    few,
-    ramp,
-)
-from fegear.engine.figure.panel import Panel
+from fegear.engine.figure.family import MOST_CURVES, few, ramp
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.seen import Seen, Text, Where, reach
+
+if TYPE_CHECKING:
+    from fegear.engine.figure.figure import Figure
+    from fegear.engine.figure.items import HeatMap, Item, Mark, Zone
+    from fegear.engine.figure.panel import Panel
 
 
 @dataclass(frozen=True)
@@ -237,6 +231,8 @@ class Chart:
 
     def figures(self, seen: Seen) -> Iterator[Figure]:
         """Those that there are."""
+        from fegear.engine.figure.figure import Figure, View
+
         for one in seen.each(self.each):
             if not one.holds(self.when) or (owner := one.find(self.of)) is None:
                 continue
@@ -277,6 +273,8 @@ def _panels(seen: Seen, owner: Any, over: Over | Each) -> Iterator[Panel]:
 
 
 def _panel(seen: Seen, owner: Any, over: Over) -> Panel:
+    from fegear.engine.figure.panel import Panel
+
     lines = [Line(one) if isinstance(one, str) else one for one in over.lines]
     lines = [line for line in lines if seen.holds(line.when)]
     x = _axis(seen, owner, over.x, over.x_options)
@@ -373,6 +371,8 @@ def _item(
     seen: Seen, owner: Any, line: Line, base: str, label: str, role: str, load: int | None, *, banded: bool = True
 ) -> Item:  # fmt: skip
     """One curve, row of bars or of stems, in the units in which its quantities are read."""
+    from fegear.engine.figure.items import Bars, Curve, Points, Stems
+
     upto, x, quantity = slice(line.first), seen.said(line.x) or base, seen.said(line.y)
     si, x_si = (None if where is None else seen.find(where) for where in (line.si, line.x_si))
     along, y = _drawn(owner, x, x_si, load=load)[upto], _drawn(owner, quantity, si, load=load)
@@ -394,6 +394,8 @@ def _item(
 
 def _map(seen: Seen, owner: Any, spec: Map, x: str) -> HeatMap:
     """Colours over a grid, in the units in which its quantities are read."""
+    from fegear.engine.figure.items import HeatMap
+
     (of, quantity), si = reach(owner, spec.z), None if spec.si is None else seen.find(spec.si)
     how = declared(of if isinstance(of, type) else type(of), quantity)
 

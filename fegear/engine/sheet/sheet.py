@@ -7,18 +7,18 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.notes import Note, class_of
-from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.outcome import Outcome
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import EveryLoad, Rows
 from fegear.engine.sheet.seen import Seen, Text, Where
-from fegear.engine.table import Table
 from fegear.engine.value import Value
 
 if TYPE_CHECKING:
+    from fegear.engine.figure.figure import DeferredFigure, Figure
     from fegear.engine.sheet.chart import Chart
+    from fegear.engine.table import Table
 
 
 @dataclass(frozen=True)

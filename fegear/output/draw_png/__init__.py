@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fegear.engine.figure.family import few
 from fegear.engine.figure.figure import Figure, View
-from fegear.engine.figure.items import few
 from fegear.output.draw_png.sheet import Sheet
 from fegear.output.file_names import file_name
 

@@ -19,12 +19,13 @@ import numpy as np
 from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure, MeshField
-from fegear.engine.figure.items import Curve, Mark, Points, TriangleField, edges, outline, polylines
+from fegear.engine.figure.items import Curve, Points, TriangleField, edges, outline, polylines
 from fegear.engine.figure.panel import Panel
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.path_of_contact import path_points, specific_sliding
+from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -183,10 +184,6 @@ def _stress(points: Array, triangles: Index, von_mises: Array, top: float) -> Tr
     )
 
 
-#: Abscissa of everything that is followed along the path of contact.
-LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm")
-
-
 #: Chords of a drawn outline stay this close to it [modules].
 _PAIR_CHORD = 1e-3
 
@@ -201,18 +198,6 @@ _TALL, _WIDE = 3.0, 1.9
 
 #: Places at which sliding is drawn, and the most negative that an axis shows: it has no bound on the base circle.
 _PLACES, _MOST_SLIDING = 101, -5.0
-
-
-def path_marks(pair: GearPair) -> tuple[Mark, ...]:
-    """The points A to E of the path of contact as marks of an abscissa in millimetres."""
-    return tuple(Mark("x", point.x * 1e3, point.letter) for point in path_points(pair))
-
-
-def roll_marks(pair: GearPair, member: Member) -> tuple[Mark, ...]:
-    """The same points as marks of a gear's roll angle in degrees."""
-    return tuple(
-        Mark("x", math.degrees(float(pair.roll_angle(point.x, member))), point.letter) for point in path_points(pair)
-    )
 
 
 def in_mesh(pair: GearPair, member: Member, teeth: int = 2, chord: float = _PAIR_CHORD) -> Array:

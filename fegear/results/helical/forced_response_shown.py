@@ -13,7 +13,7 @@ from fegear.base.arrays import Array, Complex
 from fegear.base.shown import shown, shows
 from fegear.dynamics.helical_pair.transmissibility import Line, PairForces, rms
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import ramp
+from fegear.engine.figure.family import ramp
 from fegear.results.helical.drawn_curves import DrawnCurve, DrawnPanel, ends
 
 if TYPE_CHECKING:

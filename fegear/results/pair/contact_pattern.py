@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.items import few
+from fegear.engine.figure.family import few
 from fegear.engine.sheet.chart import Chart, Map, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows

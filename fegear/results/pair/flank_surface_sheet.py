@@ -14,7 +14,7 @@ from fegear.engine.sheet.chart import Chart, Line, Map, Over
 from fegear.engine.sheet.number import Number, exact
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
-from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
 
 #: The most negative specific sliding that an axis shows.
 _MOST_SLIDING = -5.0

@@ -26,7 +26,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Upstream, Work
 from fegear.geometry.pair import GearPair
-from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_teeth, teeth_stage
 
 #: Laws by the works that they stand in.

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
-from fegear.engine.figure.items import few
+from fegear.engine.figure.family import few
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

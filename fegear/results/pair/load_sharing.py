@@ -22,7 +22,7 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Subject, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
-from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
 from fegear.results.pair.loaded_teeth import OVER_LOADS, loaded_teeth, teeth_stage
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.

@@ -18,11 +18,10 @@ from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.load_words import load_words
 from fegear.engine.stage import Stage, Task, Upstream
 from fegear.geometry.pair import MEMBERS, GearPair, Member
-from fegear.results.gear.drawing import path_marks
+from fegear.results.gear.path_marks import path_marks
 from fegear.results.gear.solved_gear import needs_solid_solution, needs_solution
 
 if TYPE_CHECKING:
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.engine.figure.items import Mark
 
 #: What declares the column of loads of a table for every load.
 OVER_LOADS = (ErrorOverPitch, "total_load")

@@ -23,7 +23,7 @@ from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
-from fegear.results.gear.drawing import path_marks
+from fegear.results.gear.path_marks import path_marks
 from fegear.results.gear.solved_gear import needs_teeth_of, solid_solution_of, teeth_of
 from fegear.results.pair.loaded_teeth import (
     check_teeth,

@@ -18,7 +18,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
-from fegear.results.gear.drawing import roll_marks
+from fegear.results.gear.path_marks import roll_marks
 from fegear.results.train.gear_train import (
     carries_nothing,
     gear_train,

@@ -12,7 +12,7 @@ from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.case.loading import LoadingPart
 from fegear.design.loading import LoadingFunction, SlopeTradeOff, ToothResponse
-from fegear.engine.figure.items import few
+from fegear.engine.figure.family import few
 from fegear.geometry.pair import GearPair, Member
 
 #: Positions on a ramp, in its table and in its picture.

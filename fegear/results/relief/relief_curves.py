@@ -11,13 +11,13 @@ from fegear.base.errors import InputError
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import ramp
+from fegear.engine.figure.family import ramp
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
-from fegear.results.gear.drawing import roll_marks
+from fegear.results.gear.path_marks import roll_marks
 from fegear.results.relief.relief import design_part, relief_stage
 from fegear.results.relief.relief_chart import unit_in_words
 

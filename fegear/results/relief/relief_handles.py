@@ -23,7 +23,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, Relief
-from fegear.results.gear.drawing import roll_marks
+from fegear.results.gear.path_marks import roll_marks
 
 #: Parts of a relief that can be moved, in the order in which `ReliefSpec.built` takes them.
 ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")

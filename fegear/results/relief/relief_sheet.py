@@ -21,7 +21,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.geometry.pair import MEMBERS, Member
-from fegear.results.gear.drawing import roll_marks
+from fegear.results.gear.path_marks import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
 from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,6 @@ from fegear.dynamics.train.measured_modes import MeasuredModes, beside_modes
 from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
@@ -30,6 +30,9 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Reads, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, TRAIN_SOURCES, gear_train, needs_train, the_train
+
+if TYPE_CHECKING:
+    from fegear.engine.figure.items import Mark
 
 #: A share of energy below this is none.
 _ROUND_OFF = 1e-6
@@ -232,6 +235,8 @@ def _mode_words(natural: Array, room: float) -> list[tuple[float, str]]:
 
 def _marks(seen: Seen) -> list[Mark]:
     """Natural frequencies with their numbers, and the speed of the case."""
+    from fegear.engine.figure.items import Mark
+
     data: ModesData = seen.data
     at, (low, high) = math.nan if seen.asked.part.speed is None else seen.asked.part.speed * RPM, data.ends
     natural = np.array(list(data.flexible.values()))

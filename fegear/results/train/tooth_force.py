@@ -12,13 +12,12 @@ from fegear.base.shown import shown, shows
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import drawn
 from fegear.engine.figure.axis import Axis, Scale
-from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import ALL, Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Reads, Stage, Upstream, Work
-from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import (
     RPM,
     from_exciter,
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.single_tooth import MeshForce
     from fegear.dynamics.train.tooth_force import Pull, ToothForce
+    from fegear.engine.figure.items import Mark, Zone
     from fegear.engine.sheet.seen import Seen
 
 
@@ -144,6 +144,8 @@ class ToothForceData:
     @property
     def mean(self) -> Mark:
         """Mean mesh force."""
+        from fegear.engine.figure.items import Mark
+
         return Mark("y", float(self.train.forces[self.mesh]))
 
 
