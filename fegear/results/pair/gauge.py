@@ -20,7 +20,8 @@ from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import GaugeData
-from fegear.results.pair.loaded_teeth import OVER_LOADS, check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
+from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
+from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
     DASHED,
     LEFT_OUT,

@@ -23,7 +23,8 @@ from fegear.engine.stage import Forecast, Subject, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.path_marks import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_teeth import OVER_LOADS, loaded_teeth, teeth_stage
+from fegear.results.pair.loaded_teeth import loaded_teeth, teeth_stage
+from fegear.results.pair.over_loads import OVER_LOADS
 
 #: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
 _HISTORY, _HISTORY_CORNERS, _WIDE = 0.035, 0.03, 0.05

@@ -16,7 +16,6 @@ from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.pair_checks import check_relief
 from fegear.case.built.solid_influence import flank_pairs
-from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.load_words import load_words
 from fegear.engine.stage import Stage, Task, Upstream
@@ -36,8 +35,6 @@ if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.figure.items import Mark
 
-#: What declares the column of loads of a table for every load.
-OVER_LOADS = (ErrorOverPitch, "total_load")
 #: Abscissa of figures over one base pitch.
 BASE_PITCH = Axis("mesh position over one base pitch", "mm")
 

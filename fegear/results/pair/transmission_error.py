@@ -32,7 +32,6 @@ from fegear.results.pair.iso_mesh_stiffness import (
 )
 from fegear.results.pair.loaded_teeth import (
     BASE_PITCH,
-    OVER_LOADS,
     check_teeth,
     loaded_teeth,
     pitch_marks,
@@ -40,6 +39,7 @@ from fegear.results.pair.loaded_teeth import (
 )
 from fegear.results.pair.mark_transmission_error import MARK_FIGURES, MARK_REMARKS, MARK_TABLES, MARK_VALUES, MarkData
 from fegear.results.pair.mesh_table import MESH_REMARK, MESH_TABLE, EvenMesh, even_mesh
+from fegear.results.pair.over_loads import OVER_LOADS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

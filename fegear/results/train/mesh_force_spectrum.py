@@ -24,13 +24,13 @@ from fegear.results.train.gear_train import (
     pull_remarks,
     what_excites,
 )
-from fegear.results.train.mesh_force_lines import WEAKEST, SpectrumData
-from fegear.results.train.ripple_spectrum import Strongest
 
 if TYPE_CHECKING:
     from fegear.case.dynamics import DynamicsPart
     from fegear.case.reading import Scene
     from fegear.engine.sheet.seen import Seen
+    from fegear.results.train.mesh_force_lines import SpectrumData
+    from fegear.results.train.ripple_spectrum import Strongest
 
 
 #: Harmonics of the waterfall at most.
@@ -51,6 +51,7 @@ def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> Spectrum
     from fegear.dynamics.train.mesh_force_spectrum import mesh_force_spectrum
     from fegear.dynamics.train.tooth_force import largest_pull
     from fegear.dynamics.train.torque_response import ripple_spectrum
+    from fegear.results.train.mesh_force_lines import SpectrumData
 
     data, part = gear_train(upstream), asked.part
     i, speed, speeds = data.train.mesh_index(asked.name), part.one_speed / data.speed_ratio, part.speed_values
@@ -72,6 +73,8 @@ def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> Spectrum
 
 
 def _caption(seen: Seen) -> str:
+    from fegear.results.train.mesh_force_lines import WEAKEST
+
     top, left = seen.data.drawn_to
     above = f" Lines above {top * 1e-3:.4g} kHz hold {left:.2g} of the mean square; the table has them."
     return seen.said(
@@ -79,6 +82,12 @@ def _caption(seen: Seen) -> str:
         f"{what_excites(seen.data.train)}, with harmonic number; lines above {WEAKEST:g} of the maximum."
         f"{above if left > 0.0 else ''}"
     )
+
+
+def _strongest_line(_seen: Seen) -> type[Strongest]:
+    from fegear.results.train.ripple_spectrum import Strongest
+
+    return Strongest
 
 
 def _without_series(seen: Seen) -> bool:
@@ -144,7 +153,7 @@ _SHEET = Sheet(
         Each("of_ripple.strongest", *_STRONGEST),
         Each("strongest", *_STRONGEST),
         Number(
-            "rms", of=lambda _: Strongest, si=itself, name="rms_by_series_from_{key}", each="by_series.rms",
+            "rms", of=_strongest_line, si=itself, name="rms_by_series_from_{key}", each="by_series.rms",
             further=" by Mark's series, M = {asked.terms}",
         ),
     ),

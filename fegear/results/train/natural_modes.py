@@ -17,8 +17,6 @@ from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.dynamics import DynamicsPart
 from fegear.dynamics.train.gear_train import GearTrain
-from fegear.dynamics.train.measured_modes import MeasuredModes, beside_modes
-from fegear.dynamics.train.modes import Campbell, Modes, ripple_critical
 from fegear.engine.colours import DASHES
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
@@ -32,6 +30,8 @@ from fegear.results import forecasts
 from fegear.results.train.gear_train import RPM, TRAIN_SOURCES, gear_train, needs_train, the_train
 
 if TYPE_CHECKING:
+    from fegear.dynamics.train.measured_modes import MeasuredModes
+    from fegear.dynamics.train.modes import Campbell, Modes
     from fegear.engine.figure.items import Mark
 
 #: A share of energy below this is none.
@@ -141,6 +141,8 @@ class ModesData:
     @property
     def of_ripple(self) -> list[Meetings]:
         """Of the torque ripple; of a fixed frequency there is none."""
+        from fegear.dynamics.train.modes import ripple_critical
+
         diagram, train = self.campbell, self.train
         return [] if diagram is None else [
             Meetings.of(one.name, "", one.harmonics, ripple_critical(one, diagram.natural) * train.speed_ratio,
@@ -219,6 +221,8 @@ def _measured(given: list[float] | None, natural: Array) -> MeasuredModes | None
             f"exceeds the {natural.size} natural frequencies above zero of the train",
             "remove those of other parts, or add bodies",
         )  # fmt: skip
+    from fegear.dynamics.train.measured_modes import beside_modes
+
     return beside_modes(np.array(given), natural)
 
 
