@@ -22,7 +22,8 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
-from fegear.results.gear.drawing import Drawing, pair_figure
+from fegear.results.gear.drawing import pair_figure
+from fegear.results.gear.drawing_data import Drawing
 from fegear.results.gear.path_marks import path_marks, roll_marks
 from fegear.results.pair.loaded_teeth import pitch_marks
 from fegear.results.train.dynamic_factor import DYNAMIC_FACTOR, DynamicFactorData

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Gear
+    from fegear.results.gear.drawing_data import Drawing
 
 
 #: Positions of the tool in the picture of a tooth.
@@ -49,35 +50,6 @@ _TOP = 99.5
 
 #: Chords of a drawn outline stay this close to it [modules].
 _CHORD = 1e-5
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """Everything that a drawing would carry.
-
-    Parameters
-    ----------
-    gears : mapping of str to Gear
-    pairs : mapping of str to GearPair
-    members : mapping of str to (str, str)
-        Names of the driver and the driven gear of each pair.
-    balls : mapping of str to float
-        Diameters of the measuring balls or pins that the case names, by gear [m].
-    spans : mapping of str to int
-        Teeth of the spans that the case names, by gear.
-    ground : mapping of str to mapping of str to float
-        What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
-    assumed : tuple of str
-        Sentences on bores and face widths that mass and inertia take for granted.
-    """
-
-    gears: Mapping[str, Gear]
-    pairs: Mapping[str, GearPair]
-    members: Mapping[str, tuple[str, str]]
-    balls: Mapping[str, float]
-    spans: Mapping[str, int]
-    ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    assumed: tuple[str, ...] = ()
 
 
 def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:

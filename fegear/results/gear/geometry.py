@@ -13,7 +13,6 @@ from fegear.case.gear import GearPart
 from fegear.case.reading import Scene
 from fegear.case.working_flanks import coast_name
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import DeferredFigure, Figure
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
@@ -30,10 +29,10 @@ from fegear.geometry.mass import MassProperties
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.tip_interference import interference
 from fegear.results.forecasts import INVOLUTE
-from fegear.results.gear.body_section import body_figures
-from fegear.results.gear.drawing import Drawing, pair_figure
+from fegear.results.gear.drawing_data import Drawing
 
 if TYPE_CHECKING:
+    from fegear.engine.figure.figure import DeferredFigure, Figure
     from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
 
@@ -356,6 +355,9 @@ def _fillets(seen: Seen) -> Iterator[str]:
 
 
 def _figures(seen: Seen) -> Iterator[Figure | DeferredFigure]:
+    from fegear.results.gear.body_section import body_figures
+    from fegear.results.gear.drawing import pair_figure
+
     yield from (pair_figure(name, seen.data) for name in seen.data.pairs)
     yield from body_figures(seen.data.gears)
 

@@ -12,15 +12,12 @@ from fegear.base.arrays import Array, first_of_largest
 from fegear.base.printed import figures, rounded
 from fegear.base.shown import shown
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import DeferredFigure
-from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results.forecasts import RING
-from fegear.results.gear.drawing import deformed_figure
 from fegear.results.gear.load_positions import chosen_gears
 
 if TYPE_CHECKING:
@@ -29,6 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
+    from fegear.engine.figure.figure import DeferredFigure
+    from fegear.engine.figure.items import Mark
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
@@ -68,6 +67,8 @@ class FilletStress:
     @property
     def marks(self) -> tuple[Mark, ...]:
         """Zero stress, and where ISO 6336-3 looks."""
+        from fegear.engine.figure.items import Mark
+
         tangent, arc, iso = np.rad2deg(self.tangent_angle), self.arc * 1e3, _ISO_TANGENT
         inside = tangent.min() < iso < tangent.max()
         at = (Mark("x", float(np.interp(-iso, -tangent, arc)), "30° tangent"),) if inside else ()
@@ -122,6 +123,9 @@ def _worst_load(_asked: FilletInputs, upstream: Upstream, _work: Work) -> Fillet
 
 def _deformed(seen: Seen) -> Iterator[DeferredFigure]:
     """The gear as its load bends it."""
+    from fegear.engine.figure.figure import DeferredFigure
+    from fegear.results.gear.drawing import deformed_figure
+
     name, draw = seen.name, partial(deformed_figure, seen.name, seen.data.table.influence, seen.asked.line_load)
     yield DeferredFigure(f"deformed_{name}", f"Deformed gear {name}", draw)
 

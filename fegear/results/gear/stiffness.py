@@ -19,8 +19,6 @@ from fegear.case.built.tooth_influence import solution_settings
 from fegear.engine.citation import citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis, Scale
-from fegear.engine.figure.figure import DeferredFigure
-from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
@@ -28,7 +26,6 @@ from fegear.engine.sheet.rows import Cell, Every, Off, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results.forecasts import HERTZ, PATCH, RING
-from fegear.results.gear.drawing import tooth_figure
 from fegear.results.gear.load_positions import StiffnessInputs, check_contacts_of, chosen_gears, stiffness_inputs
 from fegear.results.gear.solved_gear import needs_solution
 
@@ -36,6 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
+    from fegear.engine.figure.figure import DeferredFigure
+    from fegear.engine.figure.items import Mark
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.neighbour_table import NeighbourTable
     from fegear.fem.plane.table import StiffnessTable
@@ -147,6 +146,9 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 def _tooth(seen: Seen) -> Iterator[DeferredFigure]:
     """The tooth with its tool and mesh."""
+    from fegear.engine.figure.figure import DeferredFigure
+    from fegear.results.gear.drawing import tooth_figure
+
     name, known = seen.name, seen.data.influence
     draw = partial(tooth_figure, name, known.gear, known.fine.mesh)
     yield DeferredFigure(f"tooth_{name}", f"Tooth, tool and mesh of gear {name}", draw)
@@ -164,6 +166,8 @@ def _roll_axis(seen: Seen) -> Axis:
 
 
 def _pitch_mark(seen: Seen) -> tuple[Mark, ...]:
+    from fegear.engine.figure.items import Mark
+
     gear, roll = seen.data.influence.gear, drawn(seen.data.over_roll, "roll_angle")
     at = gear.tooth.side * float(np.rad2deg(np.sqrt(max((gear.pitch_radius / gear.base_radius) ** 2 - 1.0, 0.0))))
     return (Mark("x", at, "pitch point"),) if roll.min() <= at <= roll.max() else ()

@@ -18,9 +18,6 @@ from fegear.case.built.solid_influence import check_source
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import DeferredFigure, Figure, SolidMeshField
-from fegear.engine.figure.items import HeatMap, Skin
-from fegear.engine.figure.panel import Panel
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
@@ -37,6 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
+    from fegear.engine.figure.figure import DeferredFigure, Figure
+    from fegear.engine.figure.panel import Panel
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
@@ -180,6 +179,8 @@ _LAYERS, _MOST_LAYERS = 3.0, 60
 
 def _deformed(seen: Seen) -> Iterator[DeferredFigure]:
     """The tooth as a usual force bends it."""
+    from fegear.engine.figure.figure import DeferredFigure
+
     name, gear = seen.name, seen.asked.gear
     draw = partial(deformed_tooth, name, gear, seen.data, _USUAL_FORCE * gear.module / 1e-3)
     yield DeferredFigure(f"deformed_tooth_{name}", f"Deformed tooth of gear {name}", draw)
@@ -198,6 +199,10 @@ def worst_band(t: SolidTable) -> tuple[int, int]:
 
 def _map(seen: Seen) -> Iterator[Figure]:
     """c_self and the largest root tension over the flank."""
+    from fegear.engine.figure.figure import Figure
+    from fegear.engine.figure.items import HeatMap
+    from fegear.engine.figure.panel import Panel
+
     name, t = seen.name, seen.data
     if min(t.c_self.shape) < 2:
         return
@@ -264,6 +269,9 @@ _OVER_FACE = Chart(
 
 def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure:
     """The loaded tooth in space under the band that causes the largest root tension, and its neighbours as a field."""
+    from fegear.engine.figure.figure import Figure, SolidMeshField
+    from fegear.engine.figure.items import Skin
+    from fegear.engine.figure.panel import Panel
     from fegear.fem.solid.bands import bands
     from fegear.fem.solid.field import solid_field
 
