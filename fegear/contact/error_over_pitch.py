@@ -143,6 +143,8 @@ class ErrorOverPitch(Brief):
         How many base pitches these are; 1 where teeth stand evenly or none but this one is looked at.
     only : int or None
         The one base pitch that is looked at although each has a transmission error of its own.
+    shifts : tuple of TransmissionErrorShift
+        Estimated errors under every load; empty where they are not known.
     """
 
     pair: GearPair
@@ -171,6 +173,25 @@ class ErrorOverPitch(Brief):
     rotational: FourierSeries | None = None
     cycles: int = 1
     only: int | None = None
+    shifts: tuple[TransmissionErrorShift, ...] = ()
+
+    @property
+    def mean_errors(self) -> Array | None:
+        """Estimated, of the mean under every load, shape (L,) [m]; None where they are not known."""
+        return self._errors("mean")
+
+    @property
+    def peak_to_peak_errors(self) -> Array | None:
+        """The same of the peak-to-peak value [m]."""
+        return self._errors("peak_to_peak")
+
+    @property
+    def effective_errors(self) -> Array | None:
+        """The same of the effective transmission error [m]."""
+        return self._errors("effective")
+
+    def _errors(self, of: str) -> Array | None:
+        return np.array([getattr(one, of) for one in self.shifts]) if self.shifts else None
 
     @property
     def load(self) -> float:

@@ -163,6 +163,7 @@ class LoadedPair:
             np.array([getattr(te, key) for te in exact])
             for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
         )
+        shifts = [transmission_error_shift(te, self.shifted) for te in exact]
         return ErrorOverPitch(
             self.pair,
             self.loads,
@@ -172,7 +173,7 @@ class LoadedPair:
             if self.exact
             else "integrated between geometric discontinuities",
             tuple(te.series for te in exact),
-            transmission_error_shift(exact[i], self.shifted),
+            shifts[i],
             x=curve.x,
             te=curve.transmission_error,
             mesh_stiffness=secant_stiffness(curve),
@@ -186,6 +187,7 @@ class LoadedPair:
             mesh_compliance_mean=None if perfect is None else perfect.mean_compliance,
             rotational=self._rotational(),
             cycles=e.cycles,
+            shifts=tuple(one for one in shifts if one is not None),
         )
 
     def _rotational(self) -> FourierSeries | None:

@@ -213,15 +213,21 @@ class LoadedWidePair:
         ]
         curves = flank_transmission_errors(found, self.flanks.points)
         longer, coarse = (
-            flank_transmission_errors(one, self.flanks.points)[i] if self.estimated else curves[i]
+            flank_transmission_errors(one, self.flanks.points) if self.estimated else curves
             for one in (self.error.longer, self.error.coarse)
         )
         progress(0.5)
         perfect = self._mean_without_gaps()
-        shift = flank_transmission_error_shift(each[i], curves[i], longer, coarse, (OF_GEARS_MEAN, OF_GEARS_SHAPE))
-        shift = _missed_too(shift, each[i], self._missed)
+        parts = zip(each, curves, longer, coarse, strict=True)
+        shifts = [
+            _missed_too(flank_transmission_error_shift(*one, (OF_GEARS_MEAN, OF_GEARS_SHAPE)), one[0], self._missed)
+            for one in parts
+        ]
         # What is stated of the whole base pitch is stated once.
-        shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
+        means, swings = self.error.mean.tolist(), self.error.peak_to_peak.tolist()
+        shifts = [
+            replace(one, mean=mean, peak_to_peak=swing) for one, mean, swing in zip(shifts, means, swings, strict=True)
+        ]
         uneven = bool(self.gaps.driver_spacing.size or self.gaps.driven_spacing.size)
         effective, local = (
             np.array([getattr(te, key) for te in each]) for key in ("effective_error", "average_stiffness")
@@ -233,7 +239,7 @@ class LoadedWidePair:
             each[i].values.size,
             f"from {each[i].values.size} mesh positions over the base pitch",
             tuple(te.series for te in each),
-            shift,
+            shifts[i],
             x=found.lines.roll,
             te=found.transmission_error,
             mesh_stiffness=np.stack([te.secant for te in curves], axis=1),
@@ -248,6 +254,7 @@ class LoadedWidePair:
             mesh_compliance_mean=perfect / self.nominal if self.pair.total_contact_ratio >= 1.0 else None,
             te_error=self.error.transmission_error[:, i],
             only=self.gaps.base_pitch if uneven else None,
+            shifts=tuple(shifts) if self.estimated else (),
         )
 
     def _mean_without_gaps(self) -> float:

@@ -103,7 +103,12 @@ _TABLES = (
     ),
     Rows(
         "transmission_error_summary_{name}", "Transmission error of {name} for every load",
-        ("total_load", Every("loads", {"local_stiffness_mean": "local_stiffness"})), of="found",
+        (
+            "total_load", Every("loads", {"local_stiffness_mean": "local_stiffness"}),
+            Off("te_mean", "found.mean_errors"), Off("te_peak_to_peak", "found.peak_to_peak_errors"),
+            Off("te_effective", "found.effective_errors"),
+        ),
+        of="found",
         when=lambda seen: len(seen.loads) > 1,
     ),
     EveryLoad(
@@ -169,7 +174,10 @@ _FIGURES = (
     Chart(
         "transmission_error_summary_{name}", "Transmission error of {name} over load",
         "Pair {name}: mean and peak to peak of the loaded transmission error over one base pitch, for every load.",
-        (Over(_load_with_torque, (Line("te_mean", x="total_load"),)), Over("total_load", ("te_peak_to_peak",))),
+        (
+            Over(_load_with_torque, (Line("te_mean", x="total_load", error="found.mean_errors"),)),
+            Over("total_load", (Line("te_peak_to_peak", error="found.peak_to_peak_errors"),)),
+        ),
         of="found", when=lambda seen: len(seen.loads) > 1,
     ),
     Chart(
@@ -243,11 +251,11 @@ _SHEET = Sheet(
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    """One quadrature for each load of plane teeth, and the errors of the nominal one."""
+    """One quadrature for each load of plane teeth, and its errors."""
     if name in scene.wide_pairs:
         return forecasts.constant(_WIDE)
     each = _ERROR + (_ERROR_CORNERS if scene.case.effects.corner_contact else 0.0)
-    seconds = each * (forecasts.loads(scene, name) + 0.5)
+    seconds = 1.5 * each * forecasts.loads(scene, name)
     if scene.case.effects.spacing_errors:
         seconds += 0.03
     return Forecast({"loads": forecasts.loads(scene, name), "harmonics": HARMONICS}, seconds)
