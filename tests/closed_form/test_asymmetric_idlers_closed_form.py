@@ -281,7 +281,8 @@ def test_motion_knows_no_contact_of_asymmetric_back_flanks():
     }  # fmt: skip
     del document["pair"]["J"]["load"]
     document["pair"]["J"]["torque"] = f"{lever * 25 / 19!r} N*m"
-    with pytest.raises(InputError, match=r'train\.mesh\.I\.backlash = .*set backlash = "unlimited"'):
+    refused = r"train\.mesh\.I\.backlash = .*requires back_pair .*backlash = \"unlimited\""
+    with pytest.raises(InputError, match=refused):
         make_plan(build_scene(document, "case", Path()), STAGES)
     for mesh in document["train"]["mesh"].values():
         mesh["backlash"] = "unlimited"
