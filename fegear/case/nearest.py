@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 #: How alike two spellings must be, 0 to 1; more where one may type a word of the trade that is no misspelt key.
 _ALIKE, _ALIKE_KEYS = 0.5, 0.65
+#: Names that one sentence can list; of more the most similar ones.
+_MOST, _SIMILAR = 50, 20
 
 
 def nearest(
@@ -33,10 +35,18 @@ def nearest(
         ``words(name, known)`` -> what a word of the trade means, which comes before its spelling.
     """
     names = sorted(known)
-    listed = f"known here: {', '.join(names)}" if names else "none is defined here"
+    listed = _listed(name, names) if names else "none is defined here"
     listed = f"{lists_all} lists all {len(names)}" if lists_all else listed
     meaning = words(name, names) if words else None
     if meaning is not None:
         return f"{meaning.remedy(names)}; {listed}"
     near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=_ALIKE_KEYS if words else _ALIKE)
     return f'did you mean "{near[0]}"? {listed}' if near and len(names) > 1 else listed
+
+
+def _listed(name: str, names: list[str]) -> str:
+    """All names, or the most similar ones where they are too many for a sentence."""
+    if len(names) <= _MOST:
+        return f"known here: {', '.join(names)}"
+    similar = sorted(difflib.get_close_matches(name.lower(), names, n=_SIMILAR, cutoff=0.0))
+    return f"known here, the most similar of {len(names)}: {', '.join(similar)}"

@@ -265,7 +265,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
               effects=(ODD_TEETH.name,), internal=True, table="planetary.NAME"),
         Entry("planet-vibration-revolution", "planetary.planet_vibration_revolution.PLANET_VIBRATION_REVOLUTION",
               "Motion of a planetary gear set with odd teeth over all base pitches", ("planet-vibration-revolution",),
-              "dynamic mesh forces, transmission error, orders and sidebands of a planetary gear set with an odd tooth",
+              "dynamic mesh forces, orders and sidebands of a planetary gear set with an odd tooth",
               effects=(ODD_TEETH.name,), internal=True, table="planetary.NAME", extra="motion"),
         Entry("planet-root-stress", "planetary.planet_root_stress.PLANET_ROOT_STRESS",
               "Root stress of planet teeth over one revolution", ("planet-root-stress",),

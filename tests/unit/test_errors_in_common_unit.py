@@ -127,3 +127,11 @@ def test_a_root_factor_errs_as_that_of_the_gear_it_meshes_with():
     assert none.members["driver"].off("face") is None
     half = replace(data, again={"driver": (), "driven": coarse["driven"]})
     assert half.members["driver"].off("transverse") == pytest.approx(0.01)
+
+
+def test_no_loads_far_away_are_no_loads():
+    """Where no contact stands at any position, as of a tooth that faces of cracks are followed from."""
+    gear = Gear(Tooth(20, BasicRack(1.0, 1.25, 0.38)), 3e-3, 15e-3, 0.02)
+    solved = solve_gear(gear, settings_at(-5.0))
+    none = solved.fine.remote(np.zeros(0), 0.02)
+    assert none.shape == (solved.fine.remote(np.array([9.5]), 0.02).shape[0], 0)

@@ -166,7 +166,7 @@ class Influence:
         wide = np.maximum(share * np.minimum(patch, room), _NARROWEST)
         count = len(_REMOTE_WIDTHS)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), count), np.outer(_REMOTE_WIDTHS, wide).ravel())
-        return np.asarray(_REMOTE_PARTS @ loads.reshape(-1, count, arc.size))
+        return np.asarray(_REMOTE_PARTS @ loads.reshape(loads.shape[0], count, arc.size))
 
     def fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
