@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.brief import Brief
@@ -39,11 +39,14 @@ class Step:
     effects: tuple[str, ...]
     readers: tuple[Stage, ...] = ()
     wanted: bool = False
+    _read: list[tuple[Scene, Any]] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def inputs(self, scene: Scene) -> Any:
-        """All that its result reads of the case."""
-        inputs, for_readers = self.stage.inputs(scene, self.task.subject), self.stage.for_readers
-        return inputs if for_readers is None else for_readers(inputs, self.readers)
+        """All that its result reads of the case; of the scene that was asked about last it is known."""
+        if not self._read or self._read[0][0] is not scene:
+            inputs, for_readers = self.stage.inputs(scene, self.task.subject), self.stage.for_readers
+            self._read[:] = [(scene, inputs if for_readers is None else for_readers(inputs, self.readers))]
+        return self._read[0][1]
 
 
 @dataclass(frozen=True, slots=True)

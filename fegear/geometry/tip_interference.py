@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +52,23 @@ class Interference:
         return ""
 
 
+#: The other gear of a pair.
+_MATE: Mapping[Member, Member] = {"driver": "driven", "driven": "driver"}
+
+
+def below_form_circle(pair: GearPair, tip_of: Member) -> bool:
+    """Whether the involute's tip of one gear would touch the mating flank below the start of its involute.
+
+    Parameters
+    ----------
+    pair : GearPair
+    tip_of : {"driver", "driven"}
+    """
+    reach = float(pair.x_of_radius(pair.gear(tip_of).involute_tip_radius, tip_of))
+    limit = float(pair.x_of_radius(pair.gear(_MATE[tip_of]).form_radius, _MATE[tip_of]))
+    return reach > limit if tip_of == "driver" else reach < limit
+
+
 def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interference:
     """Follow the tip corner of one gear through the mating tooth space.
 
@@ -66,13 +84,8 @@ def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interfer
     -------
     Interference
     """
-    gear = pair.gear(tip_of)
-    mate_name: Member = "driven" if tip_of == "driver" else "driver"
-    mate = pair.gear(mate_name)
-    tip, form = gear.involute_tip_radius, mate.form_radius
-    reach = float(pair.x_of_radius(tip, tip_of))
-    limit = float(pair.x_of_radius(form, mate_name))
-    below = reach > limit if tip_of == "driver" else reach < limit
+    gear, mate = pair.gear(tip_of), pair.gear(_MATE[tip_of])
+    tip, below = gear.involute_tip_radius, below_form_circle(pair, tip_of)
     if pair.internal:
         return Interference(tip_of, below, math.inf, pair.tip_clearance(tip_of))
 

@@ -203,9 +203,9 @@ class Sent:
             self._figures[place] = text
         return {**content, "figures": figures}
 
-    def knows(self, task: str, figure: str) -> bool:
-        """Whether a figure was sent before."""
-        return (task, figure) in self._figures
+    def knows(self, task: str, figure: str = "") -> bool:
+        """Whether a figure was sent before, or any of the task."""
+        return (task, figure) in self._figures if figure else any(of == task for of, _ in self._figures)
 
     def forget_others(self, tasks: list[str]) -> None:
         """Forget what is on the page no longer."""
@@ -214,10 +214,11 @@ class Sent:
 
 
 def whole(content: _Content, before: _Content | None) -> _Content:
-    """Results of a task with all figures, the same ones from what was known before."""
+    """Results of a task with all figures and values, those that were not sent again from what was known before."""
     known = {one["key"]: one for one in (before or {}).get("figures", ())}
     figures = [known[one["key"]] if one.get("same") else one for one in content["figures"]]
-    return {**content, "figures": figures}
+    values = {"values": (before or {}).get("values", "")} if content.get("values", "") is None else {}
+    return {**content, "figures": figures, **values}
 
 
 def with_gears(content: _Content, before: _Content | None) -> _Content:

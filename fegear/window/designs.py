@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.errors import FegearError, InputError
 from fegear.case.changed_text import literal, value_at, with_values
+from fegear.engine.plan import Step
 from fegear.engine.run import key_without_needs
 from fegear.engine.sheet.load_words import loads_as_given
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
 from fegear.results.relief.relief_in_case import relief_for_case, what_it_leaves
 from fegear.window.order import ANSWERS, in_order
 
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.changed_text import Path
     from fegear.case.reading import Scene
-    from fegear.engine.plan import Plan, Step
+    from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.results.relief.relief_in_case import How
     from fegear.window.job_queue import Asked
@@ -133,6 +136,13 @@ def anew_of(scene: Scene, plan: Plan, cache: SolutionCache) -> tuple[Step, ...]:
     return tuple(step for step in solved if key_without_needs(scene, step) not in cache)
 
 
+def previews_again(scene: Scene, before: frozenset[str], cache: SolutionCache) -> Scene:
+    """The case with previews of those gears that had some before, as far as an atlas answers and nobody knows them."""
+    stage = STAGES.called(_SOLVED)
+    again = (Step(Task(_SOLVED, gear), stage, (), ()) for gear in sorted(before) if gear in stage.subjects(scene))
+    return with_previews(scene, [step for step in again if key_without_needs(scene, step) not in cache])
+
+
 def with_previews(scene: Scene, anew: Iterable[Step]) -> Scene:
     """The case with gears from an atlas, of some that one answers about: for a first answer, before they are solved.
 
@@ -163,7 +173,6 @@ def draft_of(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[
 def _sliced_draft(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
     """Pairs with a width from coupled slices, which take a fraction of the time of solid gears."""
     from fegear.engine.plan import make_plan
-    from fegear.results.catalogue import STAGES
     from fegear.studies.sliced_draft import can_be_sliced, sliced
 
     solved = [step for step in plan.steps if step.task.stage == _SOLID]

@@ -9,8 +9,10 @@ import math
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from fegear.window.glance import View
 
@@ -39,7 +41,7 @@ def first_drawing(pairs: Mapping[str, Mapping[str, Any]], view: View, title: str
     m = mesh["module"] * 1e3
     tall, wide = _TALL * m, max(_WIDE * m, _BESIDE * 1e3 * max(-mesh["start"], mesh["end"]))
     paths = "".join(
-        f'<path class="{member}" d="{_line(mesh[member])}" transform="rotate({_turned(mesh, member, sign):.4f} 0 '
+        f'<path class="{member}" d="{_line(mesh, member, sign)}" transform="rotate({_turned(mesh, member, sign):.4f} 0 '
         f'{sign * mesh[f"{member}_radius"] * 1e3:.4f})"/>'
         for member, sign in (("driver", -1.0), ("driven", 1.0))
     )
@@ -55,6 +57,12 @@ def _turned(mesh: Mapping[str, Any], member: str, sign: float) -> float:
     return sign * math.degrees(float(mesh["start"]) / float(mesh[f"{member}_base"]))
 
 
-def _line(points: Sequence[Sequence[float]]) -> str:
-    """Points [m] as a path, to a micrometre."""
-    return "M" + "L".join(f"{1e3 * x:.3f},{1e3 * y:.3f}" for x, y in zip(*points, strict=True))
+def _line(mesh: Mapping[str, Any], member: str, sign: float) -> str:
+    """A gear's row of teeth [m] as a path, to a micrometre."""
+    count, turn = mesh["rows"][member]
+    x, y = 1e3 * np.array(mesh[member])
+    centre = sign * mesh[f"{member}_radius"] * 1e3
+    angle = turn * np.arange(-count, count + 1)[:, None]
+    c, s = np.cos(angle), np.sin(angle)
+    row = np.stack([c * x - s * (y - centre), s * x + c * (y - centre) + centre])
+    return "M" + "L".join(f"{px:.3f},{py:.3f}" for px, py in row.reshape(2, -1).T.tolist())

@@ -10,6 +10,8 @@ const fegearGears = (() => {
     tool: ["Tool", "Positions of the rack tool that generates the teeth, in one tooth space of each gear"],
   };
 
+  const FINE = 1e-4; // mm: outlines are whole numbers of it, which are written four times as fast as decimals
+
   const svg = (tag, attributes, parent) => {
     const one = document.createElementNS(SVG, tag);
     for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
@@ -75,9 +77,20 @@ const fegearGears = (() => {
       kept.unit = m;
       kept.view = { wide, tall, data };
       const up = svg("g", { transform: "scale(1,-1)" }, picture);
-      const line = (points) => `M${points[0].map((x, i) => `${(x * 1e3).toFixed(4)},${(points[1][i] * 1e3).toFixed(4)}`).join("L")}`;
-      kept.driver = svg("path", { d: line(data.driver), class: "driver" }, up);
-      kept.driven = svg("path", { d: line(data.driven), class: "driven" }, up);
+      const line = (member, centre) => { // teeth are alike: one is sent, the others are turned from it
+        const [xs, ys] = data[member].map((all) => all.map((one) => one * 1e3 / FINE)), [count, turn] = data.rows[member];
+        let text = "M";
+        for (let k = -count; k <= count; k += 1) {
+          const cosine = Math.cos(k * turn), sine = Math.sin(k * turn);
+          for (let i = 0; i < xs.length; i += 1) {
+            const y = ys[i] - centre;
+            text += `${i || k > -count ? "L" : ""}${Math.round(cosine * xs[i] - sine * y)},${Math.round(sine * xs[i] + cosine * y + centre)}`;
+          }
+        }
+        return text;
+      };
+      kept.driver = svg("path", { d: line("driver", -1e3 / FINE * data.driver_radius), class: "driver" }, up);
+      kept.driven = svg("path", { d: line("driven", 1e3 / FINE * data.driven_radius), class: "driven" }, up);
       const c = Math.cos(data.pressure_angle), s = Math.sin(data.pressure_angle), a = data.start * 1e3, e = data.end * 1e3;
       svg("line", { x1: a * c, y1: a * s, x2: e * c, y2: e * s, class: "path" }, up);
       let beside = -Infinity; // letters of points close to each other stand apart
@@ -124,8 +137,8 @@ const fegearGears = (() => {
       more.draw();
       const first = d.start + kept.place * d.base_pitch; // the pair that came into contact last
       const degrees = (x, base) => x / base * 180 / Math.PI;
-      fegearPlots.set(kept.driver, { transform: `rotate(${-degrees(first - off, d.driver_base)} 0 ${-d.driver_radius * 1e3})` });
-      fegearPlots.set(kept.driven, { transform: `rotate(${degrees(first - off, d.driven_base)} 0 ${d.driven_radius * 1e3})` });
+      fegearPlots.set(kept.driver, { transform: `rotate(${-degrees(first - off, d.driver_base)} 0 ${-d.driver_radius * 1e3}) scale(${FINE})` });
+      fegearPlots.set(kept.driven, { transform: `rotate(${degrees(first - off, d.driven_base)} 0 ${d.driven_radius * 1e3}) scale(${FINE})` });
       const arrows = fegearPlots.pen(kept.arrows);
       const c = Math.cos(d.pressure_angle), s = Math.sin(d.pressure_angle), found = [];
       const largest = Math.max(...(loadsOf.get(pair)?.load ?? kept.sent.pressure?.load.flat() ?? [1]));

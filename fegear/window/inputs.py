@@ -252,7 +252,7 @@ class Inputs:
         path = next((one for one, field in self._held.items() if field.key == key and field.kind in _TYPED), None)
         if path is None or _NUMBER.fullmatch(check_text(text, key)) is None:
             raise InputError(key, f'"{text}"', "is not a number of this form", "reload the page")
-        if (element := self._elements.get(path)) is not None:
+        if not moving and (element := self._elements.get(path)) is not None:  # on its way the page shows it itself
             element.set_value(text)
         self._bench.move_value(path, self._held[path].written(text), moving=moving)
 

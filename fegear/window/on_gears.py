@@ -6,6 +6,7 @@ The gears in mesh for the page: outlines and how they turn, and what is switched
 from __future__ import annotations
 
 import base64
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -218,6 +219,10 @@ _STAGES = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
 UNASKED = ("pressure", "loads", "bent", "field", "crack")
 
 
+#: Teeth that are drawn on either side of those that touch at the pitch point: enough for a turn over the whole path.
+_BESIDE = 6
+
+
 #: Why deformed teeth are not shown of gears with a width.
 _NOT_PLANE = (
     "Available for plane (2D) tooth pairs only: for 3D gears the displacement of tips and non-working flanks is not "
@@ -234,6 +239,9 @@ def _plain(value: Any) -> Any:
 def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     """Outlines of both gears and how they turn, for the page to draw, and what can be switched on in vain.
 
+    Of each gear the tooth that touches at the pitch point, and in ``rows`` how many stand on either side and the angle
+    from each to the next [rad], counterclockwise about its centre: teeth are alike, and all of them would be 200 kB.
+
     Parameters
     ----------
     scene : Scene
@@ -241,9 +249,15 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
         Of the pair.
     """
     pair = scene.pairs[name]
-    found = {key: _plain(value) for key, value in asdict(moving_pair(pair)).items()}
+    found = {key: _plain(value) for key, value in asdict(moving_pair(pair, 0)).items()}
+    ways = {"driver": -1.0, "driven": -float(pair.side)}
+    rows = {
+        member: [min(_BESIDE, (teeth - 1) // 2), way * 2.0 * math.pi / teeth]
+        for member, way in ways.items() if (teeth := pair.gear(member).teeth)
+    }  # fmt: skip
     ratios = {"transverse": pair.contact_ratio} | ({"overlap": pair.overlap_ratio} if pair.driver.helix_angle else {})
     return found | {
+        "rows": rows,
         "ratios": ratios,
         "wide": name in scene.wide_pairs,
         "refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)},

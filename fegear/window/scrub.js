@@ -41,7 +41,7 @@ const fegearScrub = (() => {
       held.moved = true;
       const text = moved(held.from, Math.round(way / STEP[held.whole ? "whole" : "part"]), held.whole, event.shiftKey);
       if (text === held.text) return;
-      held.text = text;
+      held.text = held.input.value = text; // at once, and by nobody else: to hear it from the server would draw the whole form anew
       send(true);
     }, true);
     const end = (event) => {

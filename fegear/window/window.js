@@ -138,8 +138,8 @@ const fegear = (() => {
       const one = kept.element.querySelector(name);
       if (one.textContent !== words) one.textContent = words;
     }
-    renew(kept.element.querySelector(".numbers"), values);
-    kept.element.hidden = !values && !figures.length;
+    if (values !== null) renew(kept.element.querySelector(".numbers"), values); // else out of sight: they come at rest
+    kept.element.hidden = !(values ?? true) && !figures.length;
     const gone = [...kept.element.querySelectorAll(".figures figure")].filter((figure) => !keys.includes(figure.dataset.key));
     for (const figure of gone) { drop(figure); kept.specs.delete(figure.dataset.key); kept.drawn.delete(figure.dataset.key); }
     if (gone.length) refit(kept.element.querySelector(".figures"));
@@ -224,7 +224,7 @@ const fegear = (() => {
       for (const spec of figures) { if (!spec.same) kept.specs.set(spec.key, spec); owner.set(spec.key, task); }
       fegearGlance.found(content);
       for (const spec of figures) if (spec.key === enlarged?.key && !spec.same) await enlarge(spec.key, enlarged.words);
-      kept.late = content;
+      kept.late = { ...content, values: content.values ?? kept.late?.values ?? null };
       // While a value moves, what is out of sight waits until it is in sight or all is at rest.
       if (!moving || kept.element.hidden || seen.has(task)) await put(kept);
     },

@@ -16,10 +16,11 @@ from fegear.base.notes import class_of, counted, open_and_folded
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
+from fegear.results.gear.solved_gear import ATLAS
 from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
-from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, with_previews
+from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, previews_again, with_previews
 from fegear.window.drag_handles import hands_of
 from fegear.window.glance import crack_tasks, field_tasks, glance_tasks, keys_of, numbers_of, plan_with
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Newer, Said, Stop, Unwanted
@@ -45,8 +46,8 @@ _STROKE = 1.5
 _STILL = 0.2
 #: Pictures that a page cannot draw wait so long for another move: drawing one, half a second, is not interrupted [s].
 _AT_REST = 1.0
-#: After so many answers to a value being moved what is kept is bounded again.
-_STROKES = 8
+#: After so many answers to a value being moved, of some 2 MB each, what is kept is bounded again: it takes 30 ms.
+_STROKES = 24
 #: Between two reports of progress inside a task is so much time [s].
 _OFTEN = 0.3
 #: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
@@ -85,6 +86,7 @@ class Worker:
         self._drawn: Mapping[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
+        self._previews: frozenset[str] = frozenset()
         self._maps = HarrisMaps()
         self._untidy = 0
 
@@ -204,10 +206,10 @@ class Worker:
         beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
         inside = field_tasks(scene) if asked.field else []
         planned = partial(plan_with, beside=[*beside, *inside], more=more)
-        plan = planned(scene)
         if asked.moving and told:
-            scene = with_previews(scene, anew_of(scene, plan, self._cache))
-            plan = planned(scene) if scene.previews else plan
+            scene, plan = self._previewed(scene, planned)
+        else:
+            plan = planned(scene)
         more = [*more, *inside]
         if told:
             if asked.laid != self._laid:
@@ -235,6 +237,23 @@ class Worker:
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
         )  # fmt: skip
+
+    def _previewed(self, scene: Scene, planned: Callable[[Scene], Plan]) -> tuple[Scene, Plan]:
+        """A case with gears from an atlas in place of those to be solved, and its plan.
+
+        While one value moves these are the gears of the move before: a plan with them proves it, and is the only one.
+        """
+        if self._previews:
+            likely = previews_again(scene, self._previews, self._cache)
+            if likely.previews == self._previews:
+                plan = planned(likely)
+                solved = {step.task.subject for step in anew_of(scene, plan, self._cache)}
+                if {step.task.subject for step in plan.steps if step.task.stage == ATLAS} == likely.previews >= solved:
+                    return likely, plan
+        plan = planned(scene)
+        scene = with_previews(scene, anew_of(scene, plan, self._cache))
+        self._previews = scene.previews
+        return scene, planned(scene) if scene.previews else plan
 
     def _pause(self) -> None:
         """See whether a value that has been answered moves on; what else follows from it is told where it does not."""
@@ -314,7 +333,7 @@ class Worker:
         found = {
             "task": str(task),
             "title": f"{title}: {task.subject}" if task.subject else title,
-            "values": fragment([values]) if outcome.values else "",
+            "values": None if self._unseen(task) else fragment([values]) if outcome.values else "",
             "figures": [
                 SAME | {"key": one.key} if self._waits(task, one.key)
                 else {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)}
@@ -338,10 +357,17 @@ class Worker:
             self._on_gears[task] = outcome.data
             self._say("meshed", task=str(task), **shown)
 
+    def _unseen(self, task: Task) -> bool:
+        """Whether a result is out of sight while a value moves, and was told before."""
+        asked = self._asked
+        if asked is None or not asked.moving or asked.pictures is None:
+            return False
+        return str(task) not in asked.sight and self._sent.knows(str(task))
+
     def _waits(self, task: Task, figure: str) -> bool:
         """Whether a figure is drawn when all is at rest: out of sight while a value moves, and known of before."""
         asked = self._asked
-        if asked is None or not asked.moving or asked.pictures is None or str(task) in asked.sight:
+        if asked is None or asked.pictures is None or not self._unseen(task):
             return False
         small = {f"{key}{task.subject}" for key in keys_of(asked.pictures)}
         return figure not in small and self._sent.knows(str(task), figure)

@@ -3,6 +3,7 @@
 import base64
 import json
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from fegear.geometry.outline import rack_tooth, tool_in_space, tooth_outline
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.rack import BasicRack
 from fegear.results.catalogue import STAGES
-from fegear.results.gear.drawing import placed_in_mesh
+from fegear.results.gear.drawing import moving_pair, placed_in_mesh
 from fegear.window.on_gears import gears_in_mesh, on_the_gears, wanted_on_gears
 
 CASE = {
@@ -382,3 +383,38 @@ def test_the_tool_across_the_axis_is_half_a_transverse_pitch_thick_where_it_roll
         assert at[0] == pytest.approx(0.25 * math.pi / lean)
         assert at[1] - at[0] == pytest.approx(math.tan(tooth.rack.pressure_angle) / lean)
     assert (y.max(), y.min()) == (pytest.approx(1.2), pytest.approx(0.2 - 1.25))
+
+
+RING = "teeth = 71\ninternal = true\ncutter = { teeth = 20, addendum = 1.25, tip_radius = 0.2 }"
+
+
+@pytest.mark.parametrize(
+    ("driver", "driven"),
+    [("teeth = 20", "teeth = 53"), ("teeth = 20", RING), (RING, "teeth = 20"),
+     ("teeth = 9\nprofile_shift = 0.5", "teeth = 30")],
+)  # fmt: skip
+def test_all_teeth_that_are_drawn_are_turned_from_the_one_that_is_sent(driver, driven, tmp_path):
+    text = f"""results = ["geometry"]
+[gear.a]
+{driver}
+module = "3 mm"
+[gear.b]
+{driven}
+module = "3 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+"""
+    scene = build_scene(tomllib.loads(text), "case", tmp_path)
+    mesh, whole = gears_in_mesh(scene, "I"), moving_pair(scene.pairs["I"])
+    for member, sign in (("driver", -1.0), ("driven", 1.0)):
+        count, turn = mesh["rows"][member]
+        x, y = np.array(mesh[member])
+        centre = sign * mesh[f"{member}_radius"]
+        row = [
+            (math.cos(k * turn) * x - math.sin(k * turn) * (y - centre),
+             math.sin(k * turn) * x + math.cos(k * turn) * (y - centre) + centre)
+            for k in range(-count, count + 1)
+        ]  # fmt: skip
+        assert np.hstack(row) == pytest.approx(getattr(whole, member), abs=2e-9)
+    assert len(json.dumps(mesh)) < 30_000

@@ -14,6 +14,7 @@ from fegear.engine.figure.panel import Panel
 from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.window import glance, worker
+from fegear.window.computing import whole
 from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
 from fegear.window.job_queue import Asked, Compute, Export, Inbox, Stop, Unwanted
 from fegear.window.time_left import TimeLeft
@@ -105,11 +106,11 @@ def test_faults_are_said_in_a_sentence_and_what_may_be_half_done_is_forgotten(wo
     assert working.said[-1][:2] == (8, "dropped")
 
 
-def test_what_is_kept_is_bounded_at_rest_and_after_every_eighth_answer_that_moves(working, monkeypatch):
+def test_what_is_kept_is_bounded_at_rest_and_after_every_24th_answer_that_moves(working, monkeypatch):
     shrunk, given = [], []
     monkeypatch.setattr(working, "_cache", SimpleNamespace(shrink=lambda most: shrunk.append(most) or True))
     monkeypatch.setattr(worker, "_give_back", lambda: given.append(1))
-    for _ in range(7):
+    for _ in range(23):
         working._tidy(moving=True)
     assert shrunk == []
     working._tidy(moving=True)
@@ -117,7 +118,7 @@ def test_what_is_kept_is_bounded_at_rest_and_after_every_eighth_answer_that_move
     working._tidy(moving=True)
     working._tidy(moving=False)
     assert len(shrunk) == 2
-    for _ in range(7):
+    for _ in range(23):
         working._tidy(moving=True)
     assert len(shrunk) == 2
     # Where nobody waits it is done before its turn.
@@ -168,6 +169,45 @@ accuracy.tolerance = 0.05
     working.inbox.wait = lambda _seconds: None
     told = answered(4, text, True)  # these teeth are known, and those of others are on the page
     assert ("meshed", "stress-inside of I") in told
+
+
+def test_the_gears_of_the_move_before_spare_a_plan_and_change_no_answer(working, tmp_path, monkeypatch):
+    text = """
+results = ["load-sharing"]
+gear.a = { teeth = 20, module = "3 mm", face_width = "20 mm" }
+gear.b = { teeth = 33, module = "3 mm", face_width = "20 mm" }
+pair.I = { driver = "a", driven = "b", torque = "50 N*m" }
+accuracy.tolerance = 0.05
+"""
+    plans, plan_with = [], worker.plan_with
+    monkeypatch.setattr(worker, "plan_with", lambda *given, **more: plans.append(1) or plan_with(*given, **more))
+
+    def moves_on(_seconds):
+        raise Unwanted
+
+    working.inbox.wait = moves_on
+
+    def answered(of, number, teeth, mate=33):
+        del working.said[:], plans[:]
+        case = text.replace("teeth = 20", f"teeth = {teeth}").replace("teeth = 33", f"teeth = {mate}")
+        of.answer(Compute(number, Asked(case, "c", ".", moving=True, laid=1, pictures=("load",))))
+        (found,) = (one for _, _, one in working.said if one.get("task") == "load-sharing of I")
+        return [found[key] for key in ("numbers", "draft", "loads")], len(plans)
+
+    def afresh(number, teeth, mate=33):
+        return answered(Worker(None, tmp_path / str(number)), number, teeth, mate)[0]
+
+    first = answered(working, 1, 21)
+    assert first == (afresh(2, 21), 2)
+    assert answered(working, 3, 22) == (afresh(4, 22), 1)
+    assert answered(working, 5, 23, 34) == (afresh(6, 23, 34), 1)
+    assert answered(working, 7, 10, 34)[1] == 2  # no atlas has it
+    # Numbers out of sight are written out when all is at rest.
+    answered(working, 8, 24)
+    (seen,) = (one for _, _, one in working.said if one.get("task") == "load-sharing of I")
+    assert seen["values"] is None
+    kept = {"task": "t", "figures": [], "values": "before"}
+    assert whole(seen | {"figures": []}, kept)["values"] == "before"
 
 
 def test_progress_is_told_to_who_waits_and_not_to_who_moves(working, monkeypatch):
@@ -313,7 +353,8 @@ def test_figures_that_a_page_can_draw_are_sent_and_pictures_and_what_is_not_made
     figures = Figure("drawn", "Drawn", "", (line,)), Figure("body", "Body", "", (body,)), SimpleNamespace(key="later")
     said = []
     worker = SimpleNamespace(
-        _asked=None, _later=[], _waits=lambda *_: False, _sent=SimpleNamespace(news=lambda found: found),
+        _asked=None, _later=[], _waits=lambda *_: False, _unseen=lambda *_: False,
+        _sent=SimpleNamespace(news=lambda found: found),
         _say=lambda kind, **more: said.append((kind, more)),
     )  # fmt: skip
     task = Task("geometry", "a")

@@ -67,7 +67,7 @@ def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
 def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
-    from fegear.geometry.tip_interference import interference
+    from fegear.geometry.tip_interference import below_form_circle
 
     notes: list[str] = []
     effects = scene.case.effects
@@ -108,6 +108,6 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
                 "(interference); the path of contact ends there and no corner contact is computed at that end."
             )
             for member in MEMBERS
-            if interference(pair, member).below_form_circle
+            if below_form_circle(pair, member)
         ]
     return tuple(notes)

@@ -349,18 +349,20 @@ class MovingPair(ReadOnlyArrays):
     twist: float
 
 
-def moving_pair(pair: GearPair) -> MovingPair:
+def moving_pair(pair: GearPair, teeth: int = _TEETH) -> MovingPair:
     """Make a pair ready to be turned.
 
     Parameters
     ----------
     pair : GearPair
+    teeth : int
+        How many on either side of those that touch.
     """
     base = pair.driver.base_radius, pair.side * pair.driven.base_radius
     share = pair.centre_distance / abs(base[0] + base[1])
     return MovingPair(
-        in_mesh(pair, "driver", _TEETH, _MOVING_CHORD),
-        in_mesh(pair, "driven", _TEETH, _MOVING_CHORD),
+        in_mesh(pair, "driver", teeth, _MOVING_CHORD),
+        in_mesh(pair, "driven", teeth, _MOVING_CHORD),
         base[0] * share,
         base[1] * share,
         *base,
