@@ -38,6 +38,8 @@ LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
 _HELD = 2.0
 #: What could not be kept beyond a crash is tried again after this [s].
 _AGAIN = 3.0
+#: While a value moves the case is judged and kept beyond a crash once in this time [s].
+_KEPT = 0.3
 #: Between two changes that are shown are so many times the time that one takes, and at most so much [s].
 _TIMES, _PAUSE = 2.0, 0.5
 
@@ -230,10 +232,10 @@ class Bench:
             self._held.cancel()
         # Who has let go may not have been able to say so: the page was closed, or loaded again.
         self._held = self._loop.call_later(_HELD, self.changed) if moving and self._loop is not None else None
-        if moving and self._loop is not None:
-            self._loop.call_soon(self._keep_up)  # behind what is sent at once
-        else:
+        if not moving or self._loop is None:
             self._keep_up()
+        elif self._keeping is None:  # behind what is sent at once, and not for each: it takes half of this process
+            self._keeping = self._loop.call_later(_KEPT, self._keep_up)
 
     def _keep_up(self) -> None:
         """Keep the case beyond a crash; where that fails pages say so, and it is tried again until it does not."""
