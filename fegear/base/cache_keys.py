@@ -166,6 +166,18 @@ def _forget(number: int, gone: weakref.ref[Any]) -> None:
         del _MADE[number]
 
 
+@functools.cache
+def _counting(kind: type) -> tuple[str, ...] | None:
+    """Fields of a dataclass that count; None of another type, and of one that is a list, a mapping or a case's part."""
+    if not dataclasses.is_dataclass(kind) or issubclass(kind, (list, tuple, Mapping, Path, type)):
+        return None
+    return (
+        None
+        if callable(getattr(kind, "model_dump", None))
+        else tuple(f.name for f in dataclasses.fields(kind) if f.compare)
+    )
+
+
 class _Content:
     """Objects as plain texts and lists, the same for equal content; with whose code made what it met."""
 
@@ -179,12 +191,18 @@ class _Content:
 
     def canonical(self, item: object) -> object:
         """An object as JSON takes it."""
+        if type(item) is float:  # most of all that is met
+            return ["float", (item + 0.0).hex()]  # so that -0.0 is 0.0
         if isinstance(item, np.generic):
             item = item.item()
         if item is None or isinstance(item, (bool, int, str)):
             return item
         if isinstance(item, float):
-            return ["float", (item + 0.0).hex()]  # so that -0.0 is 0.0
+            return ["float", (item + 0.0).hex()]
+        return self._canonical_object(item)
+
+    def _canonical_object(self, item: object) -> object:
+        """The same of what is neither a number nor a text."""
         self.read.add(id(item))
         alive, key = _MADE.get(id(item), (None, None))
         if alive is not None and alive() is item:
@@ -195,6 +213,9 @@ class _Content:
         if isinstance(item, np.ndarray) and item.dtype.kind in PLAIN_KINDS:
             digest = hashlib.sha256(np.ascontiguousarray(item).tobytes()).hexdigest()
             return ["array", item.dtype.str, list(item.shape), digest]
+        names = _counting(type(item))
+        if names is not None:
+            return ["data", type(item).__qualname__, *([name, self.canonical(getattr(item, name))] for name in names)]
         if isinstance(item, Path):
             return ["path", item.as_posix()]
         if isinstance(item, (list, tuple)):
@@ -205,11 +226,4 @@ class _Content:
         dump = getattr(item, "model_dump", None)
         if callable(dump):  # a part of a case
             return ["part", type(item).__qualname__, self.canonical(dump())]
-        if dataclasses.is_dataclass(item) and not isinstance(item, type):
-            counting = (f.name for f in dataclasses.fields(item) if f.compare)
-            return [
-                "data",
-                type(item).__qualname__,
-                *([name, self.canonical(getattr(item, name))] for name in counting),
-            ]
         raise TypeError(f"{type(item).__name__} has no content key")

@@ -155,6 +155,25 @@ def with_previews(scene: Scene, anew: Iterable[Step]) -> Scene:
     return replace(scene, previews=held) if held else scene
 
 
+def previewed(
+    scene: Scene, planned: Callable[[Scene], Plan], cache: SolutionCache, before: frozenset[str]
+) -> tuple[Scene, Plan]:
+    """A case with gears from an atlas in place of those to be solved, and its plan, while a value moves.
+
+    Mostly these are the gears that had previews `before`: a plan with them proves it, and is the only one.
+    """
+    from fegear.results.gear.solved_gear import ATLAS
+
+    if before and (likely := previews_again(scene, before, cache)).previews == before:
+        plan = planned(likely)
+        solved = {step.task.subject for step in anew_of(scene, plan, cache)}
+        if {step.task.subject for step in plan.steps if step.task.stage == ATLAS} == before >= solved:
+            return likely, plan
+    plan = planned(scene)
+    scene = with_previews(scene, anew_of(scene, plan, cache))
+    return scene, planned(scene) if scene.previews else plan
+
+
 def draft_of(scene: Scene, plan: Plan, cache: SolutionCache, planned: Callable[[Scene], Plan]) -> Draft | None:
     """The draft of a case; None where it has no answers, every gear is known, or nothing would be faster.
 

@@ -16,11 +16,10 @@ from fegear.base.notes import class_of, counted, open_and_folded
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
-from fegear.results.gear.solved_gear import ATLAS
 from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
-from fegear.window.designs import anew_of, design_asked, designed, draft_of, preview_told, previews_again, with_previews
+from fegear.window.designs import design_asked, designed, draft_of, preview_told, previewed
 from fegear.window.drag_handles import hands_of
 from fegear.window.glance import crack_tasks, field_tasks, glance_tasks, keys_of, numbers_of, plan_with
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Newer, Said, Stop, Unwanted
@@ -207,7 +206,8 @@ class Worker:
         inside = field_tasks(scene) if asked.field else []
         planned = partial(plan_with, beside=[*beside, *inside], more=more)
         if asked.moving and told:
-            scene, plan = self._previewed(scene, planned)
+            scene, plan = previewed(scene, planned, self._cache, self._previews)
+            self._previews = scene.previews
         else:
             plan = planned(scene)
         more = [*more, *inside]
@@ -237,23 +237,6 @@ class Worker:
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
         )  # fmt: skip
-
-    def _previewed(self, scene: Scene, planned: Callable[[Scene], Plan]) -> tuple[Scene, Plan]:
-        """A case with gears from an atlas in place of those to be solved, and its plan.
-
-        While one value moves these are the gears of the move before: a plan with them proves it, and is the only one.
-        """
-        if self._previews:
-            likely = previews_again(scene, self._previews, self._cache)
-            if likely.previews == self._previews:
-                plan = planned(likely)
-                solved = {step.task.subject for step in anew_of(scene, plan, self._cache)}
-                if {step.task.subject for step in plan.steps if step.task.stage == ATLAS} == likely.previews >= solved:
-                    return likely, plan
-        plan = planned(scene)
-        scene = with_previews(scene, anew_of(scene, plan, self._cache))
-        self._previews = scene.previews
-        return scene, planned(scene) if scene.previews else plan
 
     def _pause(self) -> None:
         """See whether a value that has been answered moves on; what else follows from it is told where it does not."""

@@ -288,13 +288,13 @@ def test_who_does_not_let_go_has_let_go_after_two_seconds(bench):
     bench._loop = loop = Loop()
     bench._show_change(moving=True)
     # The case is judged and kept beyond a crash once in 0.3 s, and when it stands still.
-    assert loop.live() == [0.3, 2.0]
-    assert loop.waiting[0].act == bench._keep_up
+    assert loop.live() == [2.0, 0.3]
+    assert loop.waiting[-1].act == bench._keep_up
     bench._show_change(moving=True)
     assert loop.live() == [0.3, 2.0]  # the one before counts no more
     bench._keep_up()
     bench._show_change(moving=True)
-    assert loop.live() == [0.3, 2.0]
+    assert loop.live() == [2.0, 0.3]
     bench._show_change(moving=False)
     assert loop.live() == []
 
