@@ -2,7 +2,7 @@
 
 measured = offset + drift * turns + scale * computed(angle - shift) + residual, where only what is asked for is fitted;
 else offset, drift and shift are zero and the scale is one. Angles count modulo one turn: a trace of many revolutions is
-one engagement many times. Turns count along the trace, from the middle of its compared samples. Where the computed
+one engagement many times. Turns count along the trace, from its middle. Where the computed
 curve ends there is nothing to compare with; while the shift is searched for the tooth counts as unstrained there.
 Spikes, dropouts and saturated samples (`fegear.contact.trace_outliers`) are left out and counted.
 """
@@ -79,7 +79,7 @@ class FittedCurve:
     outside : int
         Samples beyond the computed curve.
     drift : float
-        Change of the measured curve per turn along the trace, where it was fitted; zero half-way through the samples.
+        Change of the measured curve per turn along the trace, where it was fitted; zero half-way through the trace.
     trend, trend_error : float or None
         Drift of the least squares with this shift whether or not it was asked for, and its standard error; None of a
         trace that has no place of the curve twice.
@@ -169,6 +169,11 @@ class FittedCurve:
     def rms(self) -> float:
         """Over the samples within the computed curve."""
         return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def fits(self) -> bool:
+        """Whether a residual over the fitted scale says anything: of a scale near zero it is without limit."""
+        return "scale" not in self.fit or self.rms < float(np.ptp(self.computed))
 
     @property
     @shows("", "correlation coefficient of measured and computed strain")
@@ -323,6 +328,8 @@ class _Computed:
         used, shift, line = fit.used, fit.shift, fit.line
         y, turn = measured[used], turns[used]
         spanned, turn = float(np.ptp(turn)), turn - fit.middle_turn
+        # of least squares the mean of the turns is zero; a reader looks for the offset half-way through the trace
+        beyond = 0.5 * float(turns.min() + turns.max()) - fit.middle_turn
         places = self.within(shift, angle[used])
         found = self.at(places)
         reach = 2.0 * self._half * _SLOPE
@@ -332,7 +339,7 @@ class _Computed:
             these: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one in more)
             fitted = _linear(found, y, turn, these)
             residual = fitted.less(y, turn) - fitted.scale * found
-            return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn, noise)
+            return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn - beyond, noise)
 
         errors = with_errors()[1]
         if "shift" in asked and _jumps(self._angle, self._curve):  # between two samples the jump may be anywhere
@@ -347,7 +354,7 @@ class _Computed:
         )
         drifting = with_errors("offset", "drift") if spanned > 1.0 else None
         return FittedCurve(
-            asked, {one: errors.get(one, 0.0) for one in FITTED}, 0, line.offset, line.scale,
+            asked, {one: errors.get(one, 0.0) for one in FITTED}, 0, line.offset + line.drift * beyond, line.scale,
             float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
             line.less(y, turn) / (line.scale or 1.0), found, line.drift, drifting and drifting[0].drift,
             drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,

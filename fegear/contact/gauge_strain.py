@@ -15,6 +15,19 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair, Member
 
 
+def reach_of_places(peaks: Array, peak: float) -> tuple[float, float]:
+    """How far below and above a peak, in size, those at other places of the grid are; neither is negative.
+
+    Parameters
+    ----------
+    peaks : ndarray, shape (G,)
+        At all places, of the sign of the peak.
+    peak : float
+    """
+    change = np.sign(peak) * (peaks - peak)
+    return max(-float(change.min()), 0.0), max(float(change.max()), 0.0)
+
+
 @dataclass(frozen=True)
 class GaugeHistory:
     """What a gauge sees; strains in its direction, arrays over P positions of its tooth and L loads.

@@ -29,8 +29,9 @@ _FITS = 0.9
 _LESS, _LESS_OF_ALIKE, _ALIKE = 4.0, 9.0, 0.98
 #: Least gain of the fit, as chi squared by the residual of the alternative.
 _CERTAIN = 50.0
-#: Part of the variance left unexplained below which nothing better is looked for.
-_EXPLAINED = 2e-3
+#: Part of the variance left unexplained below which nothing better is looked for; for an angle reversed, which changes
+#: little of a curve that is nearly symmetric and which no fit makes up for, the smaller one.
+_EXPLAINED, _EXPLAINED_REVERSED = 2e-3, 1e-4
 #: Alternatives that leave at most that many times what the best one leaves are as good.
 _AS_GOOD = 2.0
 #: Less than this is left by rounding.
@@ -92,12 +93,14 @@ def alternatives(
         Whether the zero of the angle may be elsewhere, if it is not fitted.
     """
     left = unexplained(found)
-    if left < _EXPLAINED:
+    if left < _EXPLAINED_REVERSED:
         return ()
     some = slice(None, None, -(-angle.size // _MOST))
     angle, measured = angle[some], measured[some]
     likely: list[Alternative] = []
     for changes, name, sign, sense, more in _descriptions(curves, shifts=shifts and "shift" not in fit):
+        if left < _EXPLAINED and changes != ("reverse",):
+            continue
         try:
             again = fit_curve(sense * angle, sign * measured, curve_angle, curves[name], {*fit, "scale", *more})
         except NothingToCompareError:

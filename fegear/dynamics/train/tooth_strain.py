@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
+from fegear.contact.gauge_strain import reach_of_places
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.dynamics.train.single_tooth import error_increments, force_at, forces_around, positions, rows_around
@@ -107,8 +108,13 @@ class ToothStrain:
     @shows("um/m", "maximum change of the dynamic peak within placement_tolerance", name="dynamic_change_by_placement")
     def change_by_placement(self) -> float:
         """Of the peaks at all displacements."""
+        return max(self.reach_of_placement)
+
+    @property
+    def reach_of_placement(self) -> tuple[float, float]:
+        """How far below and above the dynamic peak, in size, that of another place is."""
         sign = np.sign(self.peak)
-        return float(np.abs(sign * (sign * self.displaced).max(axis=0) - self.peak).max())
+        return reach_of_places(sign * (sign * self.displaced).max(axis=0), self.peak)
 
 
 def tooth_strain(

@@ -57,9 +57,10 @@ class BetterDescribed:
             for i in range(2)
         )  # fmt: skip
         likeliest = self.better[0].fitted
+        instead = f" instead of {percent(found.rms / size)}" if found.fits else ", as described no fit"
         return (
-            f"the trace fits {ways}: RMS of the residual {percent(likeliest.rms / size)} of {of} instead of "
-            f"{percent(found.rms / size)}, measured / computed {figures(likeliest.gain)}; check {remedies}"
+            f"the trace fits {ways}: RMS of the residual {percent(likeliest.rms / size)} of {of}{instead}, "
+            f"measured / computed {figures(likeliest.gain)}; check {remedies}"
         )
 
 

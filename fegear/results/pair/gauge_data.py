@@ -10,7 +10,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.gauge_strain import GaugeHistory
+from fegear.contact.gauge_strain import GaugeHistory, reach_of_places
 from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, Otherwise, verdict
 
@@ -167,8 +167,12 @@ class GaugeData(BesideTrace):
     @shows("um/m", "maximum change of the peak strain within placement_tolerance")
     def peak_change_by_placement(self) -> float:
         """At the nominal load."""
-        peaks = self.history.peak_of_places(self.at)
-        return float(np.abs(peaks - self.peak_strain[self.at]).max())
+        return max(self.reach_of_placement)
+
+    @property
+    def reach_of_placement(self) -> tuple[float, float]:
+        """How far below and above the peak strain at the nominal load, in size, that of another place is."""
+        return reach_of_places(self.history.peak_of_places(self.at), float(self.peak_strain[self.at]))
 
     @property
     def linearity(self) -> str:
@@ -187,6 +191,6 @@ class GaugeData(BesideTrace):
             return ""
         peak, error = float(self.peak_strain[self.at]), self.peak_error
         return verdict(
-            self.compared, peak, self.peak_change_by_placement, 0.0 if error is None else float(error[self.at]),
+            self.compared, peak, self.reach_of_placement, 0.0 if error is None else float(error[self.at]),
             self.load_tolerance, self.otherwise, brief=brief, sharper=self.sharper,
         )  # fmt: skip

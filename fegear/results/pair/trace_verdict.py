@@ -38,19 +38,30 @@ class Limits:
 
     Parameters
     ----------
-    placement, load, model, scatter : float
-        By the place, by load and gauge factor, by the computation, by the scatter of the measurement.
+    lower, upper : float
+        By the place, how far below and above the computed one.
+    load, model, scatter : float
+        By load and gauge factor, by the computation, by the scatter of the measurement.
     """
 
-    placement: float
+    lower: float
+    upper: float
     load: float
     model: float
     scatter: float
 
-    @property
-    def together(self) -> float:
-        """Root of the sum of squares."""
-        return math.sqrt(self.placement**2 + self.load**2 + self.model**2 + self.scatter**2)
+    def placement(self, off: float) -> float:
+        """By the place, on the side of a difference."""
+        return self.upper if off >= 0.0 else self.lower
+
+    def together(self, off: float) -> float:
+        """Root of the sum of squares on the side of a difference."""
+        return math.hypot(self.placement(off), self.load, self.model, self.scatter)
+
+    def said(self, off: float) -> str:
+        """The limit on the side of a difference, with both signs where it is the same on the other."""
+        one, other = percent(self.together(off)), percent(self.together(-off))
+        return f"{'±' if one == other else '+' if off >= 0.0 else '-'}{one}"
 
 
 @dataclass(frozen=True)
@@ -165,7 +176,7 @@ def thinned(found: FittedCurve) -> FittedCurve:
 
 
 def verdict(
-    found: FittedCurve, peak: float, by_placement: float, error: float, load_tolerance: float,
+    found: FittedCurve, peak: float, by_placement: tuple[float, float], error: float, load_tolerance: float,
     otherwise: Otherwise | None = None, *, brief: bool = False, sharper: str = "",
 ) -> str:  # fmt: skip
     """Measured against computed strain, in one or two sentences without a subject.
@@ -178,8 +189,10 @@ def verdict(
     found : FittedCurve
     peak : float
         Computed.
-    by_placement, error : float
-        What the place within its tolerance changes of it, and its estimated error.
+    by_placement : tuple of float
+        How far below and above it the peak is at places within the tolerance.
+    error : float
+        Its estimated one.
     load_tolerance : float
         Relative uncertainty of load and gauge factor.
     otherwise : Otherwise, optional
@@ -190,7 +203,8 @@ def verdict(
         Remedy where the computed strain is too rough to judge the measured one.
     """
     size, otherwise = abs(peak), otherwise or Otherwise()
-    limits = Limits(by_placement / size, load_tolerance, error / size, _CERTAIN * found.gain_scatter)
+    lower, upper = (side / size for side in by_placement)
+    limits = Limits(lower, upper, load_tolerance, error / size, _CERTAIN * found.gain_scatter)
     off = found.gain - 1.0
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
     if better := otherwise.said(found, size):
@@ -199,10 +213,11 @@ def verdict(
     if found.gain <= 0.0:
         return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
     parts = (
-        f"placement {percent(limits.placement)}, load and gauge factor {percent(limits.load)}, computation "
+        f"placement {percent(limits.placement(off))}, load and gauge factor {percent(limits.load)}, computation "
         f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
     )
-    within = abs(off) <= limits.together
+    together = limits.together(off)
+    within = abs(off) <= together
     by = f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
     judged = f"measured strain is {by} the computed one"
     if within and limits.model > _JUDGES:  # so wide a band would pass nearly everything
@@ -215,11 +230,11 @@ def verdict(
             f"{differ}: check fillet, tooth "
             f"and position of the grid{'' if 'shift' in found.fit else ', or fit shift'}; {judged}{limit}"
         )
-    elif reason := otherwise.of_ratio(found.gain, limits.together):
-        judged = f"measured strain is {figures(found.gain)} times the computed one, beyond ±{percent(limits.together)}"
+    elif reason := otherwise.of_ratio(found.gain, together):
+        judged = f"measured strain is {figures(found.gain)} times the computed one, beyond {limits.said(off)}"
         judged += f"{limit}{reason}"
     else:
-        judged += f", {'within' if within else 'beyond'} ±{percent(limits.together)}{limit}"
+        judged += f", {'within' if within else 'beyond'} {limits.said(off)}{limit}"
         judged += "" if within else "; check load, gauge factor and position of the grid"
     if brief:  # what is said without its notes has to name what falsifies it
         drift = found.unfitted_drift

@@ -129,7 +129,7 @@ class DynamicStrain(BesideTrace):
         if self.compared is None or (self.sharper and found.peak_error is None):
             return ""
         return verdict(
-            self.compared, found.peak, found.change_by_placement, found.peak_error or 0.0, self.load_tolerance,
+            self.compared, found.peak, found.reach_of_placement, found.peak_error or 0.0, self.load_tolerance,
             self.otherwise, brief=brief, sharper=self.sharper,
         )  # fmt: skip
 
