@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: Harmonics on either side of one that tell of its error, too (of one pair the fourth was 1.6 times off what one on
 #: either side told).
 _BESIDE = 2
+#: What is left of a transmission error that deflections make up, as a share of it.
+_ROUND_OFF = 1e-7
 
 
 @dataclass(frozen=True)
@@ -279,6 +281,28 @@ class ErrorOverPitch(Brief):
     def te_first_harmonic(self) -> Array:
         """Amplitude of the first harmonic under each load, shape (L,) [m]; zero where none is known."""
         return np.array([one.amplitude[0] if one.amplitude.size else 0.0 for one in self.series])
+
+
+def secant_start(te: Array, stiffness: Array, load: float) -> Array:
+    """Transmission error at which the secant line has no force.
+
+    Zero with unmodified flanks; beside contact of tips, and with reliefs and deviations, the gaps that are closed
+    before the pairs bear.
+
+    Parameters
+    ----------
+    te, stiffness : ndarray
+        Transmission error [m] and secant mesh stiffness of the pairs in contact [N/m].
+    load : float
+        [N].
+
+    Returns
+    -------
+    ndarray
+        ``te - load / stiffness``, zero where only round-off is left [m].
+    """
+    start = te - load / stiffness
+    return np.where(np.abs(start) > _ROUND_OFF * np.abs(te), start, 0.0)
 
 
 def over_pitch(x: Array, values: Array, pitch: float, part: Array) -> Array:

@@ -29,6 +29,8 @@ class Answered:
         Whether it describes what is given, not what follows: behind the others, whatever the order asked for.
     tables : tuple of str
         Keys of short tables that a page shows below the figure.
+    leads : bool
+        Whether it stands before the others, whatever the order asked for: what the case is about, as odd teeth.
     """
 
     sentences: tuple[str, ...]
@@ -38,3 +40,4 @@ class Answered:
     covers: tuple[str, ...] = ()
     background: bool = False
     tables: tuple[str, ...] = ()
+    leads: bool = False

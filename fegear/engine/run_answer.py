@@ -2,7 +2,8 @@
 
 The page of a run begins with it, the terminal ends with it, the window and Python show the same sentences. Every wanted
 result has at least one, unless another wanted one sums it up; a result without an answer of its own says its first
-single values. What describes the gears comes behind what follows from them. Of results that several pairs or gears
+single values. What describes the gears comes behind what follows from them, what
+odd teeth change before what holds with identical ones. Of results that several pairs or gears
 have, the one to act on comes first and says among how many it is.
 """
 
@@ -53,7 +54,7 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     by_result = {result: _of_result(result, steps, outcomes) for result in dict.fromkeys((*wanted, *former))}
     covered = {result for one in by_result.values() for result in one.covers}
     found = [one for result, one in by_result.items() if result not in covered]
-    found.sort(key=lambda one: one.background)
+    found.sort(key=lambda one: (one.background, not one.leads))
     front = _within(_once([one.sentences for one in found if not one.background]))
     room = 1 if front else MOST  # what describes the gears says no more than that beside an answer
     described = tuple(sentence for one in found if one.background for sentence in one.sentences[:room])
@@ -76,12 +77,13 @@ def in_order(tasks: Iterable[Task], plan: Plan, outcomes: Mapping[Task, Outcome]
     """
     steps = {step.task: step for step in plan.steps if step.wanted}
 
-    def place(task: Task) -> tuple[bool, bool, int]:
+    def place(task: Task) -> tuple[bool, bool, bool, int]:
         if (step := steps.get(task)) is None:
-            return True, False, 0
+            return True, False, False, 0
         answer = outcomes[task].answer
         first = min((wanted.index(one) for one in step.stage.results if one in wanted), default=len(wanted))
-        return False, answer is not None and answer.background, first
+        background, leads = (False, False) if answer is None else (answer.background, answer.leads)
+        return False, background, not leads, first
 
     return sorted(tasks, key=place)
 
@@ -126,7 +128,7 @@ def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outco
     return Answered(
         _within([one.sentences for one in found])[:MOST], next((one.figure for one in found if one.figure), ""),
         covers=tuple(result for one in found for result in one.covers), background=all(o.background for o in found),
-        tables=tuple(table for one in found for table in one.tables),
+        tables=tuple(table for one in found for table in one.tables), leads=any(one.leads for one in found),
     )  # fmt: skip
 
 
@@ -142,7 +144,7 @@ def joined(answers: Sequence[Answered]) -> Answered:
         rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
     return Answered(
         _within(rows)[:MOST], first.figure, covers=first.covers, background=first.background,
-        tables=tuple(table for one in ordered for table in one.tables),
+        tables=tuple(table for one in ordered for table in one.tables), leads=any(one.leads for one in ordered),
     )  # fmt: skip
 
 

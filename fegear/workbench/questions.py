@@ -80,6 +80,19 @@ def _one_load(pair: Pair, torque: object, load: object) -> None:
         )  # fmt: skip
 
 
+def _refuse_several(torque: object, load: object) -> None:
+    """Refuse lists and ranges where one load is followed; a list of one passes."""
+    for key, given in (("torque", torque), ("load", load)):
+        several = listed(given, key) if given is not None else None
+        both = ends(given) if isinstance(given, str) else None
+        if both is not None or (several is not None and len(several) != 1):
+            raise InputError(
+                key, shown(given), f"must be one {key}: a revolution is followed under one",
+                f"call it in a loop: {{one: fegear.mesh_stiffness_revolution(pair, {key}=one) for one in {key}s}}; "
+                "gears that were solved before are recalled",
+            )  # fmt: skip
+
+
 def loaded_document(
     pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
 ) -> dict[str, Any]:
@@ -310,8 +323,8 @@ def load_sharing(
 def mesh_stiffness_revolution(
     pair: Pair,
     *,
-    torque: Torque | Iterable[Torque] | None = None,
-    load: Force | Iterable[Force] | None = None,
+    torque: Torque | None = None,
+    load: Force | None = None,
     effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
     progress: bool | None = None,
@@ -323,7 +336,9 @@ def mesh_stiffness_revolution(
     ----------
     pair : Pair
         A crack is given by `Gear.with_crack`; of helical gears it runs along the helix.
-    torque, load, effects, tolerance, progress, cache
+    torque, load : torque or force
+        One of them, a single value.
+    effects, tolerance, progress, cache
         As in `transmission_error`.
 
     Returns
@@ -332,7 +347,13 @@ def mesh_stiffness_revolution(
         Tables ``mesh_stiffness_revolution_<pair>``, ``tooth_loads_revolution_<pair>``,
         ``root_stress_teeth_<pair>_<gear>``, ``mesh_stiffness_orders_<pair>``. Values
         ``<pair>.mesh_stiffness_min``, ``<pair>.te_residual_max``, ...
+
+    Raises
+    ------
+    InputError
+        If several loads are given, or as in `transmission_error`.
     """
+    _refuse_several(torque, load)
     return ask_of_pair(
         "mesh-stiffness-revolution", pair, loaded_document(pair, torque, load), effects, tolerance, progress, cache,
         neglected=False,

@@ -204,7 +204,8 @@ class Results(Found):
         The tangent is the column ``local_stiffness`` of the tables, for vibration about the loaded state. The column
         ``mesh_stiffness`` is the secant, for coordinates from the unloaded position and flanks without modifications;
         ``kind="secant"`` gives it. It is that of the pairs in contact, without the gaps that reliefs, deviations and
-        tips off the line of action close first: load over transmission error includes them and is lower.
+        tips off the line of action close first: load over transmission error includes them and is lower. The column
+        ``te_0`` has what it is without force at: force = secant (deflection - te_0).
 
         Parameters
         ----------

@@ -175,6 +175,17 @@ def test_what_describes_the_gears_stands_behind_and_what_another_sums_up_is_left
     assert alone.sentences == ("25 teeth.", "1 kg.")
 
 
+def test_what_leads_stands_first_whatever_the_order_asked_for():
+    plan, outcomes = run_of(("a", "A", True, ("a1.", "a2.")), ("odd", "odd", True, ("o1.", "o2.")))
+    task = Task("odd", "I")
+    wanted = ("A", "odd")
+    assert answer_of_run(plan, outcomes, wanted).sentences == ("a1.", "a2.", "o1.", "o2.")
+    outcomes[task] = replace(outcomes[task], answer=replace(outcomes[task].answer, leads=True))
+    found = answer_of_run(plan, outcomes, wanted)
+    assert (found.sentences, found.figure) == (("o1.", "o2.", "a1.", "a2."), "odd_I")
+    assert [one.stage for one in in_order(outcomes, plan, outcomes, wanted)] == ["odd", "a"]
+
+
 def test_a_result_without_an_answer_and_one_by_its_former_name_are_said_too():
     plan, outcomes = run_of(("plain", "plain", True, None), ("renamed", "now", True, ("now.",)))
     assert answer_of_run(plan, outcomes, ("before", "plain")).sentences == ("plain: size 1.", "now.")

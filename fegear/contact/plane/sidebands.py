@@ -15,6 +15,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.base.shown import shown
+from fegear.contact.error_over_pitch import secant_start
 from fegear.contact.plane.over_revolution import OverRevolution
 
 #: Even samples over a base pitch, and the highest harmonic of the mesh frequency.
@@ -176,6 +177,9 @@ class AlongRevolution:
     mesh_stiffness: Array = shown("N/um", "mesh stiffness (secant)", table="revolution")
     local_stiffness: Array = shown("N/um", "local (tangent) mesh stiffness dF/dTE", table="revolution")
     pairs_in_contact: Index = shown("", "number of tooth pairs in contact", table="revolution")
+    te_0: Array = shown(
+        "um", "transmission error minus load over mesh_stiffness: force = mesh_stiffness (deflection - te_0)"
+    )
     te_error: Array | None = None
     mesh_stiffness_error: Array | None = None
 
@@ -189,5 +193,6 @@ def along_revolution(found: OverRevolution) -> AlongRevolution:
         np.repeat(np.arange(cycles), positions), found.along.ravel() / base_radius, found.along.ravel(),
         found.transmission_error.ravel(), found.residual.ravel(), found.stiffness.ravel(), found.tangent.ravel(),
         (found.loads > 0.0).sum(axis=1).ravel(),
+        secant_start(found.transmission_error.ravel(), found.stiffness.ravel(), found.load),
         found.transmission_error_error.ravel() if stated else None, found.stiffness_error.ravel() if stated else None,
     )  # fmt: skip

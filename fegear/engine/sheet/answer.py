@@ -35,6 +35,8 @@ class Answer:
         Clause that ends the first sentence of the first of several: ``"the weakest of {count}"``.
     covers, background, tables
         As those of `Answered`.
+    leads : where, optional
+        Whether it does, as of `Answered`.
     """
 
     said: tuple[str | _Says | Callable[[Seen], Iterable[str]], ...]
@@ -44,14 +46,16 @@ class Answer:
     covers: tuple[str, ...]
     background: bool
     tables: tuple[str, ...]
+    leads: Where | None
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
         among: str = "", covers: tuple[str, ...] = (), background: bool = False, tables: tuple[str, ...] = (),
+        leads: Where | None = None,
     ) -> None:  # fmt: skip
         for name, given in (
             ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
-            ("background", background), ("tables", tables),
+            ("background", background), ("tables", tables), ("leads", leads),
         ):  # fmt: skip
             object.__setattr__(self, name, given)
 
@@ -62,7 +66,7 @@ class Answer:
         rank = None if self.rank is None else seen.find(self.rank)
         return Answered(
             found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
-            self.background, self.tables,
+            self.background, self.tables, self.leads is not None and seen.holds(self.leads),
         )  # fmt: skip
 
 

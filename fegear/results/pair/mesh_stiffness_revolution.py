@@ -14,6 +14,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index
 from fegear.base.effects import ODD_TEETH, PLANE_EFFECTS, WIDE_EFFECTS
+from fegear.base.notes import neglecting
 from fegear.base.printed import percent, percents
 from fegear.base.shown import shown, shows
 from fegear.case.built.odd_gears import odd_gears_in
@@ -37,6 +38,7 @@ from fegear.contact.plane.stress_over_revolution import StressOfTeeth, stress_ov
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.engine.sheet.load_words import load_words
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
@@ -77,12 +79,15 @@ class RevolutionInputs:
         Which of them are what, in words.
     gears : tuple of str
         Names of driver and driven gear.
+    others : int
+        Loads of the case besides the nominal one.
     """
 
     odd: tuple[tuple[Member, tuple[int, ...]], ...]
     cracked: tuple[tuple[Member, tuple[int, ...]], ...]
     described: tuple[tuple[Member, str], ...]
     gears: tuple[str, str] = field(compare=False)
+    others: int = field(compare=False)
     name: str = field(compare=False)
 
 
@@ -205,7 +210,9 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     known = [(m, odd_teeth_in(scene, name, gear)) for m, gear in zip(MEMBERS, gears, strict=True) if gear in odd]
     cracked = tuple((member, tuple(sorted(tooth for tooth, _ in one.cracks))) for member, one in known)
     teeth = tuple((member, one.numbers) for member, one in known)
-    return RevolutionInputs(teeth, cracked, tuple((member, one.described) for member, one in known), gears, name)
+    described = tuple((member, one.described) for member, one in known)
+    others = len(part.all_loads(scene.pairs[name])) - 1
+    return RevolutionInputs(teeth, cracked, described, gears, others, name)
 
 
 def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> RevolutionData:
@@ -298,15 +305,31 @@ def _answer(seen: Seen) -> Iterator[str]:
     data: RevolutionData = seen.data
     if not seen.asked.odd:
         return
+    start = f"Pair {seen.name} at {load_words(data.found.load)}"
     which = " and ".join(f"{said} ({member})" for member, said in seen.asked.described)
     yield (
-        f"Pair {seen.name}, {which}: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
+        f"{start}, {which}: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
         f"{percent(data.mesh_stiffness_loss)} below that of ordinary teeth "
         f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm)."
     )
     residual = data.found.residual
     how = "rises" if residual.max() >= -residual.min() else "falls"
-    yield f"Pair {seen.name}: the transmission error {how} by up to {data.te_residual_max * 1e6:.3g} µm."
+    yield f"{start}: the transmission error {how} by up to {data.te_residual_max * 1e6:.3g} µm."
+
+
+def _ordinary(seen: Seen) -> Array:
+    """Mesh stiffness of an ordinary base pitch at every position [N/m]."""
+    stiffness = seen.data.found.stiffness
+    return np.tile(np.median(stiffness, axis=0), len(stiffness))
+
+
+def _one_load(seen: Seen) -> Iterator[str]:
+    """Of several loads only the nominal one is followed."""
+    if (others := seen.asked.others) > 0:
+        yield neglecting(
+            f"Pair {seen.name}: mesh-stiffness-revolution is for {load_words(seen.data.found.load)} only, the nominal "
+            f"of {others + 1} loads; run the case for each of the others with torque or load alone."
+        )
 
 
 _ANGLE = "Numbers of teeth in meshing order, tooth 0 on pair 0 of base pitch 0."
@@ -317,7 +340,7 @@ _SHEET = Sheet(
             "Mesh stiffness and transmission error of {name} over {d.base_pitches} base pitches",
             (
                 Every("revolution"), Off("te", "along.te_error", of="along"),
-                Off("mesh_stiffness", "along.mesh_stiffness_error", of="along"),
+                Off("mesh_stiffness", "along.mesh_stiffness_error", of="along"), "te_0",
             ),
             of="along", matlab=True,
         ),
@@ -348,7 +371,17 @@ _SHEET = Sheet(
             "Pair {name}: mesh stiffness, transmission error and its residual (minus an ordinary base pitch) over "
             "{d.base_pitches} base pitches. " + _ANGLE,
             (
-                Over("driver_angle", ("mesh_stiffness",)),
+                Over(
+                    "driver_angle",
+                    (
+                        Line(
+                            "mesh_stiffness", "mesh stiffness of ordinary teeth", "static", si=_ordinary,
+                            when=lambda seen: seen.data.found.solved > 1,
+                        ),
+                        Line("mesh_stiffness", "mesh stiffness"),
+                    ),
+                    "mesh_stiffness",
+                ),
                 Over("driver_angle", (Line("te", "transmission error"), Line("te_residual", "residual", "red"))),
             ),
             of="along",
@@ -369,7 +402,7 @@ _SHEET = Sheet(
     ),
     answer=Answer(
         _answer, figure="mesh_stiffness_revolution_{name}", rank="mesh_stiffness_min",
-        among="lowest stiffness of {count} pairs",
+        among="lowest stiffness of {count} pairs", leads=lambda seen: bool(seen.asked.odd),
     ),
     remarks=(
         Remark(
@@ -377,6 +410,7 @@ _SHEET = Sheet(
             "odd_teeth = true under [effects] for teeth that differ.",
             when=lambda seen: seen.data.found.solved == 1,
         ),
+        _one_load,
         _closing,
         _not_listed,
     ),

@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.contact.error_over_pitch import ErrorOverPitch, over_pitch
+from fegear.contact.error_over_pitch import ErrorOverPitch, over_pitch, secant_start
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark
@@ -49,6 +49,9 @@ class EvenMesh:
     from_pitch_point: Array = shown(
         "deg", "rotation of the driver, zero with a tooth pair at the pitch point", name="driver_angle_from_pitch_point"
     )
+    te_0: Array = shown(
+        "um", "transmission error minus load over mesh_stiffness: force = mesh_stiffness (deflection - te_0)"
+    )
 
 
 def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
@@ -60,9 +63,11 @@ def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
         "transmission error": te.mean() / float(e.te_mean[e.at]) - 1.0,
         "tangent stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
     }
+    start = over_pitch(e.x, secant_start(e.te[:, e.at], e.mesh_stiffness[:, e.at], e.load), pitch, part)
     error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
     angle = part * pitch / e.pair.driver.base_radius
-    return EvenMesh(te, secant, local, error, lost, angle, angle + e.x[0] / e.pair.driver.base_radius)
+    from_pitch_point = angle + e.x[0] / e.pair.driver.base_radius
+    return EvenMesh(te, secant, local, error, lost, angle, from_pitch_point, start)
 
 
 def _what_even_steps_lose(seen: Seen) -> str:
@@ -83,6 +88,7 @@ MESH_TABLE = Rows(
         "driver_angle",
         *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error")),
         "from_pitch_point",
+        "te_0",
     ),
     of="even",
     matlab=True,
