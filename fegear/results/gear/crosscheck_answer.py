@@ -33,7 +33,8 @@ class MeanStiffness:
 
     iso: float | None = shown("N/(mm.um)", "ISO 6336-1 c_gamma_alpha", name="mesh_stiffness_iso")
     fe: float | None = shown(
-        "N/(mm.um)", "mean mesh stiffness per face width, FE (secant, perfect flanks)", name="mesh_stiffness_fe",
+        "N/(mm.um)", "mean mesh stiffness per face width, FE (secant, perfect flanks, without corner contact)",
+        name="mesh_stiffness_fe",
     )  # fmt: skip
     #: Of helical pairs [m].
     face_width: float | None = None
@@ -77,8 +78,8 @@ def said_of_stiffness(seen: Seen) -> list[str]:
         )
     if mean.ratio_to_fe is not None:
         parts.append(
-            f"mean mesh stiffness c_gamma_alpha {mean.iso * 1e-9:.3g} / {mean.fe * 1e-9:.3g} N/(mm µm) (secant) = "
-            f"{mean.ratio_to_fe:.2f}"
+            f"mean mesh stiffness c_gamma_alpha {mean.iso * 1e-9:.3g} / {mean.fe * 1e-9:.3g} N/(mm µm) "
+            f"(secant, without tip contact off the path of contact) = {mean.ratio_to_fe:.2f}"
         )
     elif mean.iso is not None and mean.face_width is not None:
         over_face = mean.iso * mean.face_width * 1e-6
