@@ -89,7 +89,7 @@ def _refuse_several(torque: object, load: object) -> None:
             raise InputError(
                 key, shown(given), f"must be one {key}: a revolution is followed under one",
                 f"call it in a loop: {{one: fegear.mesh_stiffness_revolution(pair, {key}=one) for one in {key}s}}; "
-                "gears that were solved before are recalled",
+                "solved gears are used again",
             )  # fmt: skip
 
 
