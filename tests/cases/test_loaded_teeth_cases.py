@@ -143,7 +143,7 @@ def test_nasa_gears_relief_with_coupling():
         left = values[f"I.te_peak_to_peak.{shape}_tip_relief"].value
         assert designed.value < left < 0.35 * values["I.te_peak_to_peak.no_relief"].value
         assert left <= values[f"I.worst_peak_to_peak.{shape}_tip_relief"].value
-    assert tables["robustness_I"]["candidate"].size == 3 * 5 * 2 * 3
+    assert tables["robustness_I"]["candidate"].size == 4 * 5 * 2 * 3
     # Root stress: the tooth is stressed most by a load near its HPSTC, and its neighbours' loads beyond the path.
     history = tables["root_stress_history_I_test"]
     assert history["x"][0] <= values_of(results, "I").x_start * 1e3 + 1e-5

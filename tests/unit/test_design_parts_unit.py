@@ -7,11 +7,18 @@ import numpy as np
 import pytest
 
 from fegear.design.flanks.search import _Straight
+from fegear.design.held_relief import Robustness
 from fegear.engine.stage import Task
+from fegear.geometry.relief import UNMODIFIED
 from fegear.results.helical.pair_forced_response import _harmonics
 from fegear.results.relief import tolerance_benches
 from fegear.results.relief.relief_chart import ReliefChartData
-from fegear.results.relief.relief_robustness import RobustnessInputs, _compute_robustness
+from fegear.results.relief.relief_robustness import (
+    RobustnessData,
+    RobustnessInputs,
+    _compute_robustness,
+    _worst_in_words,
+)
 
 
 # ---- charts ----------------------------------------------------------------------------------------------------------
@@ -44,6 +51,8 @@ def test_a_chart_is_shown_at_each_load_the_nominal_one_first_and_no_best_length_
 class Engaged:
     driver_spacing: object = "of the case"
     driven_spacing: object = "of the case"
+    driver_relief: object = "best"
+    driven_relief: object = "best"
 
 
 @pytest.mark.parametrize(
@@ -63,8 +72,9 @@ def test_every_candidate_is_held_against_the_same_loads_and_errors(own, given, o
     ground = {shape: SimpleNamespace(applied=lambda of, shape=shape: (shape, of)) for shape in ("linear", "parabolic")}
     designed = SimpleNamespace(
         design=SimpleNamespace(
-            designed="best",
+            designed=Engaged(),
             ground=ground,
+            shapes=["parabolic", "linear"],
             task=SimpleNamespace(load=70.0, over=None if over is None else SimpleNamespace(loads=over)),
         ),
         pair=SimpleNamespace(engagement=Engaged()),
@@ -74,15 +84,53 @@ def test_every_candidate_is_held_against_the_same_loads_and_errors(own, given, o
     data = _compute_robustness(
         RobustnessInputs(part, "metric", own, "I"), upstream, SimpleNamespace(progress=told.append)
     )
-    names = ["designed", "linear tip relief", "parabolic tip relief", *(["relief of the case"] if own else [])]
+    names = ["designed", "linear tip relief", "parabolic tip relief", *(["relief of the case"] if own else []),
+             "no relief"]  # fmt: skip
+    assert data.recommended == "parabolic tip relief"
     assert list(data.candidates) == names
     assert list(data.candidates.values()) == [f"of {k + 1}" for k in range(len(names))]
-    assert [one[0] for one in asked[:3]] == ["best", ("linear", "best"), ("parabolic", "best")]
+    assert [one[0] for one in asked[:3]] == [Engaged(), ("linear", Engaged()), ("parabolic", Engaged())]
+    assert asked[-1][0] == Engaged(driver_relief=UNMODIFIED, driven_relief=UNMODIFIED)
     for one in asked:
         assert one[1:] == (70.0, factors, "spacing", "errors", "metric")
     if own:  # with its relief, but without the pitch errors that the candidates do not have either
         assert asked[3][0].driver_spacing.size == asked[3][0].driven_spacing.size == 0
     assert told == pytest.approx([(k + 1) / len(names) for k in range(len(names))])
+
+
+def held(nominal, *values):
+    """Excitation of two loads, two pitch deviations and one depth [um]."""
+    return Robustness(
+        np.array([0.5, 1.0]), np.array([0.0, 4e-6]), np.zeros(1), 1e-6 * np.reshape(values, (2, 2, 1)), nominal * 1e-6
+    )
+
+
+def test_the_answer_is_about_the_relief_to_grind_beside_no_relief():
+    """It was about the relief with the smallest maximum, whatever the design says to grind."""
+    none = held(3.0, 1.5, 5.0, 3.0, 8.0)
+    every = {
+        "linear tip relief": held(0.9, 1.2, 4.0, 0.9, 6.0), "parabolic tip relief": held(0.8, 1.6, 4.0, 0.8, 7.0),
+        "no relief": none,
+    }  # fmt: skip
+
+    def said(label):
+        return list(_worst_in_words(SimpleNamespace(name="I", data=RobustnessData(every, label))))
+
+    first, *rest = said("parabolic tip relief")
+    assert first == (
+        "Pair I, parabolic tip relief: 0.8 µm at the design load, at most 7 µm (load factor 1, pitch deviation 4 µm, "
+        "relief +0 %); without relief 3 µm and at most 8 µm."
+    )
+    assert rest == [
+        (
+            "Pair I, parabolic tip relief: more than without relief in 1 of 4 combinations, e.g. 1.6, not 1.5 µm (load "
+            "factor 0.5, pitch deviation 0 µm, relief +0 %)."
+        ),
+        "Pair I: linear tip relief gives the smallest maximum, 6 µm.",
+    ]
+    assert said("linear tip relief")[1:] == [
+        "Pair I, linear tip relief: less than without relief in all 4 combinations."
+    ]
 
 
 # ---- forecasts -------------------------------------------------------------------------------------------------------

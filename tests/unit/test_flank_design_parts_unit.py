@@ -383,7 +383,7 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
     assert sentences(sheet._exact, design, [45.0, 120.0], over) == [
         (
             "Pair I: the exact topography reduces the transmission error from 0.9 to 0.04 µm at 120 N m; at "
-            "45 N m it is 0.386 µm, more than without relief (0.353 µm)."
+            "45 N m it is 0.39 µm, more than without relief (0.35 µm)."
         )
     ]
     assert sentences(sheet._grind, design, [120.0]) == [
@@ -393,3 +393,19 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
             "error."
         ),
     ]
+
+
+def test_values_of_one_torque_say_where_another_design_is_better_as_drawn_and_worse_within_tolerances():
+    """They were scaled to the largest torque: 5.1 µm where the table had 2.6 µm at half of it."""
+    design = left_by(("profile", TIPS, 1.3, 0.001), ("profile-and-lead", WITH_LEAD, 1.0, 0.001))
+    over = {"profile": ([0.6, 1.3], [1.79, 3.0]), "profile-and-lead": ([0.5, 1.0], [2.62, 3.1])}
+    design = replace(design, task=replace(design.task, loads=(600.0, 1200.0)), states=tuple(
+        replace(s, over_peak_to_peak=1e-6 * np.array(over[s.label][0]), over_most=1e-6 * np.array(over[s.label][1]))
+        if s.label in over else s for s in design.states
+    ))  # fmt: skip
+    assert (design.best.label, design.least.label) == ("profile", "profile-and-lead")
+    found = {label: [1e-6 * x for x in over[label][0]] for label in over} | {UNRELIEVED: [3e-6, 6e-6]}
+    drawn = sentences(lambda seen: [sheet._drawn(seen, design.best, design.least)], design, [150.0, 300.0], found)
+    within = sentences(lambda seen: [sheet._within(seen, design.best, design.least)], design, [150.0, 300.0], found)
+    assert drawn == [" (1, not 1.3 µm at 300 N m)"]
+    assert within == [" (at most 2.6, not 1.8 µm at 150 N m)"]

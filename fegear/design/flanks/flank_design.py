@@ -224,10 +224,21 @@ class FlankDesign(ReadOnlyArrays):
 
     def within_by(self, state: FlankState) -> float:
         """What a way leaves at most within its tolerances, as `left_by`; infinite where that is not known [m]."""
-        if state.over_most is None:
-            return math.inf
+        return math.inf if state.over_most is None else float((state.over_most * self._counts).max())
+
+    @property
+    def _counts(self) -> Array:
+        """By what a value under each of the task's loads is multiplied before the worst is taken, shape (L,)."""
         weights = None if self.task.weights is None else np.array(self.task.weights)
-        return float((state.over_most * proportions(np.array(self.task.loads), weights)).max())
+        return np.asarray(proportions(np.array(self.task.loads), weights), dtype=float)
+
+    def left_under(self, state: FlankState) -> Array:
+        """Peak-to-peak value that a way leaves under each of the task's loads, or its mean over the scatter [m]."""
+        return state.over_mean if self.scattered else state.over_peak_to_peak
+
+    def worst_load(self, values: Array) -> int:
+        """Number of the load under which a value is largest in proportion."""
+        return int(np.argmax(values * self._counts))
 
     @property
     def chosen(self) -> tuple[FlankState, ...]:
@@ -275,9 +286,7 @@ class FlankDesign(ReadOnlyArrays):
         task = self.task
         if task.loads == (task.load,):
             return (state.judged.mean_over_scatter if self.scattered else state.judged.peak_to_peak).value
-        weights = None if task.weights is None else np.array(task.weights)
-        left = state.over_mean if self.scattered else state.over_peak_to_peak
-        return float((left * proportions(np.array(task.loads), weights)).max())
+        return float((self.left_under(state) * self._counts).max())
 
 
 def design_flanks(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fegear.results.gear.crosscheck_rows import Extremes
 
 #: Formulas of root stress as people name them, in the order in which an answer has them.
-_ROOT_FORMULAS = {
+ROOT_FORMULAS = {
     "iso-6336-3": "ISO 6336-3", "agma-908": "AGMA 908", "cornell": "Cornell", "cornell-trochoid": "Cornell (trochoid)",
     "heywood": "Heywood", "dolan-broghamer": "Dolan and Broghamer",
 }  # fmt: skip
@@ -93,5 +93,5 @@ def said_of_stiffness(seen: Seen) -> list[str]:
 
 def said_of_root_stress(seen: Seen) -> list[str]:
     """One gear: the range of each formula over finite elements, that of the standard first."""
-    ranges = _ranges(seen.one.root_stress.extremes, _ROOT_FORMULAS)
+    ranges = _ranges(seen.one.root_stress.extremes, ROOT_FORMULAS)
     return [f"Gear {seen.key}: root stress by formula over finite elements: {ranges}."] if ranges else []

@@ -13,6 +13,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.seen import Seen
+from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,7 +77,8 @@ def sentences(table: Mapping[str, Array]) -> tuple[str, ...]:
         order = {int(g): i for i, g in enumerate(dict.fromkeys(gear.ravel().tolist()))}
         number = np.array([order[int(g)] for g in gear.ravel()])
         high = columns["load_position"] >= HIGH
-        found.append(sentence(reach(name, _number(table, "ratio_to_fe")[rows], columns, number, high), WORDS))
+        ratio = _number(table, "ratio_to_fe")[rows]
+        found.append(sentence(reach(ROOT_FORMULAS.get(name, name), ratio, columns, number, high), WORDS))
     return tuple(found)
 
 

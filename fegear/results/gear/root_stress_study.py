@@ -26,6 +26,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
+from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
 from fegear.results.gear.root_stress_spread import HIGH, WORDS, fe_error, sentences, spread_figure
 from fegear.results.gear.root_stress_varied import ratios_figure, tiles_figure
 
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
 
 #: Steps and end of the histogram.
 _BIN, _WIDEST = 0.05, 2.0
+#: A formula without a value at this share of the points: one that an answer mentions, and one that it puts last.
+_SELDOM, _OFTEN = 0.005, 0.05
 
 
 #: Of the time of a gear with its neighbours that of one without.
@@ -287,30 +290,35 @@ def _spread(seen: Seen) -> tuple[Figure, ...]:
 
 
 def _closest(seen: Seen) -> Iterator[str]:
-    """How far each formula is off the finite elements, the closest first.
+    """How far every formula is off the finite elements, the closest first; one sentence for each half of the flank.
 
     Formulas rate loads at the tip or at the outer point of single pair contact: near the form circle they are off by
-    far more, and a range over all loads would be one of loads that no rating has.
+    far more, and a range over all loads would be one of loads that no rating has. Those that often give no value come
+    last: their medians are of the gears that they suit.
     """
     rows = seen.data.rows
     high = rows.load_position >= HIGH
-    known = []
-    for name in seen.data.formulas:
-        own = (rows.formula == name) & np.isfinite(rows.ratio_to_fe)
-        if own.any():
-            known.append((name, rows.ratio_to_fe[own & high], rows.ratio_to_fe[own & ~high]))
-    for name, upper, lower in sorted(
-        known, key=lambda one: abs(math.log(np.median(one[1] if one[1].size else one[2])))
-    ):
-        first, rest = (upper, lower) if upper.size else (lower, upper)
-        where = "the upper half of the flank" if upper.size else "the lower half of the flank"
-        middle, *ends = (figures(float(one)) for one in (np.median(first), first.min(), first.max()))
-        below = (
-            f"; on its lower half from {figures(float(rest.min()))} to {figures(float(rest.max()))}"
-            if rest.size
-            else ""
-        )
-        yield f"{name}: root stress {middle} of FE (median), from {ends[0]} to {ends[1]}, for loads on {where}{below}."
+    for half, loads in (("upper", high), ("lower", ~high)):
+        found = []
+        for name in seen.data.formulas:
+            ratio = rows.ratio_to_fe[(rows.formula == name) & loads]
+            known = ratio[np.isfinite(ratio)]
+            if known.size:
+                silent, middle = 1.0 - known.size / ratio.size, float(np.median(known))
+                found.append((silent > _OFTEN, abs(math.log(middle)), _ratio_said(name, known, middle, silent)))
+        if found:
+            said = ", ".join(words for _, _, words in sorted(found))
+            yield (
+                f"Root stress by formula over FE for loads on the {half} half of the flank, median (minimum to "
+                f"maximum): {said}."
+            )
+
+
+def _ratio_said(name: str, known: Array, middle: float, silent: float) -> str:
+    """One formula over finite elements where it gives a value, and at how many points it gives none."""
+    ends = f"{figures(float(known.min()))} to {figures(float(known.max()))}"
+    none = f"; no value at {percent(silent, whole=True)} of the points" if silent >= _SELDOM else ""
+    return f"{ROOT_FORMULAS.get(name, name)} {figures(middle)} ({ends}{none})"
 
 
 def _remarks(seen: Seen) -> tuple[str, ...]:
@@ -377,8 +385,11 @@ _SHEET = Sheet(
         ),
         _spread,
     ),
-    answer=Answer(_closest),
+    answer=Answer(
+        _closest, figure=lambda seen: "root_stress_spread" if seen.data.drawn else "root_stress_histogram"
+    ),
     remarks=(_remarks,),
+    sharper_by="increase study.samples",
     settings=lambda seen: {**asdict(seen.asked.settings), "gears": seen.data.gears},
 )  # fmt: skip
 

@@ -27,7 +27,7 @@ from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, left_words, within_words
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, left_words, told_apart, within_words
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -188,13 +188,13 @@ def _grind(seen: Seen) -> Iterator[str]:
 
         yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
     if least is not best:
-        gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
         why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"
         than = f"than {best.label} ({best.modifications})"
         if not design.alike(best) and not design.within_tolerance(best):
-            most = _microns(design.within_by(least)), _microns(design.within_by(best))
-            said = f"is {gain} better {than} as drawn, but worse within its tolerances ({most[0]}, not {most[1]} µm)"
+            said = f"is better {than} as drawn{_drawn(seen, best, least)}, but worse within its tolerances"
+            said += _within(seen, best, least)
         else:
+            gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
             said = f"is only {gain} better {than}, {why}"
         yield f"Pair {seen.name}: {least.label} ({least.modifications} modifications) {said}."
 
@@ -209,6 +209,32 @@ def _allowed(seen: Seen, ground: list[Grinding], classes: int) -> str:
         if row.modification != TIP
     ]
     return ", ".join([*tip, *dict.fromkeys(rest)])
+
+
+def _drawn(seen: Seen, best: FlankState, least: FlankState) -> str:
+    """What two ways leave as drawn, at the torque at which the one that leaves less in proportion is ahead.
+
+    Values of one torque, as the table of the range has them: what ways are compared by is in proportion to the load.
+    """
+    design, torque = seen.data.design, _left(seen, best.label)[0]
+    if torque.size == 1:
+        ours, theirs, i = design.left_by(best), design.left_by(least), 0
+    else:
+        left = design.left_under(best)
+        i = design.worst_load(left)
+        ours, theirs = float(left[i]), float(design.left_under(least)[i])
+    less, more = told_apart(theirs, ours)
+    return f" ({less}, not {more} µm at {_torque(torque[i])})"
+
+
+def _within(seen: Seen, best: FlankState, least: FlankState) -> str:
+    """What two ways leave at most within their tolerances, at the torque at which it counts most; empty if unknown."""
+    torque, most, ours = _left(seen, best.label)[0], least.over_most, best.over_most
+    if most is None or ours is None or most.size != torque.size:
+        return ""
+    i = seen.data.design.worst_load(most)
+    more, less = told_apart(most[i], ours[i])
+    return f" (at most {more}, not {less} µm at {_torque(torque[i])})"
 
 
 def _further(seen: Seen, best: FlankState, least: FlankState) -> str:
@@ -235,10 +261,8 @@ def _exact(seen: Seen) -> Iterator[str]:
     (torque, none), left = _left(seen, design.unrelieved.label), _left(seen, design.exact.label)[1]
     worst = int(np.argmax(left / np.maximum(none, _NONE)))
     if left[worst] > none[worst]:
-        said += (
-            f"; at {_torque(torque[worst])} it is {figures(left[worst] * 1e6)} µm, more than without relief "
-            f"({figures(none[worst] * 1e6)} µm)"
-        )
+        more, less = told_apart(left[worst], none[worst])
+        said += f"; at {_torque(torque[worst])} it is {more} µm, more than without relief ({less} µm)"
     yield f"{said}."
 
 

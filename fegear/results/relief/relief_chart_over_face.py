@@ -22,10 +22,12 @@ from fegear.results.relief.relief_over_face import (
 )
 from fegear.results.relief.relief_over_face_data import Tip
 from fegear.results.relief.relief_robustness import (
+    NO_RELIEF,
     ROBUSTNESS_SHEET,
     RobustnessData,
     RobustnessInputs,
     load_factors,
+    recommended,
     robustness_inputs,
 )
 
@@ -159,11 +161,13 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
             for member, relief in zip(MEMBERS, (found.gaps.driver_relief, found.gaps.driven_relief), strict=True)
         )
         removals["relief of the case"] = np.where(lines.present, own, 0.0)
+    removals[NO_RELIEF] = np.zeros(lines.present.shape)
     candidates = {}
     for number, (label, removal) in enumerate(removals.items()):
         candidates[label] = tip_robustness(more, removal, factors, asked.spacing_errors, asked.relief_errors)
         work.progress((number + 1) / len(removals))
-    return RobustnessData(candidates)
+    shapes = [f"{shape} tip relief" for shape in designed.design.shapes]
+    return RobustnessData(candidates, recommended(shapes, candidates))
 
 
 def _robustness_pairs(scene: Scene) -> tuple[str, ...]:

@@ -117,11 +117,17 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     if single and worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
         nominal = d.load * single.torque[i] / single.load[i]
+        more, less = told_apart(single.peak_to_peak[i], none.peak_to_peak[i])
         yield (
-            f"Pair {seen.name}: tip relief designed for {figures(nominal, 4)} N m only gives "
-            f"{figures(single.peak_to_peak[i] * 1e6)} µm peak-to-peak at {figures(single.torque[i], 4)} N m, "
-            f"more than without relief ({figures(none.peak_to_peak[i] * 1e6)} µm)."
+            f"Pair {seen.name}: tip relief designed for {figures(nominal, 4)} N m only gives {more} µm peak-to-peak "
+            f"at {figures(single.torque[i], 4)} N m, more than without relief ({less} µm)."
         )
+
+
+def told_apart(one: float, other: float) -> tuple[str, str]:
+    """Two lengths in µm with two digits, as sentences beside have them; with three where these would be the same."""
+    first, second = (figures(value * 1e6, 2) for value in (one, other))
+    return (first, second) if first != second else (figures(one * 1e6), figures(other * 1e6))
 
 
 def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...]) -> Iterator[str]:

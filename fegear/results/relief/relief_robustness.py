@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
+from fegear.design.preferred import CLEARLY
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
@@ -18,9 +19,10 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
 from fegear.results.relief.relief import design_pairs, design_part, relief_stage
 from fegear.results.relief.relief_chart import CITES
+from fegear.results.relief.relief_over_range import told_apart
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from fegear.base.arrays import Array
     from fegear.case.design import RobustnessPart
@@ -32,11 +34,15 @@ if TYPE_CHECKING:
     from fegear.results.relief.relief_data import ReliefData
 
 
+NO_RELIEF = "no relief"
+
+
 @dataclass(frozen=True)
 class RobustnessData:
-    """How each candidate holds up, by its name."""
+    """How each candidate holds up, by its name; `recommended` is the one that the design says to grind."""
 
     candidates: Mapping[str, Robustness]
+    recommended: str
     candidate: str = shown("", "relief", default="")
 
 
@@ -75,6 +81,7 @@ def load_factors(asked: RobustnessPart, over: LoadRange | None, load: float) -> 
 
 def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work) -> RobustnessData:
     from fegear.design.held_relief import robustness
+    from fegear.geometry.relief import UNMODIFIED
 
     designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
     asked, design = inputs.part, designed.design
@@ -84,13 +91,19 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
     if inputs.own_relief:
         own = designed.pair.engagement
         states["relief of the case"] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    states[NO_RELIEF] = replace(design.designed, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED)
     found: dict[str, Robustness] = {}
     for label, state in states.items():
         found[label] = robustness(
             state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric
         )
         work.progress(len(found) / len(states))
-    return RobustnessData(found)
+    return RobustnessData(found, recommended([f"{shape} tip relief" for shape in design.shapes], states))
+
+
+def recommended(shapes: Sequence[str], candidates: Iterable[str]) -> str:
+    """The first shape to grind; where none pays, the first candidate."""
+    return next(iter((*shapes, *candidates)))
 
 
 def _worst_combination(seen: Seen) -> str:
@@ -111,14 +124,41 @@ def _over_load(extreme: Callable[..., Array], width: float) -> Line:
 _EXCITATION = {"peak_to_peak": "peak-to-peak", "effective_error": "effective"}
 
 
+def _combination(found: Robustness, at: tuple[np.intp, ...]) -> str:
+    """Load, pitch deviation and depth of one combination."""
+    factor, spacing, depth = (
+        float(of[i]) for of, i in zip((found.load_factors, found.spacing_errors, found.relief_errors), at, strict=True)
+    )
+    return f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} µm, relief {percent(depth, signed=True)}"
+
+
 def _worst_in_words(seen: Seen) -> Iterator[str]:
-    """The relief with the smallest maximum, and where that is."""
-    label, found = min(seen.data.candidates.items(), key=lambda one: one[1].worst)
-    factor, spacing, depth = found.worst_case
+    """What the relief to grind gives at most, beside no relief; which other one gives clearly less at most."""
+    label, every = seen.data.recommended, seen.data.candidates
+    found, none = every[label], every[NO_RELIEF]
+    at = np.unravel_index(int(found.values.argmax()), found.values.shape)
+    nominal, worst = (figures(size * 1e6, 2) for size in (found.nominal, found.worst))
     yield (
-        f"Pair {seen.name}, {label}: {figures(found.nominal * 1e6, 2)} µm at the design load, at most "
-        f"{figures(found.worst * 1e6, 2)} µm (load factor {factor:g}, pitch deviation {spacing * 1e6:g} µm, relief "
-        f"{percent(depth, signed=True)})."
+        f"Pair {seen.name}, {label}: {nominal} µm at the design load, at most {worst} µm ({_combination(found, at)}); "
+        f"without relief {figures(none.nominal * 1e6, 2)} µm and at most {figures(none.worst * 1e6, 2)} µm."
+    )
+    if label != NO_RELIEF:
+        yield f"Pair {seen.name}, {label}: {_beside_none(found, none)}."
+    least = min(every, key=lambda key: every[key].worst)
+    if every[least].worst < CLEARLY * found.worst:
+        yield f"Pair {seen.name}: {least} gives the smallest maximum, {figures(every[least].worst * 1e6, 2)} µm."
+
+
+def _beside_none(found: Robustness, none: Robustness) -> str:
+    """In how many combinations a relief gives more than none, and in which most of all."""
+    worse = int((found.values > none.values).sum())
+    if not worse:
+        return f"less than without relief in all {found.values.size} combinations"
+    at = np.unravel_index(int((found.values / none.values).argmax()), found.values.shape)
+    more, less = told_apart(float(found.values[at]), float(none.values[at]))
+    return (
+        f"more than without relief in {worse} of {found.values.size} combinations, e.g. {more}, not {less} µm "
+        f"({_combination(found, at)})"
     )
 
 
