@@ -136,9 +136,18 @@ class ToothStress:
         return None if self.compression is None else np.asarray(self.compression.min(axis=0))
 
     @property
-    @shows("MPa", "stress range in the fillet of the loaded flank over the mesh cycle", name="root_stress_range")
+    @shows(
+        "MPa",
+        "stress range in the fillet of the loaded flank over the time in mesh (over a revolution, from unloaded: at "
+        "least the maximum root stress)",
+        name="root_stress_range",
+    )
     def tension_range(self) -> Array:
-        """Under each load, shape (L,) [Pa]."""
+        """Under each load, shape (L,) [Pa].
+
+        Over the history, whose first and last positions still have loads on neighbouring teeth: a tooth far from the
+        mesh has no stress, so that the range over a revolution is that from zero or from compression.
+        """
         return np.asarray(self.largest_tension - np.fmin.reduce(self.tension, axis=0))
 
 

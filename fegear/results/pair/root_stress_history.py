@@ -299,7 +299,7 @@ _SHEET = Sheet(
     answer=Answer(
         "Pair {name} at {d.torque:.3g}: maximum root stress {v[driver.largest_root_tension]} (driver) and "
         "{v[driven.largest_root_tension]} (driven).",
-        "Pair {name}: stress range over the mesh cycle {v[driver.root_stress_range]} (driver) and "
+        "Pair {name}: stress range over the time in mesh {v[driver.root_stress_range]} (driver) and "
         "{v[driven.root_stress_range]} (driven).",
         figure="root_stress_history_{name}", rank=lambda seen: -_most(seen),
         among="the highest of {count} pairs",
