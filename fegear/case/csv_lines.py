@@ -127,7 +127,11 @@ def _heads_at(lines: Sequence[str], known: Collection[str]) -> tuple[int, str]:
     # None is known: what stands above the first numbers is what a message names.
     numbers = next((i for i, line in enumerate(lines) if _numbers(line)), 0)
     likely = max(numbers - 1, 0)
-    return likely, next((sign for sign in _PARTINGS if sign in lines[likely]), ",")
+    parting = next((sign for sign in _PARTINGS if sign in lines[likely]), ",")
+    own, above = (lines[i].split(parting) for i in (likely, max(likely - 1, 0)))
+    if likely and len(own) == len(above) > 1 and not any(one.unit for one in _named(own, known)):
+        likely -= 1  # of two lines of as many texts the lower one has the units
+    return likely, parting
 
 
 def _numbers(line: str) -> bool:

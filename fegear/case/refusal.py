@@ -104,6 +104,8 @@ def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) ->
             shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
         return InputError(key, shown, context["rule"], context["remedy"])
     if kind == "extra_forbidden":
+        if len(loc) > 3 and loc[-2].isdigit() and loc[-1] in keys_at(loc[:-3]):  # of the table that has the list
+            return InputError(key, _show(value), "is an unknown key", f"use {_dotted([*loc[:-3], loc[-1]])}")
         known = keys_at(loc[:-1])
         return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=meant))
     if kind == "missing":

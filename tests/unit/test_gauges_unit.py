@@ -100,6 +100,7 @@ def test_a_wrong_key_is_one_sentence(gauge, rule):
         ({}, "", "column heads"), ({}, "angle [deg],strain [um/m]\n", "column heads"),
         ({}, TRACE.replace("angle", "phi"), "requires a column angle"),
         ({}, TRACE.replace("strain", "eps"), "requires a column strain"),
+        ({}, "\n".join(["Winkel;DMS", "°;µm/m", *TRACE.replace(",", ";").splitlines()[1:]]), 'it has "Winkel", "DMS"'),
         ({}, TRACE.replace("um/m", "MPa"), "is not a strain"), ({}, TRACE.replace("deg", "mm"), "is not an angle"),
         ({}, TRACE.replace(" [deg]", ""), "has no unit"), ({}, TRACE.replace(" [um/m]", ""), "has no unit"),
         ({}, TRACE.replace("um/m", "um/x"), "unknown unit"), ({}, TRACE.replace("500", "x"), "not a number"),

@@ -257,6 +257,7 @@ def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_
         ({"traces": []}, "must not be empty"), ({"traces": [{}]}, "is required"),
         ({"fit": ["scale", "scale"]}, "twice"),
         ({"te_column": "angle"}, "is the column of the angle"), ({"te_column": "SG"}, "requires a column SG"),
+        ({"traces": [{"file": "t.csv", "te_column": "x"}]}, "unknown key; use encoders.rig.te_column"),
         ({"traces": [{"file": "none.csv"}]}, "file not found"), ({"pair": "q"}, "is not a pair"),
         ({"traces": [{"file": "t.csv", "torque": "11 N*m"}]}, "is not a torque of pair p"),
         ({"traces": [{"file": "t.csv", "torque": f"{20.0 * 31 / 20} N*m"}]}, "on the driven gear is 20 N*m (divided"),

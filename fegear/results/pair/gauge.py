@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
-from fegear.base.printed import figures, with_rough_error
+from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
@@ -70,6 +70,9 @@ class GaugeInputs:
     sharper : str
         What makes the computed strain more accurate.
     name : str
+    finer : str
+        Remedy where its estimated error exceeds the tolerance; of 3D gears.
+    tolerance : float
     """
 
     gauge: Gauge
@@ -78,6 +81,8 @@ class GaugeInputs:
     wide: bool
     sharper: str = field(compare=False)
     name: str = field(compare=False)
+    finer: str = field(compare=False, default="")
+    tolerance: float = field(compare=False, default=1.0)
 
 
 def _inputs(scene: Scene, name: str) -> GaugeInputs:
@@ -86,7 +91,10 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     if speed is not None and gauge.member == "driven":
         speed /= pair.ratio
     wide, sharper = gauge.pair in scene.wide_pairs, sharper_strain(scene, gauge.pair)
-    return GaugeInputs(gauge, speed, scene.estimates, wide, sharper, name)
+    finer = sharper
+    if wide and scene.width_of(gauge.pair) != "slices":
+        finer = f"increase load_distribution.positions ({scene.case.load_distribution.positions})"
+    return GaugeInputs(gauge, speed, scene.estimates, wide, sharper, name, finer, scene.case.accuracy.tolerance)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -172,6 +180,13 @@ def _where(asked: GaugeInputs, place: GaugePlace) -> str:
         f"gear {gauge.gear}, tooth {gauge.tooth + 1}, {gauge.side} side, tangent at "
         f"{math.degrees(place.tangent_angle):.3g}°, diameter {place.diameter * 1e3:.5g} mm{face}"
     )
+
+
+def _part(seen: Seen) -> float:
+    """Estimated error of the peak strain at the nominal load, relative; zero where it is not known."""
+    data: GaugeData = seen.data
+    error = data.peak_error
+    return 0.0 if error is None else float(error[data.at] / abs(data.peak_strain[data.at]))
 
 
 _SHEET = Sheet(
@@ -273,6 +288,11 @@ _SHEET = Sheet(
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}: {d.linearity}.", when="linearity"),
+        Remark(
+            lambda seen: f"Gauge {seen.name}: peak strain has an estimated error of {percent(_part(seen))} (tolerance "
+            f"{percent(seen.asked.tolerance)}); {seen.asked.finer}.",
+            when=lambda seen: seen.asked.wide and _part(seen) > seen.asked.tolerance,
+        ),
         Remark("Gauge {name}: {d.over_torque.off_nominal}.", when="over_torque.off_nominal"),
         Remark("Gauge {name}: {d.over_torque.left_out}.", when="over_torque.left_out"),
         Remark("Gauge {name}: {d.drifts}.", when="drifts"),
