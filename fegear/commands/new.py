@@ -89,6 +89,10 @@ def new(
             "--lead-error", metavar="LENGTH", help='Helical pairs: helix deviation over the face width, e.g. "10 um".'
         ),
     ] = None,
+    life: Annotated[
+        str | None,
+        typer.Option("--life", help='Gearboxes: required life of gears and bearings. Default: "20000 h".'),
+    ] = None,
     example: Annotated[
         str | None,
         typer.Option("--example", help="Copy an example case of fegear.", autocompletion=complete_examples),
@@ -101,7 +105,7 @@ def new(
 
     For example: fegear new drive --teeth 21 53 --profile-shift 0.3 0.1 --module 3mm --torque "260 N m"
     """
-    from fegear.case.drafts.answers import Answers, kind_of, with_torque_of_power
+    from fegear.case.drafts.answers import ASSUMED_SPEED, Answers, kind_of, with_torque_of_power
     from fegear.case.drafts.first_size import with_teeth_of_ratio
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
@@ -123,6 +127,7 @@ def new(
         "tip_relief": tip_relief and tip_relief[0],
         "relief_length": tip_relief and tip_relief[1],
         "lead_error": lead_error,
+        "life": life,
     }
     told = {key: text for key, text in given.items() if text}
     if example is not None:
@@ -142,6 +147,10 @@ def new(
         if chosen:
             voice.say(chosen)
         answers = Answers(kind_of(kind, told), told)
+        if power and not speed:
+            if not answers.has("speed"):
+                raise InputError("--power", shown(power), "requires a speed, which this kind has not", "use --torque")
+            voice.say(f"Torque of --power at an assumed speed of {ASSUMED_SPEED}; specify --speed")
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)
     if not no_schema:

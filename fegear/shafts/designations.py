@@ -109,6 +109,8 @@ def _known() -> dict[str, Envelope]:
 
 #: All designations, without prefixes and suffixes.
 KNOWN = _known()
+#: Their series, in front of the two digits of the bore.
+_NAMED = frozenset(one[:-2] for one in KNOWN)
 #: Letters, digits, then what a maker adds (cage, seals, clearance), set off by a letter, dash, slash or space.
 _FORM = re.compile(r"^(?:(?:SKF|FAG|INA|NSK|NTN|SNR|NACHI|KOYO|TIMKEN)\s+)?([A-Z]{0,3})\s?(\d{3,5})(?=$|[\s\-/.A-Z])")
 
@@ -127,6 +129,14 @@ def envelope_of(designation: str) -> Envelope:
     if name in KNOWN:
         return KNOWN[name]
     swapped = [one for one in KNOWN if sorted(one) == sorted(name)]
+    other = form is not None and not swapped and name[:-2] not in _NAMED and re.fullmatch(r"[1-9][0-9]{3,4}", name)
+    if other:
+        raise InputError(
+            "designation", f'"{designation}"', f"is of series {name[:-2]}, which is not in the table",
+            "set catalogue with kind, bore, outside_diameter and width, and life.dynamic_rating with the C of the "
+            "catalogue; tabulated are series 60, 62, 63, 302, 303, 322, 323 and N, NJ, NU, NUP 2, 3, 22, 23 up to bore "
+            "number 20",
+        )  # fmt: skip
     near = swapped or get_close_matches(name, KNOWN, 1)
     suggestion = f'did you mean "{near[0]}"? ' if near else ""
     raise InputError(

@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.notes import failing
 from fegear.case.reading import build_scene
 from fegear.design.flanks.lead_correction import LevelLead
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.geometry.flank_modification import HelixSlope
 from fegear.results.catalogue import STAGES
 from fegear.results.shafts.gearbox_data import (
     CAUSE_WORDS,
@@ -23,6 +25,7 @@ from fegear.results.shafts.gearbox_data import (
     MeshAtGlance,
     Safety,
     _of_mesh,
+    end_of_slope,
 )
 from fegear.results.shafts.gearbox_overview import _sentences
 from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
@@ -135,7 +138,7 @@ def mesh(peak=0.9, factor=1.5, margin=math.nan, over=12e-6, by=(10e-6, 1e-6, 3e-
 def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_leave_of_the_misalignment():
     def said(remaining):
         one = replace(mesh(margin=0.8), remaining=remaining)
-        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=())
+        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=(), failures=())
         return " ".join(_sentences(types.SimpleNamespace(data=data)))
 
     assert said(12e-6) == (
@@ -165,7 +168,7 @@ def test_the_safety_after_a_lead_correction_is_that_of_the_load_it_leaves():
     """2.24 -> 1.6 with the named slope and crowning; one that leaves more than the rating has promises none."""
     weak = replace(mesh(margin=0.64), lead=LevelLead(4e-6, 2.24, 1.6, 3e-6))
     remedy = _of_mesh(weak).remedy
-    assert "helix slope C_Hβ 4 µm and 3 µm more crowning C_β on the driver)" in remedy
+    assert "helix slope C_Hβ 4 µm with more removal at end II and 3 µm more crowning C_β on the driver)" in remedy
     assert remedy.count("K_Hβ") == 1  # that of the rating, which the safety factor contains
     assert f"S_H about {0.8 * math.sqrt(1.8 / 1.6):.2f} at K_Hβ 1.6 in place of 1.80" in remedy
     sagging = _of_mesh(replace(weak, lead=LevelLead(0.0, 2.24, 1.6, 3e-6))).remedy
@@ -229,3 +232,20 @@ def test_the_drawing_has_its_centre_distances_and_displacements(usual):
     parts = np.split(x, np.flatnonzero(np.isnan(x)))
     off = max(float(np.nanmax(np.abs(part - at))) for part, at in zip(parts, across, strict=False))
     assert off == pytest.approx(factor * largest, rel=1e-6)
+
+
+def test_what_cannot_be_built_begins_the_answer_and_is_the_first_change():
+    note = failing("Gear a and shaft b intersect: radii 143.6 mm, axes 124.5 mm apart; move one along its shaft", 0.9)
+    box = GearboxData(None, None, (mesh(margin=0.64),), (bearing("A", 1e9, 0.2),), 1.8e7, (note,))
+    first, *others = _sentences(types.SimpleNamespace(data=box))
+    assert first == "Cannot be built: Gear a and shaft b intersect: radii 143.6 mm, axes 124.5 mm apart."
+    (change,) = [one for one in others if one.startswith("Change 1, ")]
+    assert change.startswith("Change 1, assembly: Gear a and shaft b intersect")
+    assert change.endswith("apart; move one along its shaft.")
+
+
+@pytest.mark.parametrize(("slope", "end"), [(4e-6, "II"), (-4e-6, "I")])
+def test_the_end_of_a_helix_slope_is_that_with_more_removal(slope, end):
+    low, high = HelixSlope(slope, 0.02).removal(0.0, np.array([-0.01, 0.01]))
+    assert bool(high > low) is (end == "II")
+    assert end_of_slope(slope) == f"more removal at end {end}"

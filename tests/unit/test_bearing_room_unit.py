@@ -9,6 +9,7 @@ import pytest
 from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.bearing_room import said_of_room
 from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.first_size import with_teeth_of_ratio
 from fegear.case.drafts.kinds import TWO_STAGES
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
@@ -30,6 +31,14 @@ def notes_of(changed: dict) -> list:
 
 def test_a_draft_has_room():
     assert not notes_of({})
+
+
+@pytest.mark.parametrize("ratio", ["6.5", "10", "16", "22", "36"])
+@pytest.mark.parametrize("torque", ["3.3 N m", "49.4 N m", "490 N m"])
+def test_drafts_of_every_ratio_have_room(ratio, torque):
+    kind, told, _ = with_teeth_of_ratio("gearbox", {"ratio": ratio, "torque": torque})
+    document = tomllib.loads(draft(Answers(kind, told), "case"))
+    assert not said_of_room(build_scene(document, "case", Path()))
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,13 @@ def test_a_typo_suggests_a_designation(typed, meant):
         envelope_of(typed)
 
 
+@pytest.mark.parametrize(("typed", "series"), [("7207", "72"), ("22207", "222"), ("FAG 7207-B", "72")])
+def test_series_that_are_not_tabulated_are_named_without_a_guess(typed, series):
+    with pytest.raises(InputError, match=f"is of series {series}, which is not in the table; set catalogue") as refused:
+        envelope_of(typed)
+    assert "did you mean" not in str(refused.value)
+
+
 BALL = {"bore": 0.03, "outside_diameter": 0.062, "width": 0.016}
 
 

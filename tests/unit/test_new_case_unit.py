@@ -101,9 +101,22 @@ def test_a_power_at_a_speed_is_a_torque(say, tmp_path):
     assert say("new", "x", "--power", "5 kW", "--speed", "1450 rpm", "-q")[0] == 0
     pair = read_scene(tmp_path / "x.toml").case.pair["I"]
     assert pair.torque * pair.speed == pytest.approx(5e3, rel=1e-5)
-    assert say("new", "y", "--power", "5 kW", "-q")[0] == 0  # at the speed that is assumed
+    code, out, _ = say("new", "y", "--power", "5 kW")  # at the speed that is assumed
+    assert code == 0
+    assert "assumed speed of 1500 rpm" in out
+    assert 'speed = "1500 rpm"             # assumed' in (tmp_path / "y.toml").read_text("utf-8")
     pair = read_scene(tmp_path / "y.toml").case.pair["I"]
     assert pair.torque * pair.speed == pytest.approx(5e3, rel=1e-5)
+
+
+def test_bearings_of_a_drafted_gearbox_are_chosen_for_its_life(say, tmp_path):
+    rated = {}
+    for life in ("500 h", "100000 h"):
+        assert say("new", "x", "--kind", "gearbox", "--torque", "160 N m", "--life", life, "--force", "-q")[0] == 0
+        case = read_scene(tmp_path / "x.toml").case
+        assert case.pair["I"].operation.life == pytest.approx(float(life.split()[0]) * 3600.0)
+        rated[life] = sum(one.rating.dynamic_rating for one in case.bearing.values())
+    assert rated["500 h"] < rated["100000 h"]
 
 
 @pytest.mark.parametrize(("ratio", "stages"), [("2.5", 1), ("6", 1), ("6.5", 2), ("14", 2), ("14:1", 2), ("36", 2)])

@@ -32,6 +32,8 @@ HELICAL = ("helical", "gearbox", TWO_STAGES)
 
 #: Answer to a question about what a drawing need not have.
 _NONE = "none"
+#: What only an option gives, although it has a value otherwise: requirements, not of the drawing.
+_UNASKED = ("life",)
 
 
 #: Between both ends of a range of torques; the first end may leave the unit to the second.
@@ -62,18 +64,22 @@ class Question(NamedTuple):
     @property
     def optional(self) -> bool:
         """Whether a drawing need not have it: an option gives it, the terminal does not ask."""
-        return self.default == _NONE
+        return self.default == _NONE or self.name in _UNASKED
 
 
 #: How the module is asked for, where that is of one stage only.
 _MODULES = {TWO_STAGES: "Normal module of the first stage"}
+
+#: Speed of the pinion that is assumed, also for the torque of a power.
+ASSUMED_SPEED = "1500 rpm"
 
 _ALL = {
     "pressure_angle": ("Pressure angle", "20 deg", "angle"),
     "profile_shift": ("Profile shift x", "0", "numbers"),
     "rack": ("Basic rack, ISO 53 A to D", "C", "rack"),
     "helix_angle": ("Helix angle", "20 deg", "angle"),
-    "speed": ("Speed of the pinion", "1500 rpm", "speed"),
+    "speed": ("Speed of the pinion", ASSUMED_SPEED, "speed"),
+    "life": ("Required life of gears and bearings", "20000 h", "time"),
     "tip_relief": ("Tip relief of both gears, at the tip", _NONE, "length"),
     "relief_length": ("Length of the relief along the line of action", _NONE, "length"),
     "lead_error": ("Helix deviation over the face width", _NONE, "length"),
@@ -155,7 +161,7 @@ def with_torque_of_power(given: Mapping[str, str]) -> dict[str, str]:
         return found
     if "torque" in found:
         raise InputError("--power", f'"{power}"', "contradicts --torque", "remove one of them")
-    watts, speed = to_si(power, "power", "--power"), found.setdefault("speed", _ALL["speed"][1])
+    watts, speed = to_si(power, "power", "--power"), found.get("speed", ASSUMED_SPEED)
     turning = to_si(speed, _ALL["speed"][2], "--speed")
     for option, text, size in (("--power", power, watts), ("--speed", speed, turning)):
         if not size > 0.0:

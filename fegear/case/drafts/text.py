@@ -80,8 +80,8 @@ speed = {speed}{speed_note}
 """
 #: What the rating of a pair asks for besides, assumed.
 _OPERATED = """\
-lubricant = { viscosity_40 = "220 mm^2/s", temperature = "70 degC" }     # assumed: mineral oil ISO VG 220
-operation = { application_factor = 1.0, life = "20000 h" }     # assumed
+lubricant = {{ viscosity_40 = "220 mm^2/s", temperature = "70 degC" }}     # assumed: mineral oil ISO VG 220
+operation = {{ application_factor = 1.0, life = {life} }}     # {assumed}
 """
 _SHAFT = """\
 [shaft.{name}]{note}
@@ -130,7 +130,7 @@ _ON = "relief = true     # on: tip relief of both gears, crowning of the pinion"
 _COMMENTS = 30
 _ASSUMED = "     # assumed"
 #: Questions about the pair, not its gears.
-_OF_PAIR = ("torque", "speed", "lead_error")
+_OF_PAIR = ("torque", "speed", "lead_error", "life")
 #: Speeds of a train's motion, as shares of the given one.
 _SLOWEST, _FASTEST = 0.5, 1.5
 #: Length of the tip relief that is assumed of helical gears [modules]; crowning over its amount. Their flanks are
@@ -306,6 +306,11 @@ def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
     return _PAIR.format(**{**own, **(other or {})})
 
 
+def _operated(answers: Answers) -> str:
+    assumed = "assumed" if answers.assumed("life") else "application factor assumed"
+    return _OPERATED.format(life=toml_string(answers["life"]), assumed=assumed)
+
+
 def _load(answers: Answers) -> str:
     """The torque, or the range of torques that a relief is designed for."""
     both = ends(answers["torque"])
@@ -357,7 +362,10 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
     """Gears, shafts and bearings of one stage."""
     found, names = laid_out((answers,)), KINDS["gearbox"].gears
     gears = [_gear(answers, n, {"bore_radius": _length(hole)}) for n, hole in enumerate(found.holes)]
-    return {"gears": "\n".join(gears), "shafts": _shafts(found, ("input", "output"), names, ((0,), (1,)))}
+    return {
+        "gears": "\n".join(gears), "shafts": _shafts(found, ("input", "output"), names, ((0,), (1,))),
+        "operated": _operated(answers),
+    }  # fmt: skip
 
 
 def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
@@ -379,7 +387,9 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
             "speed_note": "     # that of pair I over its ratio",
         } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
-        pairs.append(_pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows}) + _OPERATED)
+        pairs.append(
+            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows}) + _operated(answers)
+        )
     on = ((0,), (1, 2), (3,))
     return {
         "gears": "\n".join(gears), "pairs": "\n".join(pairs),

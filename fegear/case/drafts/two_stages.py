@@ -26,12 +26,14 @@ from fegear.shafts.load_ratings import dynamic_rating
 
 #: Gap between faces, and between a face and a bearing [modules of the second stage].
 _GAP, _CLEAR = 3.0, 2.0
+#: Gap between a gear and a shaft beside it, and between bearings of neighbours [modules of the second stage].
+_APART = 1.0
 #: Shoulder of a shaft behind a bearing, in bores; hole of a gear at most, in root radii.
 _SHOULDER, _HOLE = 1.15, 0.65
 #: Shear stress of a shaft below its torque [Pa]: bends it little enough.
 _SHEAR = 25e6
-#: Life that bearings are chosen for [h], of the gearbox and some more: the load over the face moves their forces.
-_LIFE, _MORE = 20e3, 1.25
+#: Life that bearings are chosen for, over the required one: the load over the face moves their forces.
+_MORE = 1.25
 _SERIES = {"ball": ("62", "63"), "roller": ("NU2", "NU3"), "tapered": ("302", "322", "303", "323")}
 _FIRST, _LAST = 4, 20
 #: Bore of a bearing over its number [m]; times that the life is halved where no bearing lasts as long.
@@ -48,7 +50,7 @@ class ChosenBearing:
         Empty for one of which only a stiffness is assumed.
     rating : LifeRating or None
         With C to two digits, estimated from its dimensions.
-    bore, width : float
+    bore, width, outside : float
         [m].
     """
 
@@ -56,6 +58,7 @@ class ChosenBearing:
     rating: LifeRating | None
     bore: float
     width: float
+    outside: float
 
 
 @dataclass(frozen=True)
@@ -123,13 +126,32 @@ class LaidOut:
 
 
 def two_stages(answers: Answers) -> LaidOut:
-    """Lay out both stages.
+    """Lay out both stages, the second with the least module that suits its torque and keeps all bodies apart.
 
     Parameters
     ----------
     answers : Answers
     """
-    return laid_out(_stages(answers))
+    first, least = _first(answers), 0.0
+    drafts: list[LaidOut] = []
+    while not drafts or drafts[-1].stages[1].si("module") < 0.999e-3 * MODULES[-1]:
+        drafts.append(laid_out((first, _second(answers, first, least))))
+        if _apart(drafts[-1]):
+            return drafts[-1]
+        least = next(one for one in MODULES if one > 1.001e3 * drafts[-1].stages[1].si("module"))
+    return drafts[0]
+
+
+def _apart(laid: LaidOut) -> bool:
+    """Whether the wheel of the first stage has room beside the output shaft, and bearings have beside each other.
+
+    It is the centre distance of the second stage that gives both; the first one has its own module.
+    """
+    gap = _APART * laid.stages[1].si("module")
+    needed = [_tips(laid.stages[0])[1] + 0.5 * laid.shafts[2].thick]
+    ends = zip(laid.shafts[1].bearings.values(), laid.shafts[2].bearings.values(), strict=True)
+    needed += [0.5 * (one.outside + other.outside) for one, other in ends]
+    return laid.distances[1] >= max(needed) + gap
 
 
 def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
@@ -165,7 +187,7 @@ def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
             _shaft(
                 seat, speed, 2.0 * min(roots[n][member] for n, member in gears),
                 [(middles[n] - ends[0], *forces[n], radii[n][member], -1.0 if member else 1.0) for n, member in gears],
-                ends[1] - ends[0],
+                ends[1] - ends[0], stages[0].si("life"),
             )
             for seat, speed, gears in zip(seats, speeds, on, strict=True)
         )  # fmt: skip
@@ -177,22 +199,32 @@ def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
     return LaidOut(stages, holes, tuple(sum(one) for one in radii), middles, ends, length, shafts)
 
 
-def _stages(answers: Answers) -> tuple[Answers, Answers]:
-    """Answers of both stages: the second has the torque of the first wheel, and a module and face that suit it."""
+def _kept(answers: Answers) -> dict[str, str]:
+    return {key: text for key, text in answers.given.items() if key not in ("teeth", "profile_shift")}
+
+
+def _first(answers: Answers) -> Answers:
+    """Answers of the first stage."""
     teeth, shifts = answers.numbers("teeth"), answers.numbers("profile_shift")
-    kept = {key: text for key, text in answers.given.items() if key not in ("teeth", "profile_shift")}
     known = {name: answers[name] for name in ("module", "torque", "speed", "face_width")}
-    first = Answers("gearbox", {**kept, **known, "teeth": " ".join(teeth[:2]), "profile_shift": " ".join(shifts[:2])})
+    own = {"teeth": " ".join(teeth[:2]), "profile_shift": " ".join(shifts[:2])}
+    return Answers("gearbox", {**_kept(answers), **known, **own})
+
+
+def _second(answers: Answers, first: Answers, least: float) -> Answers:
+    """Answers of the second stage: torque of the first wheel, a module of at least `least` [mm], a face."""
+    teeth, shifts = answers.numbers("teeth"), answers.numbers("profile_shift")
     ratio, module = _ratio(first), answers.si("module")
     grown = min(MODULES, key=lambda one: abs(math.log(one * 1e-3 / (module * ratio ** (1.0 / 3.0)))))
-    grown = max(grown, module * 1e3)
+    grown = max(grown, module * 1e3, least)
     face = answers.si("face_width") * grown * 1e-3 / module
     second = {
-        **kept, "teeth": " ".join(teeth[2:]), "profile_shift": " ".join(shifts[2:]), "module": f"{grown:.6g} mm",
+        **_kept(answers), "teeth": " ".join(teeth[2:]),
+        "profile_shift": " ".join(shifts[2:]), "module": f"{grown:.6g} mm",
         "face_width": f"{face * 1e3:.3g} mm", "torque": f"{first.si('torque') * ratio:.6g} N*m",
         "speed": f"{first.si('speed') / ratio * from_si('rpm'):.6g} rpm",
     }  # fmt: skip
-    return first, Answers("gearbox", second)
+    return Answers("gearbox", second)
 
 
 def _ratio(stage: Answers) -> float:
@@ -225,6 +257,13 @@ def _roots(stage: Answers) -> Iterator[float]:
         yield stage.si("module") * (0.5 * int(z) / turn - dedendum + float(x))
 
 
+def _tips(stage: Answers) -> tuple[float, ...]:
+    """Tip radii without tip shortening [m]."""
+    turn, addendum = math.cos(stage.si("helix_angle")), BasicRack.named(stage["rack"]).addendum
+    both = zip(stage.numbers("teeth"), stage.numbers("profile_shift"), strict=True)
+    return tuple(stage.si("module") * (0.5 * int(z) / turn + addendum + float(x)) for z, x in both)
+
+
 def _mesh_forces(stage: Answers, torque: float) -> tuple[float, float, float]:
     """Tangential, radial and axial force of a mesh [N]."""
     tangential, helix = torque / _radii(stage)[0], stage.si("helix_angle")
@@ -233,9 +272,9 @@ def _mesh_forces(stage: Answers, torque: float) -> tuple[float, float, float]:
 
 def _shaft(
     seat: float, speed: float, root: float, meshes: Sequence[tuple[float, float, float, float, float, float]],
-    span: float,
+    span: float, life: float,
 ) -> PlacedShaft:  # fmt: skip
-    """The smallest shaft and bearings that carry the forces of its meshes within the smallest root circle."""
+    """The smallest shaft and bearings that carry the forces of its meshes for a life [s] within the smallest root."""
     tangent, apart, moment, axial = [0.0, 0.0], [0.0, 0.0], 0.0, 0.0
     for at, tangential, radial, along, radius, side in meshes:
         # On shafts in a row both meshes of the middle one push it up, and from both sides; axial forces of one hand
@@ -246,7 +285,7 @@ def _shaft(
         moment += along * radius / span
         axial += side * along
     left, right = (math.hypot(one, abs(other) + moment) for one, other in zip(tangent, apart, strict=True))
-    rolls = _LIFE * _MORE * 3600.0 * speed / (2.0 * math.pi)
+    rolls = _MORE * life * speed / (2.0 * math.pi)
     forces = _Forces(left, right, abs(axial), rolls, root)
     seat = min(seat, _STEP * _LAST, _STEP * math.floor(root / _SHOULDER / _STEP))
     for halved in range(_HALVES):  # where none lasts as long, one that lasts half of it, and so on
@@ -260,7 +299,7 @@ def _shaft(
 def _assumed(forces: _Forces) -> PlacedShaft:
     """A shaft on bearings of an assumed stiffness: its pinion is too small for those that are tabulated."""
     seat = 0.8 * forces.most
-    made = ChosenBearing("", None, seat, 0.4 * seat)
+    made = ChosenBearing("", None, seat, 0.4 * seat, 2.0 * seat)
     return PlacedShaft(seat, forces.most, {"locating": made, "floating": made})
 
 
@@ -321,4 +360,5 @@ def _known(designation: str) -> ChosenBearing:
     inside = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, angle, 0.0).inside
     rated = float(f"{dynamic_rating(inside):.2g}")
     factors = AxialFactors(inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2)
-    return ChosenBearing(designation, LifeRating(rated, inside.kind, axial=factors), one.bore, one.width)
+    life = LifeRating(rated, inside.kind, axial=factors)
+    return ChosenBearing(designation, life, one.bore, one.width, one.outside_diameter)

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from fegear.base.notes import Note
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.contact.wide.on_shafts import LoadedShafts
@@ -128,6 +129,8 @@ class GearboxData:
     bearings : tuple of BearingAtGlance
     required_hours : float
         Largest life that a pair is rated for [s]; NaN where none is.
+    failures : tuple of Note
+        Why the gearbox cannot be built, the worst first: bodies that cut each other, bores that are not their shaft's.
     """
 
     shafts: LoadedShafts
@@ -135,13 +138,14 @@ class GearboxData:
     meshes: tuple[MeshAtGlance, ...]
     bearings: tuple[BearingAtGlance, ...]
     required_hours: float
+    failures: tuple[Note, ...] = ()
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:
-        """At most three, the most urgent first: what fails, then what wastes load capacity, then the weakest."""
+        """At most three, the most urgent first: what cannot be built or fails, what wastes load, then the weakest."""
         urgent = [*filter(None, map(_of_mesh, self.meshes)), *filter(None, map(self._of_bearing, self.bearings))]
         named = {one.part for one in urgent}
-        found = sorted(urgent, key=lambda one: one.margin)
+        found = [*map(_of_failure, self.failures), *sorted(urgent, key=lambda one: one.margin)]
         for one in self._improvements():
             if one.part not in named:
                 found.append(one)
@@ -180,6 +184,12 @@ class GearboxData:
         )  # fmt: skip
 
 
+def _of_failure(note: Note) -> Change:
+    """What cannot be built; its sentence ends with what to do."""
+    finding, _, remedy = note.rpartition("; ")
+    return Change(note.margin, "assembly", finding, remedy)
+
+
 def _of_mesh(one: MeshAtGlance) -> Change | None:
     """What is wrong with a mesh: a safety below its minimum, else load that is far from even."""
     if one.margin < 1.0 and one.safety is not None:
@@ -208,11 +218,17 @@ def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
     """The lead correction against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
-    amounts = [f"helix slope C_Hβ {figures(one.lead.slope * 1e6)} µm"] if one.lead.slope else []
+    slope = one.lead.slope
+    amounts = [f"helix slope C_Hβ {figures(slope * 1e6)} µm with {end_of_slope(slope)}"] if slope else []
     if one.lead.crowning:
         amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
     return f"lead correction ({' and '.join(amounts)} on the driver{gain})"
+
+
+def end_of_slope(slope: float) -> str:
+    """The end of the face at which a helix slope, zero at end I, removes more."""
+    return f"more removal at end {'II' if slope > 0.0 else 'I'}"
 
 
 def _limit(one: MeshAtGlance, safety: Safety) -> tuple[str, str, float, float, float]:

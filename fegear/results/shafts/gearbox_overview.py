@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import Note, NoteClass, neglecting
 from fegear.base.printed import figures
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
@@ -184,7 +185,13 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
     leads = _leads(inputs, upstream, shafts, work)
     meshes = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
     bearings = bearings_at_glance(shafts, inputs.bearings, inputs.lives, inputs.speeds, inputs.required)
-    return GearboxData(shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required)
+    return GearboxData(shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required, _failures(inputs))
+
+
+def _failures(inputs: GearboxInputs) -> tuple[Note, ...]:
+    """What is said of shafts, gears and bearings that fails, the least margin first."""
+    found = (one for one in inputs.shafts.said if isinstance(one, Note) and one.kind is NoteClass.FAILS)
+    return tuple(sorted(found, key=lambda one: one.margin))
 
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
@@ -257,8 +264,10 @@ def _check(scene: Scene, _name: str) -> None:
 
 
 def _sentences(seen: Seen) -> Iterator[str]:
-    """The weakest mesh, the weakest bearing, and what to change first, or to improve where nothing falls short."""
+    """Why it cannot be built, the weakest mesh and bearing, what to change first or to improve where all suffices."""
     data: GearboxData = seen.data
+    if data.failures:
+        yield f"Cannot be built: {data.changes[0].finding}."
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
     known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
@@ -358,6 +367,7 @@ _SHEET = Sheet(
     figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
+        lambda _seen: [neglecting("Gearbox: shaft strength (bending and torsional stress, notches) is not evaluated.")],
         lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
     ),
 )  # fmt: skip

@@ -18,6 +18,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
 from fegear.results.relief.grinding import CROWNING, OF_LEADS, SLOPE, Grinding, grinding_table
+from fegear.results.shafts.gearbox_data import end_of_slope
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
     LoadedShaftsInputs,
@@ -170,9 +171,10 @@ def _leads(
 def _sentences(seen: Seen) -> Iterator[str]:
     for one in seen.data:
         slope, best = figures(one.slope * 1e6), one.best
+        end = f" ({end_of_slope(one.slope)})" if one.slope else ""
         kept = " (the present one)" if best.crowning and best.crowning == one.present else ""
         yield (
-            f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm and a crowning C_β of "
+            f"Pair {one.pair}: grind a helix slope C_Hβ of {slope} µm{end} and a crowning C_β of "
             f"{figures(best.crowning * 1e6)} µm{kept} on gear {one.gear}: K_Hβ of the loaded flanks "
             f"{one.before[-1]:.2f} -> {best.flanks:.2f} at {figures(one.torque[-1])} N m"
             f"{_safeties(best, one.leads[0])}."
