@@ -42,11 +42,12 @@ def test_couplings_are_those_of_calculix(solved):
 def test_root_stress_is_that_of_calculix(solved):
     """Of the cracked tooth, beside its mouth and on the other side, and of its neighbours; loads on either.
 
-    Of itself, or of the largest of the gear where it is small: that of the next tooth is at its fillet's end.
+    Of itself, or of the largest of the gear where it is small: that of the next tooth is at its fillet's end. Between
+    tolerances of 0.3 and 0.1 % the largest one moves by 3e-4; at 0.1 % it is 1.9e-3 off still: the reference is of one mesh.
     """
     tolerance, found, line = solved
     largest = max(abs(value) for value in KEPT["root"].values())
     for key, expected in KEPT["root"].items():
         i, side, j, q = key.split()
         value = float(found.largest_root_stress(int(i), int(j), side, line, [KEPT["z"]])[0][0, int(q)])
-        assert value == pytest.approx(expected, rel=2e-3 if tolerance < 5e-3 else 6e-3, abs=1.2e-3 * largest), key
+        assert value == pytest.approx(expected, rel=2.5e-3 if tolerance < 5e-3 else 6e-3, abs=1.2e-3 * largest), key

@@ -27,8 +27,15 @@ def lead(crowning=0.0, slope=0.0, end_relief=()):
 @pytest.mark.parametrize("relief", [True, False])
 def test_the_row_follows_from_the_leads_of_both_gears_while_they_count(leads, row, relief):
     said = []
-    gear = dict(zip("ab", (SimpleNamespace(lead=one) for one in leads), strict=True))
-    scene = SimpleNamespace(case=SimpleNamespace(gear=gear, effects=SimpleNamespace(relief=relief)))
+    gear = {
+        name: SimpleNamespace(lead_of=lambda flank, one=one: (one, "lead"))
+        for name, one in zip("ab", leads, strict=True)
+    }
+    tooth = SimpleNamespace(working_flank=None)
+    scene = SimpleNamespace(
+        case=SimpleNamespace(gear=gear, effects=SimpleNamespace(relief=relief)),
+        gears={name: SimpleNamespace(tooth=tooth) for name in "ab"},
+    )
     given = any(one is not None for one in leads)
     assert _modification(scene, ("a", "b"), said) == (row if relief else "none")
     assert bool(said) == (given and not relief)
