@@ -43,7 +43,8 @@ def test_root_stress_is_that_of_calculix(solved):
     """Of the cracked tooth, beside its mouth and on the other side, and of its neighbours; loads on either.
 
     Of itself, or of the largest of the gear where it is small: that of the next tooth is at its fillet's end. Between
-    tolerances of 0.3 and 0.1 % the largest one moves by 3e-4; at 0.1 % it is 1.9e-3 off still: the reference is of one mesh.
+    tolerances of 0.3 and 0.1 % the largest one moves by 3e-4; at 0.1 % it is 1.9e-3 off still: the reference is of one
+    mesh.
     """
     tolerance, found, line = solved
     largest = max(abs(value) for value in KEPT["root"].values())
