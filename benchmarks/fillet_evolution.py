@@ -1,6 +1,6 @@
 """Designed fillets beside an own differential evolution over the same numbers, under the same limits.
 
-    python benchmarks/fillet_evolution.py [--pairs 10] [--seed 7] [--evaluations 900]
+    python benchmarks/fillet_evolution.py [--pairs 10] [--first 0] [--seed 7] [--evaluations 900]
 
 Random pairs of external gears; every second fillet is one that a rack makes, every third for the least alternating
 stress. Evolution (rand/1/bin and half of it toward the best, Storn and Price 1997) knows nothing of slopes or kinks; of
@@ -100,10 +100,11 @@ def evolution(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pairs", type=int, default=10)
+    parser.add_argument("--first", type=int, default=0, help="number of the first pair")
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--evaluations", type=int, default=900)
     asked = parser.parse_args()
-    for n in range(asked.pairs):
+    for n in range(asked.first, asked.first + asked.pairs):
         rng = np.random.default_rng([asked.seed, n])
         pair, what = random_pair(rng)
         limits = Limits(generated=n % 2 == 1)
