@@ -159,9 +159,8 @@ class PlanetaryPart(Part):
     body: SetBodiesPart = Field(default_factory=SetBodiesPart, description="Masses and inertias, for vibration.")
     double_helical: bool = Field(
         default=False,
-        description="Double helical gears: sun, planet and ring gears are the half at end I, with its face width; the "
-        "half at end II is the mirror image. Both halves carry the same load (sun and planets float axially). Torques, "
-        "mesh forces and masses are those of both halves.",
+        description="Double helical gears: sun, planet and ring gears are the half at end I, that at end II is the "
+        "mirror image; both carry the same load (sun and planets float axially). Torques, mesh forces and masses are of both.",
     )
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."

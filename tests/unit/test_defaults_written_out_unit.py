@@ -136,6 +136,8 @@ MORE = {
         "external": [{"on": "driver", "order": 1, "y": "1 N"}]}}}}),
     "pit": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
         {"pits": [{"diameter": ["49 mm", "50 mm"], "depth": "50 um"}]}]}}}),
+    "keyway": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
+        {"keyway": {}}]}}}),
     "hole": ("cracked_tooth", {"results": ["mesh-stiffness-revolution"], "gear": {"pinion": {"odd_tooth": [
         {"hole": {"diameter": "1 mm", "position_radius": "19.5 mm"}}]}}}),
     "catalogue": ("two_stage_shafts", {

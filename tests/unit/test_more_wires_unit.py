@@ -260,7 +260,12 @@ def test_traces_of_a_topography_are_those_through_its_middle(monkeypatch):
     rows = {"tooth": tooth, "x": along, "z": across, "deviation": 1e-3 * tooth * (along**2 + 0.1 * across)}
     monkeypatch.setattr(measured_flanks, "_columns", lambda *given: rows)
     part = SimpleNamespace(topography="flank.csv", filter=False)
-    scene = SimpleNamespace(gears={"pinion": SimpleNamespace(base_radius=2.0)})
+    tooth_of = SimpleNamespace(working_flank=None)
+    scene = SimpleNamespace(
+        gears={"pinion": SimpleNamespace(base_radius=2.0, tooth=tooth_of)},
+        written={},
+        case=SimpleNamespace(gear={"pinion": SimpleNamespace(measured_of=lambda flank: (part, "measured"))}),
+    )
     profile, helix, both = measured_flanks._flank(scene, "pinion", part, (3.0, 7.0), (-3.0, 5.0))
     assert (profile.kind, helix.kind) == ("profile", "helix")
     (removed,) = [one for one in vars(both).values() if np.ndim(one) == 2]
@@ -271,24 +276,6 @@ def test_traces_of_a_topography_are_those_through_its_middle(monkeypatch):
         assert found == pytest.approx(1e-3 * number * known)
     for found, number in zip(helix.deviation, (1.0, 5.0), strict=True):
         assert found == pytest.approx(1e-3 * number * (25.0 + 0.1 * helix.x))
-
-
-def test_faces_of_cracks_that_may_close_are_pressed_on_each_other(monkeypatch):
-    from fegear.contact.plane import odd_compliance
-
-    curve = odd_compliance.spline(np.linspace(1.0, 3.0, 5), np.linspace(1.0, 2.0, 5) ** 2)
-    monkeypatch.setattr(odd_compliance, "tabulated_own", lambda of: (curve, None))
-
-    def own(closing):
-        influence = SimpleNamespace(
-            alone=lambda near: near, fine=SimpleNamespace(closing=closing), ends=lambda near: (4.3, 4.9),
-            gear=SimpleNamespace(base_radius=4.0), by_closing=lambda near, radius: -0.1 * near * radius,
-        )  # fmt: skip
-        return odd_compliance._own(influence, 2)
-
-    assert own({}).y.tolist() == curve.y.tolist()
-    radius = np.clip(np.hypot(4.0, curve.x), 4.3, 4.9)
-    assert own({2: "crack"}).y == pytest.approx(curve.y - 0.2 * radius)
 
 
 def test_sums_of_shifts_vary_slower_than_the_pinions():
