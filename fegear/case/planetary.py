@@ -160,7 +160,8 @@ class PlanetaryPart(Part):
     double_helical: bool = Field(
         default=False,
         description="Double helical gears: sun, planet and ring gears are the half at end I, that at end II is the "
-        "mirror image; both carry the same load (sun and planets float axially). Torques, mesh forces and masses are of both.",
+        "mirror image; both carry the same load (sun and planets float axially). Torques, mesh forces and masses are "
+        "of both.",
     )
     damping_ratio: Annotated[Number, Field(ge=0.0, lt=1.0)] = Field(
         default=0.03, description="Damping ratio of every mode, for vibration."
