@@ -27,8 +27,8 @@ class MeasuredStrainPart(Part):
     torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
     torque_column: str = Field(
         default="torque",
-        description="Column of the torque on the driver, if there is one: each torque of the pair takes the longest run "
-        "of samples within `torque_band`, the rest (run-up) is left out. The verdict is that at the nominal load.",
+        description="Column of the torque on the driver, if there is one: each torque of the pair takes the longest "
+        "run of samples within `torque_band`, the rest (run-up) is left out. The verdict is that at the nominal load.",
     )
     torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
         default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
