@@ -213,7 +213,7 @@ class _Content:
         if isinstance(item, np.ndarray) and item.dtype.kind in PLAIN_KINDS:
             digest = hashlib.sha256(np.ascontiguousarray(item).tobytes()).hexdigest()
             return ["array", item.dtype.str, list(item.shape), digest]
-        names = _counting(type(item))
+        names = _counting(type(item))  # type: ignore[arg-type]  # every type can be a key of a cache
         if names is not None:
             return ["data", type(item).__qualname__, *([name, self.canonical(getattr(item, name))] for name in names)]
         if isinstance(item, Path):

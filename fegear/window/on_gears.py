@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.geometry.pair import Member
     from fegear.results.gear.crack_shown import CracksShownData
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
     from fegear.results.pair.loaded_flanks import LoadedWidePair
@@ -250,7 +251,7 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     """
     pair = scene.pairs[name]
     found = {key: _plain(value) for key, value in asdict(moving_pair(pair, 0)).items()}
-    ways = {"driver": -1.0, "driven": -float(pair.side)}
+    ways: dict[Member, float] = {"driver": -1.0, "driven": -float(pair.side)}
     rows = {
         member: [min(_BESIDE, (teeth - 1) // 2), way * 2.0 * math.pi / teeth]
         for member, way in ways.items() if (teeth := pair.gear(member).teeth)
