@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.geometry.pair import Member
     from fegear.results.gear.crack_shown import CracksShownData
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
     from fegear.results.pair.loaded_flanks import LoadedWidePair
@@ -251,11 +250,10 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     """
     pair = scene.pairs[name]
     found = {key: _plain(value) for key, value in asdict(moving_pair(pair, 0)).items()}
-    ways: dict[Member, float] = {"driver": -1.0, "driven": -float(pair.side)}
+    ways = {"driver": (pair.driver.teeth, -1.0), "driven": (pair.driven.teeth, -float(pair.side))}
     rows = {
-        member: [min(_BESIDE, (teeth - 1) // 2), way * 2.0 * math.pi / teeth]
-        for member, way in ways.items() if (teeth := pair.gear(member).teeth)
-    }  # fmt: skip
+        member: [min(_BESIDE, (teeth - 1) // 2), way * 2.0 * math.pi / teeth] for member, (teeth, way) in ways.items()
+    }
     ratios = {"transverse": pair.contact_ratio} | ({"overlap": pair.overlap_ratio} if pair.driver.helix_angle else {})
     return found | {
         "rows": rows,
