@@ -30,8 +30,8 @@ WORDS = frozenset({
     "stiffness_over_face", "stress", "stress_histogram", "stress_history", "stress_over_face", "stress_ratios",
     "stress_spread", "stress_study", "stress_teeth", "study", "summary", "surface", "surface_over_face", "te",
     "te_harmonics", "te_orders", "te_summary", "teeth", "tool", "tooth", "tooth_response", "tooth_stiffness",
-    "tooth_vibration", "topography", "torques", "trade_off", "transmission_error", "unequal", "vibration", "vibration_revolution",
-    "waterfall",
+    "tooth_vibration", "topography", "torques", "trade_off", "transmission_error", "unequal", "vibration",
+    "vibration_revolution", "waterfall",
 })  # fmt: skip
 
 
