@@ -23,6 +23,8 @@ from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.geometry.gear_body import GearBody
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.base.arrays import Mask
     from fegear.fem.plane.settings import MeshSettings, Solver
     from fegear.geometry.gear import Plane
@@ -87,6 +89,23 @@ def assemble_section_two_orders(
         )
     web = assemble_two_orders(mesh, poisson_ratio, "stress", order)
     return _thinner(mesh, higher, web[0], support), _thinner(mesh, lower, web[1], support)
+
+
+def assemble_sections(
+    meshes: Sequence[SectorMesh],
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    support: RimSupport | None,
+    *,
+    two_orders: bool,
+) -> list[list[SectorElasticity]]:
+    """Several sections by the settings' order, and by the next lower one with two orders: those of one order each."""
+    order, solver = settings.order, settings.solver
+    if not two_orders:
+        return [[assemble_section(one, poisson_ratio, plane, order, solver, support) for one in meshes]]
+    pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, support) for one in meshes]
+    return [list(each) for each in zip(*pairs, strict=True)]
 
 
 def _thinner(mesh: SectorMesh, usual: SectorElasticity, web: SectorElasticity, support: RimSupport) -> SectorElasticity:

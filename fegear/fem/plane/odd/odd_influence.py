@@ -25,7 +25,7 @@ from fegear.fem.plane.odd.odd_ring import Held, OddRing, held_sectors, odd_ring
 from fegear.fem.plane.odd.tooth_kind import OddTooth, ToothKind, ordinary_kind, tooth_kind
 from fegear.fem.plane.rim import rigid_motions
 from fegear.fem.plane.sector_sides import between_sides, bore_of_side, condensed_sector
-from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
+from fegear.fem.plane.supported_section import assemble_sections
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -407,12 +407,7 @@ def solve_odd_influence(
     every = [*ordinary, *odd.values()]
     meshes = [*(one.mesh for one in every), *bare.values()]
     with one_thread():
-        order, solver = settings.order, settings.solver
-        if two_orders:
-            pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, support) for one in meshes]
-            orders = [list(each) for each in zip(*pairs, strict=True)]
-        else:
-            orders = [[assemble_section(one, poisson_ratio, plane, order, solver, support) for one in meshes]]
+        orders = assemble_sections(meshes, poisson_ratio, plane, settings, support, two_orders=two_orders)
         found = []
         for n, elasticity in enumerate(orders):
             started = time.perf_counter()

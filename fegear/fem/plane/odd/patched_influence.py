@@ -12,7 +12,7 @@ from fegear.fem.plane.odd.odd_influence import OddInfluence, solved_already
 from fegear.fem.plane.odd.odd_ring import patched_ring
 from fegear.fem.plane.odd.patch_kinds import patch_kinds
 from fegear.fem.plane.odd.tooth_kind import OddTooth, tooth_kind
-from fegear.fem.plane.supported_section import assemble_section, assemble_section_two_orders
+from fegear.fem.plane.supported_section import assemble_sections
 
 if TYPE_CHECKING:
     from fegear.fem.plane.influence import Influence
@@ -56,13 +56,8 @@ def solve_patched_influence(
     """
     solved = solved_already(known, two_orders)
     with one_thread():
-        order, solver = settings.order, settings.solver
         meshes = [patch] if solved else [patch, mesh]
-        if two_orders:
-            pairs = [assemble_section_two_orders(one, poisson_ratio, plane, order, solver, None) for one in meshes]
-            orders = [list(each) for each in zip(*pairs, strict=True)]
-        else:
-            orders = [[assemble_section(one, poisson_ratio, plane, order, solver, None) for one in meshes]]
+        orders = assemble_sections(meshes, poisson_ratio, plane, settings, None, two_orders=two_orders)
         found = []
         for n, elasticity in enumerate(orders):
             started = time.perf_counter()
