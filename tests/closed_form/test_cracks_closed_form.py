@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.fem.plane import supported_section
 from fegear.fem.plane.influence import SIDES
-from fegear.fem.plane.odd import odd_influence
 from fegear.fem.plane.odd.crack import fillet_length, mouth_at_radius, mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import cracked_sector
 from fegear.fem.plane.odd.odd_influence import solve_odd_influence
@@ -111,9 +111,9 @@ def test_the_ordinary_sector_of_a_solved_ring_is_not_solved_again(monkeypatch):
     odd = {0: OddTooth(tooth, cracked_sector(tooth, bore, settings, crack))}
     solve, meshes = functools.partial(solve_odd_influence, tooth, mesh, odd, NU, "strain", settings), []
     again = solve(two_orders=True)
-    usual = odd_influence.assemble_section_two_orders
+    usual = supported_section.assemble_section_two_orders
     monkeypatch.setattr(
-        odd_influence, "assemble_section_two_orders", lambda one, *rest: meshes.append(one) or usual(one, *rest)
+        supported_section, "assemble_section_two_orders", lambda one, *rest: meshes.append(one) or usual(one, *rest)
     )
     found = solve(two_orders=True, known=known)
     assert len(meshes) == 1
