@@ -147,6 +147,10 @@ class ErrorOverPitch(Brief):
         The one base pitch that is looked at although each has a transmission error of its own.
     shifts : tuple of TransmissionErrorShift
         Estimated errors under every load; empty where they are not known.
+    corner_contact : bool
+        Whether teeth may touch outside the path of contact.
+    mesh_stiffness_on_path, local_stiffness_on_path : float or None
+        Means at the nominal load if they may not; None where they may not anyway, or where this is not known [N/m].
     """
 
     pair: GearPair
@@ -167,7 +171,9 @@ class ErrorOverPitch(Brief):
     te_peak_to_peak: Array = shown("um", "peak-to-peak value", label="peak-to-peak value", table="loads")
     te_effective: Array = shown("um", "effective transmission error A_e (amplitude, NASA TM-89901)", table="loads")
     local_stiffness_mean: Array = shown("N/um", "tangent mesh stiffness, mean over the base pitch", table="loads")
-    mesh_stiffness_mean: float = shown("N/um", "secant mesh stiffness, mean over the base pitch")
+    mesh_stiffness_mean: float = shown(
+        "N/um", "secant mesh stiffness (load / deflection of the pairs in contact), mean over the base pitch"
+    )
     mesh_compliance_mean: float | None = shown(
         "um/N", "mean of 1/K_T, ideal flanks, all tooth pairs on the path in contact (Mark, A.11)"
     )
@@ -176,6 +182,40 @@ class ErrorOverPitch(Brief):
     cycles: int = 1
     only: int | None = None
     shifts: tuple[TransmissionErrorShift, ...] = ()
+    corner_contact: bool = False
+    mesh_stiffness_on_path: float | None = shown(
+        "N/um", "secant mesh stiffness without contact outside the path of contact, mean over the base pitch",
+        name="mesh_stiffness_mean_on_path", default=None,
+    )  # fmt: skip
+    local_stiffness_on_path: float | None = shown(
+        "N/um", "tangent mesh stiffness without contact outside the path of contact, mean over the base pitch",
+        name="local_stiffness_mean_on_path", default=None,
+    )  # fmt: skip
+
+    @property
+    def off_path_stiffens(self) -> bool | None:
+        """Whether contact outside the path changes the mean secant stiffness beyond its error; None: not known."""
+        if self.mesh_stiffness_on_path is None:
+            return None
+        change = abs(self.mesh_stiffness_mean - self.mesh_stiffness_on_path)
+        error = 0.0 if self.shift is None else self.shift.stiffness
+        return change > max(error, _ROUND_OFF * self.mesh_stiffness_mean)
+
+    @property
+    def on_path_error(self) -> float | None:
+        """Estimated, of the mean secant stiffness on the path: relatively that with all contact [N/m]."""
+        return self._share_of_error(self.mesh_stiffness_on_path)
+
+    @property
+    def local_on_path_error(self) -> float | None:
+        """The same of the tangent [N/m]."""
+        return self._share_of_error(self.local_stiffness_on_path)
+
+    def _share_of_error(self, stiffness: float | None) -> float | None:
+        """Estimated, of a mean stiffness at the nominal load: relatively that of the secant stiffness [N/m]."""
+        if self.shift is None or stiffness is None:
+            return None
+        return self.shift.stiffness / self.mesh_stiffness_mean * stiffness
 
     @property
     def mean_errors(self) -> Array | None:
@@ -241,6 +281,22 @@ class ErrorOverPitch(Brief):
         """Transmission error at rotations of the driver under the nominal load [m], as `stiffness`."""
         return self._over_rotation(self.te, driver_angle, under)
 
+    @property
+    @shows("um", "transmission error minus load over mesh_stiffness: force = mesh_stiffness (deflection - te_0)")
+    def te_0(self) -> Array:
+        """Where the secant has no force, shape (P, L) [m], see `secant_start`."""
+        return secant_start(self.te, self.mesh_stiffness, self.total_load)
+
+    def start(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:
+        """Where the secant has no force at rotations of the driver [m], as `stiffness`.
+
+        It is that of both curves between their rows, so that the secant from there carries the load everywhere.
+        """
+        stiffness = self.stiffness(driver_angle, secant=True, under=under)
+        return secant_start(
+            self.error(driver_angle, under=under), stiffness, self.loads[self.at if under is None else under]
+        )
+
     def _over_rotation(self, values: Array, driver_angle: ArrayLike, under: int | None) -> Array:
         x = np.asarray(driver_angle, dtype=float) * self.pair.driver.base_radius
         part = (x - self.x[0]) / self.pair.base_pitch % 1.0
@@ -264,10 +320,8 @@ class ErrorOverPitch(Brief):
 
     @property
     def local_stiffness_error(self) -> float | None:
-        """Estimated, of the mean slope at the nominal load: relatively that of the secant stiffness [N/m]."""
-        if self.shift is None:
-            return None
-        return self.shift.stiffness / self.mesh_stiffness_mean * float(self.local_stiffness_mean[self.at])
+        """Estimated, of the mean slope at the nominal load [N/m]."""
+        return self._share_of_error(float(self.local_stiffness_mean[self.at]))
 
     @property
     def mesh_compliance_error(self) -> float | None:
@@ -283,7 +337,7 @@ class ErrorOverPitch(Brief):
         return np.array([one.amplitude[0] if one.amplitude.size else 0.0 for one in self.series])
 
 
-def secant_start(te: Array, stiffness: Array, load: float) -> Array:
+def secant_start(te: Array, stiffness: Array, load: float | Array) -> Array:
     """Transmission error at which the secant line has no force.
 
     Zero with unmodified flanks; beside contact of tips, and with reliefs and deviations, the gaps that are closed
@@ -293,7 +347,7 @@ def secant_start(te: Array, stiffness: Array, load: float) -> Array:
     ----------
     te, stiffness : ndarray
         Transmission error [m] and secant mesh stiffness of the pairs in contact [N/m].
-    load : float
+    load : float or ndarray
         [N].
 
     Returns

@@ -34,6 +34,9 @@ class MeshCurve(Protocol):
     def error(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:
         """[m]."""
 
+    def start(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:
+        """Where the secant has no force [m]."""
+
     @property
     def driver_torque(self) -> Array:
         """Of the loads, shape (L,) [N m]."""
@@ -58,6 +61,11 @@ class _OverRevolution:
     def error(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:  # noqa: ARG002  (it has one load)
         """[m]."""
         found: Array = self._found.error_at(driver_angle)
+        return found
+
+    def start(self, driver_angle: ArrayLike, *, under: int | None = None) -> Array:  # noqa: ARG002  (it has one load)
+        """[m]."""
+        found: Array = self._found.start_at(driver_angle)
         return found
 
 

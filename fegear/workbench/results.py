@@ -205,7 +205,7 @@ class Results(Found):
         ``mesh_stiffness`` is the secant, for coordinates from the unloaded position and flanks without modifications;
         ``kind="secant"`` gives it. It is that of the pairs in contact, without the gaps that reliefs, deviations and
         tips off the line of action close first: load over transmission error includes them and is lower. The column
-        ``te_0`` has what it is without force at: force = secant (deflection - te_0).
+        ``te_0``, and the function `te_0`, have where it is without force: force = secant (deflection - te_0).
 
         Parameters
         ----------
@@ -240,6 +240,14 @@ class Results(Found):
         """Transmission error at rotations of the driver [m], as `mesh_stiffness`."""
         curve = curve_of(self, pair)
         return curve.error(angles_of(driver_angle), under=load_number(curve, torque))
+
+    def te_0(self, driver_angle: ArrayLike, pair: str = "", *, torque: Torque | None = None) -> Array:
+        """Transmission error without force at rotations of the driver [m], as `mesh_stiffness`.
+
+        ``mesh_stiffness(angle, kind="secant") * (transmission_error(angle) - te_0(angle))`` is the load at every angle.
+        """
+        curve = curve_of(self, pair)
+        return curve.start(angles_of(driver_angle), under=load_number(curve, torque))
 
     def save(self, folder: str | os.PathLike[str], *, plots: bool = True) -> Path:
         """Write everything into a folder, as ``fegear run`` does: tables, dataset, pictures, report, summary.

@@ -63,7 +63,7 @@ def test_its_means_are_those_of_the_curves(results):
 def test_rows_of_the_curve_have_the_rotation_of_the_driver_from_the_pitch_point(results):
     table = results.tables["transmission_error_I"]
     angle, x = table.column("driver_angle").si, table.column("x").si
-    assert table.columns[-1].name == "driver_angle"  # behind those that were there
+    assert [one.name for one in table.columns[-2:]] == ["driver_angle", "te_0"]  # behind those that were there
     assert table.column("driver_angle").unit == "deg"
     radius = 23 * 1.5e-3 * math.cos(math.radians(20.0))
     np.testing.assert_allclose(angle, x / radius, rtol=1e-12, atol=1e-15)

@@ -9,6 +9,8 @@ import numpy as np
 from fegear.contact.plane.transmission_error import TransmissionError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement, Loaded
 
@@ -35,7 +37,7 @@ def mean_secant_stiffness(te: TransmissionError) -> float:
     return float(secant_stiffness(te.loaded)[:, 0] @ te.points.weights / te.points.period)
 
 
-def roll_positions(engagement: Engagement, count: int) -> Array:
+def roll_positions(engagement: Engagement, count: int, changes: Sequence[float] = ()) -> Array:
     """Evenly over one base pitch from the start of contact, and on either side of every jump [m].
 
     Parameters
@@ -43,9 +45,12 @@ def roll_positions(engagement: Engagement, count: int) -> Array:
     engagement : Engagement
     count : int
         Even steps over the base pitch.
+    changes : sequence of float
+        Further jumps: where pairs come into or out of contact under a load [m]. The secant stiffness jumps there.
     """
     start, pitch = engagement.pair.x_start, engagement.pair.base_pitch
-    beside = np.array([b + side * BESIDE * pitch for b in engagement.breaks for side in (-1.0, 1.0)])
+    jumps = (*engagement.breaks, *changes)
+    beside = np.array([b + side * BESIDE * pitch for b in jumps for side in (-1.0, 1.0)])
     x = np.concatenate([np.linspace(start, start + pitch, count + 1), beside])
     inside = (x > start + 0.5 * BESIDE * pitch) & (x < start + (1.0 - 0.5 * BESIDE) * pitch)
     ends = np.array([start + BESIDE * pitch, start + (1.0 - BESIDE) * pitch])

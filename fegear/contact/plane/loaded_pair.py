@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -49,6 +49,7 @@ from fegear.geometry.pair import MEMBERS, GearPair, Member
 
 if TYPE_CHECKING:
     from fegear.contact.fourier import Panels
+    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
 
@@ -146,6 +147,13 @@ class LoadedPair:
         """Roll positions of curves over the base pitch [m]."""
         return roll_positions(self.engagement, POSITIONS) if self._quick is None else self._quick.x
 
+    def _curve_positions(self, exact: Sequence[TransmissionError]) -> Array:
+        """The same, and both sides of each change of contact under every load, so that curves are straight between."""
+        if self._quick is not None or not self.exact:
+            return self._positions
+        changes = np.unique(np.concatenate([te.points.breaks for te in exact]))
+        return roll_positions(self.engagement, POSITIONS, changes.tolist())
+
     def _off_path(self, found: PairHistory) -> Array:
         return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)
 
@@ -156,7 +164,7 @@ class LoadedPair:
         for number, load in enumerate(self.loads if self.exact else ()):
             exact.append(transmission_error(e, load, HARMONICS))
             progress((number + 1) / (len(self.loads) + 2))
-        curve = e.solve(e.grid(self._positions), self.loads)
+        curve = e.solve(e.grid(self._curve_positions(exact)), self.loads)
         # with a contact ratio below 1 perfect flanks have positions without any pair on the path
         perfect = pair_stiffness(e, self.nominal, HARMONICS, self._quick) if e.pair.contact_ratio >= 1.0 else None
         te_mean, peak_to_peak, effective, local = (
@@ -164,6 +172,7 @@ class LoadedPair:
             for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
         )
         shifts = [transmission_error_shift(te, self.shifted) for te in exact]
+        on_path = self._on_path()
         return ErrorOverPitch(
             self.pair,
             self.loads,
@@ -188,7 +197,17 @@ class LoadedPair:
             rotational=self._rotational(),
             cycles=e.cycles,
             shifts=tuple(one for one in shifts if one is not None),
+            corner_contact=e.corner_contact,
+            mesh_stiffness_on_path=None if on_path is None else mean_secant_stiffness(on_path),
+            local_stiffness_on_path=None if on_path is None else on_path.average_stiffness,
         )
+
+    def _on_path(self) -> TransmissionError | None:
+        """Under the nominal load without contact outside the path of contact, where there is such contact."""
+        e = self.engagement
+        if not (self.exact and e.corner_contact) or e.uneven or e.pair.contact_ratio < 1.0:
+            return None
+        return transmission_error(replace(e, corner_contact=False), self.nominal, HARMONICS)
 
     def _rotational(self) -> FourierSeries | None:
         """Harmonics over the base pitches after which the same teeth meet again, where they are not too many."""

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import InputError
+from fegear.contact.error_over_pitch import secant_start
 from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import contact_changes
@@ -144,6 +145,11 @@ class OverRevolution:
     def error_at(self, driver_angle: ArrayLike) -> Array:
         """Transmission error under the load at rotations of the driver [m], as `stiffness_at`."""
         return self._over_rotation(self.transmission_error, driver_angle)
+
+    def start_at(self, driver_angle: ArrayLike) -> Array:
+        """Where the secant has no force at rotations of the driver [m], as `stiffness_at`."""
+        stiffness = self.stiffness_at(driver_angle, secant=True)
+        return secant_start(self.error_at(driver_angle), stiffness, self.load)
 
     def _over_rotation(self, values: Array, driver_angle: ArrayLike) -> Array:
         period = self.pitch * self.transmission_error.shape[0]

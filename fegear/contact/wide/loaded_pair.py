@@ -255,6 +255,7 @@ class LoadedWidePair:
             te_error=self.error.transmission_error[:, i],
             only=self.gaps.base_pitch if uneven else None,
             shifts=tuple(shifts) if self.estimated else (),
+            corner_contact=self.spec.corner_contact,
         )
 
     def _mean_without_gaps(self) -> float:

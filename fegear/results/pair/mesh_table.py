@@ -13,7 +13,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.printed import percent
 from fegear.base.shown import shown
-from fegear.contact.error_over_pitch import ErrorOverPitch, over_pitch, secant_start
+from fegear.contact.error_over_pitch import ErrorOverPitch, over_pitch
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark
@@ -32,6 +32,8 @@ class EvenMesh:
         [m], [N/m], [N/m].
     te_error : ndarray, shape (N,), or None
         [m].
+    te_0 : ndarray, shape (N,)
+        [m].
     lost : mapping of str to float
         How far means over the rows are from those of the curves, as shares of these.
     driver_angle : ndarray, shape (N,)
@@ -44,13 +46,11 @@ class EvenMesh:
     mesh_stiffness: Array
     local_stiffness: Array
     te_error: Array | None
+    te_0: Array
     lost: dict[str, float]
     driver_angle: Array = shown("deg", "rotation of the driver, from the start of the curve over the base pitch")
     from_pitch_point: Array = shown(
         "deg", "rotation of the driver, zero with a tooth pair at the pitch point", name="driver_angle_from_pitch_point"
-    )
-    te_0: Array = shown(
-        "um", "transmission error minus load over mesh_stiffness: force = mesh_stiffness (deflection - te_0)"
     )
 
 
@@ -58,16 +58,15 @@ def even_mesh(e: ErrorOverPitch, count: int) -> EvenMesh:
     """Curves of a pair at its nominal load at so many even steps."""
     pitch = e.pair.base_pitch
     part = np.arange(count) / count
-    te, secant, local = (over_pitch(e.x, getattr(e, key)[:, e.at], pitch, part) for key in _NAMES)
+    te, secant, local, start = (over_pitch(e.x, getattr(e, key)[:, e.at], pitch, part) for key in (*_NAMES, "te_0"))
     lost = {
         "transmission error": te.mean() / float(e.te_mean[e.at]) - 1.0,
         "tangent stiffness": local.mean() / float(e.local_stiffness_mean[e.at]) - 1.0,
     }
-    start = over_pitch(e.x, secant_start(e.te[:, e.at], e.mesh_stiffness[:, e.at], e.load), pitch, part)
     error = None if e.te_error is None else over_pitch(e.x, e.te_error, pitch, part)
     angle = part * pitch / e.pair.driver.base_radius
     from_pitch_point = angle + e.x[0] / e.pair.driver.base_radius
-    return EvenMesh(te, secant, local, error, lost, angle, from_pitch_point, start)
+    return EvenMesh(te, secant, local, error, start, lost, angle, from_pitch_point)
 
 
 def _what_even_steps_lose(seen: Seen) -> str:
@@ -88,7 +87,7 @@ MESH_TABLE = Rows(
         "driver_angle",
         *(Cell(key, si=f"even.{key}", of=lambda _: ErrorOverPitch) for key in (*_NAMES, "te_error")),
         "from_pitch_point",
-        "te_0",
+        Cell("te_0", si="even.te_0", of=lambda _: ErrorOverPitch),
     ),
     of="even",
     matlab=True,

@@ -94,8 +94,8 @@ def _load_with_torque(seen: Seen) -> Axis:
 _TITLE = "Transmission error of {name} over one base pitch"
 _TABLES = (
     Rows(
-        "transmission_error_{name}", _TITLE + ", {load:said}", (Every("pitch"), "te_error", "driver_angle"),
-        of="found",
+        "transmission_error_{name}", _TITLE + ", {load:said}", (Every("pitch"), "te_error", "driver_angle", "te_0"),
+        of="found", matlab=True,
     ),
     Rows(
         "transmission_error_harmonics_{name}", "Harmonics of the transmission error of {name}",
@@ -112,7 +112,7 @@ _TABLES = (
         when=lambda seen: len(seen.loads) > 1,
     ),
     EveryLoad(
-        "transmission_error_loads_{name}", _TITLE + ", every load (Harris map)", (Every("pitch"),), "found",
+        "transmission_error_loads_{name}", _TITLE + ", every load (Harris map)", (Every("pitch"), "te_0"), "found",
         OVER_LOADS,
     ),
     Rows(
@@ -133,6 +133,8 @@ _VALUES = (
     Number("te_first_harmonic", "found.shift.first_harmonic", "found"),
     Number("mesh_stiffness_mean", "found.shift.stiffness", "found"),
     Number("local_stiffness_mean", "found.local_stiffness_error", "found"),
+    Number("mesh_stiffness_on_path", "found.on_path_error", "found", when="found.off_path_stiffens"),
+    Number("local_stiffness_on_path", "found.local_on_path_error", "found", when="found.off_path_stiffens"),
     # Its error is taken to be that of the mean transmission error.
     Number("mesh_compliance_mean", "found.mesh_compliance_error", "found"),
     Number(
@@ -223,11 +225,30 @@ def _over_loads(seen: Seen) -> Iterator[str]:
         )
 
 
+def _mean_stiffness(seen: Seen) -> Iterator[str]:
+    """Which mean it is, and over which contact."""
+    e = seen.data.found
+    yield seen.said(
+        "Pair {name}: mean mesh stiffness {v[mesh_stiffness_mean]} (secant: load / deflection of the pairs in "
+        "contact), {v[local_stiffness_mean]} (tangent)" + _OVER_CONTACT[e.corner_contact, e.off_path_stiffens]
+    )
+
+
+#: Whether contact outside the path of contact is included, and what it changes.
+_OVER_CONTACT = {
+    (False, None): ", contact on the path of contact only.",
+    (True, None): ", contact outside the path of contact included.",
+    (True, False): ", contact outside the path of contact included (no influence).",
+    (True, True): ", contact outside the path of contact included; {v[mesh_stiffness_mean_on_path]} and "
+                  "{v[local_stiffness_mean_on_path]} without it.",
+}  # fmt: skip
+
+
 _ANSWER = Answer(
     "Pair {name} at {d.found.driver_torque:.3g}: transmission error {v[te_peak_to_peak]} peak to peak, mean "
     "{v[te_mean]}.",
     _over_loads,
-    "Pair {name}: mean mesh stiffness {v[mesh_stiffness_mean]} (secant), {v[local_stiffness_mean]} (tangent).",
+    _mean_stiffness,
     said_beside_iso,
     "Pair {name}: first harmonic of the mesh frequency {v[te_first_harmonic]} (amplitude).",
     figure="transmission_error_{name}", rank=lambda seen: -seen.data.found.te_peak_to_peak[seen.nominal],
