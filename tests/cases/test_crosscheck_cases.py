@@ -18,11 +18,13 @@ from fegear.case.reading import read_scene
 from fegear.cli import program
 from fegear.contact.compared.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.compared.root_stress_study import root_stress_study, variants, verdict
+from fegear.contact.compared.single_contact import at_single_contact
 from fegear.contact.compared.virtual_gear import virtual_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
 from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
@@ -77,14 +79,48 @@ def test_cornells_claim_is_answered_by_a_number(cornell_case):
     # is 0.7 % at the lowest of the five loads and 22.0 % at the highest, always on the safe side.
     tables, values, results = cornell_case
     answer = results.outcomes[Task("crosscheck", "")].answer.sentences[0]
-    assert answer.startswith("Gear test: root stress by formula over finite elements: ISO 6336-3 ")
-    assert f"Cornell {values['test.root_stress.cornell.lowest_ratio']:.2f} to 1.22, " in answer
+    assert answer.startswith("Pair I, test loaded at its outer point of single pair contact (HPSTC, diameter 90.117")
+    assert f"Cornell {values['I.driver.root_stress.cornell.hpstc_ratio']:.2f}, " in answer
     assert values["test.root_stress.cornell.largest_deviation"] == pytest.approx(0.220, abs=0.006)
     assert values["test.root_stress.cornell.lowest_ratio"] == pytest.approx(1.007, abs=0.006)
     table = tables["crosscheck_root_stress_test"]
     ratio = rows_of(table, "cornell")["ratio_to_fe"]
     assert ratio == pytest.approx([1.007, 1.053, 1.113, 1.171, 1.220], abs=0.006)
     assert np.max(table["root_tension_fe_error"] / table["root_tension_fe"]) < 5e-3
+
+
+def test_formulas_are_compared_where_ratings_put_the_load(cornell_case):
+    # Once more by hand: the point where the pair before lets go, a solution of its own, the standard's own factors.
+    tables, values, results = cornell_case
+    pair = results.scene.pairs["I"]
+    radius = float(pair.radius(pair.x_start + pair.base_pitch, "driver"))
+    gear = results.scene.gears["test"]
+    known = solve_gear(gear, mesh_settings(results.scene.case.accuracy), reach=0)
+    fe = float(known.largest_root_stress(0, "tension", [radius])[0][0])
+    factors = rate_spur(pair, "driver", 1.0, RatingChoice(2006, 6)).form
+    by_iso = math.cos(gear.external_tooth.rack.pressure_angle) / gear.module * factors.Y_F * factors.Y_S
+    assert values["I.driver.root_stress.iso-6336-3.hpstc_ratio"] == pytest.approx(by_iso / fe, rel=1e-4)
+    table = tables["crosscheck_single_contact_I"]
+    assert set(table["formula"]) == set(ROOT_STRESS_SOURCES)
+    assert table["hpstc_radius"] == pytest.approx(1e3 * radius, rel=1e-12)  # identical gears: the same of both
+    assert table["ratio_to_fe"] == pytest.approx(table["root_tension"] / table["root_tension_fe"], rel=1e-12)
+    iso = tables["crosscheck_iso_6336_I"]["ratio_to_fe"]
+    assert rows_of(table, "iso-6336-3")["ratio_to_fe"] == pytest.approx(iso, rel=1e-9)
+    # the load that ratings take is not among the extremes over the whole flank
+    low, high = (values[f"test.root_stress.iso-6336-3.{one}_ratio"] for one in ("lowest", "highest"))
+    assert low < values["I.driver.root_stress.iso-6336-3.hpstc_ratio"] < high
+    figure = next(one for one in results.figures if one.name == "crosscheck_root_stress_test")
+    assert any(getattr(item, "label", "") == "HPSTC I" for panel in figure.panels for item in panel.marks)
+
+
+def test_without_a_single_pair_the_upper_half_of_the_flank_is_compared():
+    _, _, results = run("cornell_test_gear", "stiffness={gear='test', positions=5}", "pair={}")
+    sentences = results.outcomes[Task("crosscheck", "")].answer.sentences
+    assert sentences[0].startswith("Gear test, loads on the upper half of the flank: root stress by formula / FE ")
+    assert not any("single pair contact" in one for one in sentences)
+    high = next(iter(read_scene(CASES / "high_contact_ratio.toml", ()).pairs.values()))
+    assert high.contact_ratio > 2.0
+    assert at_single_contact(high, ()) == ()
 
 
 def test_the_case_has_the_papers_gear_and_roll_angles(cornell_case):

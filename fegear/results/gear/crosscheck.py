@@ -18,7 +18,9 @@ from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_answer import (
     said_of_compliance,
+    said_of_helical,
     said_of_root_stress,
+    said_of_single_contact,
     said_of_stiffness,
 )
 from fegear.results.gear.crosscheck_compared import (
@@ -42,6 +44,8 @@ from fegear.results.gear.crosscheck_rows import (
     GEAR_COMPLIANCE_COLUMNS,
     PAIR_COMPLIANCE_COLUMNS,
     ROOT_STRESS_COLUMNS,
+    SINGLE_CONTACT_COLUMNS,
+    at_single_contact_values,
     comparison,
     extremes,
 )
@@ -145,6 +149,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         tooth_compliance_answers,
     )
     from fegear.contact.compared.rated_gears import rated_helical_pair, rated_spur_pair
+    from fegear.contact.compared.single_contact import at_single_contact
     from fegear.formulas.cornell import radial_section_lengths
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt
@@ -167,7 +172,8 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         fe_pair = pair_reference(pair, driver, driven, x, w)
         iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
         in_mesh = attempt(partial(mean_mesh_stiffness, pair, driver, driven, w))
-        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value)
+        outer = at_single_contact(pair, (driver, driven))
+        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value, outer)
         iso_asked = asked.iso[name]
         rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
         work.progress((len(gears) + len(pairs)) / count)
@@ -200,6 +206,12 @@ _STRESS_DRAWN = (
 _COMPLIANCE_DRAWN = "along the line of action (secant), and its ratio to FE"
 _STRESS_TABLE = Rows("crosscheck_root_stress_{key}", _ROOT, ROOT_STRESS_COLUMNS, of="root_stress")
 _TOOTH_TABLE = Rows("crosscheck_compliance_{key}", _TOOTH, GEAR_COMPLIANCE_COLUMNS, of="compliance")
+_SINGLE_TABLE = Rows(
+    "crosscheck_single_contact_{key}",
+    "Root stress of pair {key}, loads at the outer points of single pair contact (HPSTC): closed forms over finite "
+    "elements",
+    SINGLE_CONTACT_COLUMNS, of="single_contact",
+)  # fmt: skip
 _PAIR_TABLE = Rows("crosscheck_compliance_{key}", _of_pair, PAIR_COMPLIANCE_COLUMNS, of="compliance")
 
 
@@ -225,15 +237,22 @@ def _on_load(seen: Seen) -> str:
 
 
 def _said(seen: Seen) -> list[str]:
-    """Stiffness of pairs first where one carries a load, else root stress of the gears."""
-    pairs, mean, gears = (
+    """Each formula as it is meant first: root stress at the outer point of single pair contact, c' at its maximum.
+
+    Stiffness leads where a pair carries a load.
+    """
+    outer, helical, stiffness, compliance, gears = (
         [sentence for one in seen.each(where) for sentence in said(one)]
         for where, said in (
-            ("pairs", said_of_compliance), ("mean_stiffness", said_of_stiffness), ("gears", said_of_root_stress)
+            ("pairs", said_of_single_contact), ("iso", said_of_helical), ("mean_stiffness", said_of_stiffness),
+            ("pairs", said_of_compliance),
+            ("gears", said_of_root_stress),
         )
     )  # fmt: skip
     loaded = any(one.check.loaded for one in seen.data.pairs.values())
-    return [*pairs, *mean, *gears] if loaded or not gears else [*gears, *pairs, *mean]
+    if loaded or not (outer or gears):
+        return [*stiffness, *outer, *helical, *compliance, *gears]
+    return [*outer, *helical, *gears, *compliance, *stiffness]
 
 
 def _first_figure(seen: Seen) -> str:
@@ -250,11 +269,12 @@ _SHEET = Sheet(
     tables=(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
-        Each("pairs", _PAIR_TABLE),
+        Each("pairs", _SINGLE_TABLE, _PAIR_TABLE),
         Each("iso", ISO_TABLE),
         Each("gears", SECTION_TABLE, when="cornell"),
     ),
     values=(
+        Each("pairs", at_single_contact_values),
         Each("gears", extremes("root_stress", "root_stress"), extremes("compliance", "compliance")),
         Each(
             "pairs",

@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.base.shown import shown, shows
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.engine.sheet.seen import Seen
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
-    from fegear.results.gear.crosscheck_rows import Extremes
+    from fegear.results.gear.crosscheck_rows import Extremes, SingleContactRows
 
 #: Formulas of root stress as people name them, in the order in which an answer has them.
 ROOT_FORMULAS = {
@@ -91,7 +94,42 @@ def said_of_stiffness(seen: Seen) -> list[str]:
     return [f"Pair {seen.key}: ISO 6336-1 over finite elements: {', '.join(parts)}."] if parts else []
 
 
+def said_of_single_contact(seen: Seen) -> list[str]:
+    """Both gears of one pair, each formula at the load for which ratings take it, and the standard over all loads."""
+    rows: SingleContactRows | None = seen.one.single_contact
+    if rows is None:
+        return []
+    found: dict[str, str] = {}
+    for role, name in zip(MEMBERS, seen.one.check.gears, strict=True):
+        own = rows.of_gear(role)
+        ratios = dict(zip(own.formula, own.ratio_to_fe, strict=True))
+        known = [(label, ratios.get(key, np.nan)) for key, label in ROOT_FORMULAS.items()]
+        said = ", ".join(f"{label} {ratio:.2f}" for label, ratio in known if np.isfinite(ratio))
+        where = f"loaded at its outer point of single pair contact (HPSTC, diameter {2e3 * own.radius[0]:.5g} mm)"
+        if said:
+            found.setdefault(name, f"{name} {where}: root stress by formula / FE {said}")
+    return [f"Pair {seen.key}, {sentence}." for sentence in found.values()]
+
+
+def said_of_helical(seen: Seen) -> list[str]:
+    """Virtual spur teeth of one helical pair, each at its outer point of single pair contact, by the standard."""
+    if seen.key in seen.data.pairs:
+        return []
+    known = [(row.role, row.ratio_to_fe) for row in seen.one.rows if np.isfinite(row.ratio_to_fe)]
+    if not known:
+        return []
+    ratios = ", ".join(f"{role} {ratio:.2f}" for role, ratio in known)
+    said = (
+        f"Pair {seen.key}, virtual spur teeth loaded at their outer points of single pair contact: root stress "
+        f"F_t/(b m_n) Y_F Y_S of ISO 6336-3 / FE {ratios}."
+    )
+    return [said]
+
+
 def said_of_root_stress(seen: Seen) -> list[str]:
-    """One gear: the range of each formula over finite elements, that of the standard first."""
-    ranges = _ranges(seen.one.root_stress.extremes, ROOT_FORMULAS)
-    return [f"Gear {seen.key}: root stress by formula over finite elements: {ranges}."] if ranges else []
+    """One gear without an outer point of single pair contact: loads on the upper half of the flank."""
+    if seen.one.rated_loads:
+        return []
+    ranges = _ranges(seen.one.root_stress.upper_half.extremes, ROOT_FORMULAS)
+    said = f"Gear {seen.key}, loads on the upper half of the flank: root stress by formula / FE {ranges}."
+    return [said] if ranges else []

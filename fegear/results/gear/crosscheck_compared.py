@@ -9,14 +9,20 @@ from typing import TYPE_CHECKING
 from fegear.base.shown import shown, shows
 from fegear.results.gear.crosscheck_answer import MeanStiffness
 from fegear.results.gear.crosscheck_iso import CornellSection, IsoInputs, IsoPair, load_of_stiffness
-from fegear.results.gear.crosscheck_rows import GearComplianceRows, PairComplianceRows, RootStressRows
+from fegear.results.gear.crosscheck_rows import (
+    GearComplianceRows,
+    PairComplianceRows,
+    RootStressRows,
+    SingleContactRows,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.base.arrays import Array
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.compared.rated_gears import RatedPair
+    from fegear.contact.compared.single_contact import AtSingleContact
     from fegear.fem.plane.table import StiffnessTable
     from fegear.formulas.cornell import SectionLengths
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
@@ -85,12 +91,14 @@ class PairAnswers:
     """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none.
 
     `mean_stiffness`: of the mesh by finite elements per face width [Pa]; None where no pair is on the path somewhere.
+    `outer`: root stress of both gears at their outer points of single pair contact; empty where there are none.
     """
 
     reference: PairReference
     compliance: Mapping[str, ComplianceAnswers]
     iso: Outcome[Stiffness]
     mean_stiffness: float | None
+    outer: tuple[AtSingleContact, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,10 +112,14 @@ class CrosscheckData:
 
 @dataclass(frozen=True)
 class GearCompared:
-    """One gear: its formulas over finite elements, and Cornell's section of it."""
+    """One gear: its formulas over finite elements, and Cornell's section of it.
+
+    `rated_loads`: names and roll angles [rad] of its outer points of single pair contact, one for each of its pairs.
+    """
 
     gear: Gear
     answers: GearAnswers
+    rated_loads: tuple[tuple[str, float], ...] = ()
 
     @cached_property
     def root_stress(self) -> RootStressRows:
@@ -137,6 +149,12 @@ class PairCompared:
     def compliance(self) -> PairComplianceRows:
         """Formula by formula."""
         return PairComplianceRows.of(self.answers.compliance, self.answers.reference)
+
+    @cached_property
+    def single_contact(self) -> SingleContactRows | None:
+        """Both gears at their outer points of single pair contact; None where there are none."""
+        found = self.answers.outer
+        return SingleContactRows.of(found, self.check.pair, self.check.gears) if found else None
 
     @property
     @shows("N/(mm.um)", "maximum stiffness of one tooth pair, FE")
@@ -198,7 +216,10 @@ class Everything:
             if name in pairs else MeanStiffness.of(one.stiffness, None, one.face_width)
             for name, one in iso.items()
         }  # fmt: skip
-        gears = {name: GearCompared(gear, data.gears[name]) for name, gear in asked.gears.items()}
+        gears = {
+            name: GearCompared(gear, data.gears[name], tuple(_rated_loads(name, pairs)))
+            for name, gear in asked.gears.items()
+        }
         return cls(gears, pairs, iso, mean)
 
     @property
@@ -209,6 +230,16 @@ class Everything:
 
         stress = (FormulaSource(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values())
         return (*stress, *(FormulaSource(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()))
+
+
+def _rated_loads(gear: str, pairs: Mapping[str, PairCompared]) -> Iterator[tuple[str, float]]:
+    """Names and roll angles [rad] of the outer points of single pair contact of one gear."""
+    for name, one in pairs.items():
+        for outer, its in zip(one.answers.outer, one.check.gears, strict=False):
+            if its == gear:
+                pair = one.check.pair
+                at = float(pair.x_of_radius(outer.radius, outer.member))
+                yield f"HPSTC {name}", float(pair.roll_angle(at, outer.member))
 
 
 @dataclass(frozen=True)

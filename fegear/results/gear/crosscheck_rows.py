@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -15,15 +16,20 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Columns, Off
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.contact.compared.single_contact import AtSingleContact
     from fegear.engine.sheet.seen import Seen, Text
+    from fegear.engine.value import Value
     from fegear.fem.plane.table import StiffnessTable
+    from fegear.geometry.pair import GearPair
 
+#: Load positions from which on a load counts as high: about where the outer point of single pair contact begins.
+HIGH = 0.5
 #: Ratios that figures shade as agreement.
 _AGREEMENT = (0.95, 1.05)
 _C = TypeVar("_C", bound="Compared")
@@ -60,10 +66,13 @@ class Compared:
         """Shape (F N,)."""
         return self.result / self.reference
 
+    def where(self: _C, of: NDArray[np.bool_]) -> _C:
+        """Some of the rows."""
+        return replace(self, **{one.name: getattr(self, one.name)[of] for one in fields(self)})
+
     def rows_of(self: _C, formula: str) -> _C:
         """The same for one formula only."""
-        of = self.formula == formula
-        return replace(self, **{one.name: getattr(self, one.name)[of] for one in fields(self)})
+        return self.where(self.formula == formula)
 
     @property
     def formulas(self: _C) -> dict[str, _C]:
@@ -106,6 +115,12 @@ class RootStressRows(Compared):
     place_angle: Array = shown("deg", label="angle of fillet tangent to tooth centre line")
     place_angle_fe: Array = shown("deg")
 
+    @property
+    def upper_half(self) -> RootStressRows:
+        """Loads on the upper half of the flank, by roll angle from the lowest load to the highest."""
+        share = (self.roll_angle - self.roll_angle.min()) / (np.ptp(self.roll_angle) or 1.0)
+        return self.where(share >= HIGH)
+
     @classmethod
     def of(cls, answers: Mapping[str, RootStressAnswers], fe: StiffnessTable, module: float) -> RootStressRows:
         """Answers are those of a tooth of module 1."""
@@ -116,6 +131,52 @@ class RootStressRows(Compared):
             _joined(answers, "radius") * module, tiled(fe.root_tension_radius), _joined(answers, "tangent_angle"),
             tiled(fe.root_tension_angle),
         )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SingleContactRows(Compared):
+    """Root stress of both gears of a pair, each loaded at its outer point of single pair contact; radii [m].
+
+    Parameters
+    ----------
+    role, gear : ndarray of str
+    """
+
+    role: NDArray[np.str_] = shown("", "driver or driven")
+    gear: NDArray[np.str_] = shown("", "name of the gear")
+    result: Array = shown("MPa.mm/N")
+    reference: Array = shown("MPa.mm/N")
+    radius: Array = shown("mm", "radius of the load: outer point of single pair contact (HPSTC)", name="hpstc_radius")
+    error: Array = shown("MPa.mm/N")
+
+    @classmethod
+    def of(cls, found: Sequence[AtSingleContact], pair: GearPair, gears: Sequence[str]) -> SingleContactRows:
+        """Of gears with these names, driver first."""
+        rows = [
+            (
+                answer.reasons[0], answer.stress[0] / pair.gear(one.member).module, one.fe, formula, one.member, gear,
+                one.radius, one.fe_error,
+            )
+            for one, gear in zip(found, gears, strict=True)
+            for formula, answer in one.answers.items()
+        ]  # fmt: skip
+        reason, result, reference, formula, role, gear, radius, error = (np.array(column) for column in zip(*rows))  # noqa: B905  (rows of one length)
+        return cls(reason, result, reference, formula, role, gear, radius, error)
+
+    @property
+    @shows("", "root stress at the outer point of single pair contact, formula / FE", name="hpstc_ratio")
+    def ratio_at_hpstc(self) -> Array:
+        """`ratio_to_fe` under its name as a value."""
+        return self.ratio_to_fe
+
+    @property
+    def ratio_error(self) -> Array:
+        """Estimated: relatively that of the finite elements."""
+        return self.ratio_to_fe * self.error / self.reference
+
+    def of_gear(self, role: str) -> SingleContactRows:
+        """The same of driver or driven only."""
+        return self.where(self.role == role)
 
 
 @dataclass(frozen=True)
@@ -253,6 +314,29 @@ ROOT_STRESS_COLUMNS: Columns = (
     ),
     Cell("reasons", si="root_stress.reason", of=_compliance),
 )
+#: Of `SingleContactRows`.
+SINGLE_CONTACT_COLUMNS: Columns = (
+    "gear",
+    "role",
+    "formula",
+    "radius",
+    Cell(
+        "root_tension",
+        si="single_contact.result",
+        of=_stiffness,
+        meaning="root stress by the formula, per line load normal to the flank",
+    ),
+    Cell(
+        "root_tension",
+        si="single_contact.reference",
+        of=_stiffness,
+        name="root_tension_fe",
+        meaning="maximum tangential stress in the fillet, FE",
+    ),
+    Off("root_tension", "single_contact.error", "estimated error of FE", of=_stiffness, name="root_tension_fe"),
+    "ratio_to_fe",
+    Cell("reasons", si="single_contact.reason", of=_compliance),
+)
 #: Of what has `GearComplianceRows` as ``compliance``.
 GEAR_COMPLIANCE_COLUMNS: Columns = (
     "formula",
@@ -319,6 +403,20 @@ def extremes(kind: str, where: str) -> Any:
     return numbers
 
 
+def at_single_contact_values(seen: Seen) -> Iterator[Value]:
+    """Of every formula that gives a value, for both gears of a pair."""
+    rows: SingleContactRows | None = seen.one.single_contact
+    if rows is None:
+        return
+    for i in range(rows.formula.size):
+        one = replace(seen, one=rows.where(np.arange(rows.formula.size) == i))
+        owner = f"{seen.key}.{rows.role[i]}.root_stress.{rows.formula[i]}"
+        yield from Number(
+            "ratio_at_hpstc", lambda at: at.one.ratio_error[0], si=lambda at: at.one.ratio_to_fe[0], owner=owner,
+            meaning=f"{rows.formula[i]} / FE, load at the outer point of single pair contact (HPSTC)",
+        ).values(one)  # fmt: skip
+
+
 def comparison(name: str, title: Text, what: str, where: str, x: str, *, stress: bool = False) -> Chart:
     """Every formula compared with the finite elements, their ratio, and of a root stress its place.
 
@@ -349,9 +447,14 @@ def comparison(name: str, title: Text, what: str, where: str, x: str, *, stress:
         return f"{subject}: {what}.{seen.find(where).out_of_range}"
 
     agreement = (Zone("y", *_AGREEMENT), Mark("y", 1.0, "±5 %"))
+
+    def marks(seen: Seen) -> tuple[Zone | Mark, ...]:
+        rated = [Mark("x", math.degrees(roll), words) for words, roll in seen.one.rated_loads] if stress else ()
+        return *agreement, *rated
+
     panels = [
         Over(x, panel("result", "reference"), "result", options={"zero": not stress}, panel={"height": 1.2}),
-        Over(x, (Line("ratio_to_fe", each=formulas),), "ratio_to_fe", marks=lambda _: agreement),
+        Over(x, (Line("ratio_to_fe", each=formulas),), "ratio_to_fe", marks=marks),
     ]
     if stress:
         panels.append(Over(x, panel("place_angle", "place_angle_fe"), "place_angle"))

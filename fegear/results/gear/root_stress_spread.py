@@ -14,6 +14,7 @@ from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.seen import Seen
 from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
+from fegear.results.gear.crosscheck_rows import HIGH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,10 +36,6 @@ WORDS = {
 
 #: Ratios that the picture shows; what lies beyond stands at its edges.
 _SHOWN = (0.5, 1.5)
-
-
-#: Load positions from which on a load counts as high: about where the outer point of single pair contact begins.
-HIGH = 0.5
 
 
 def _number(table: Mapping[str, Array], key: str) -> Array:

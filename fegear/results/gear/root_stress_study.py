@@ -27,7 +27,8 @@ from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
-from fegear.results.gear.root_stress_spread import HIGH, WORDS, fe_error, sentences, spread_figure
+from fegear.results.gear.crosscheck_rows import HIGH
+from fegear.results.gear.root_stress_spread import WORDS, fe_error, sentences, spread_figure
 from fegear.results.gear.root_stress_varied import ratios_figure, tiles_figure
 
 if TYPE_CHECKING:
