@@ -200,6 +200,17 @@ def test_no_drift_is_named_where_there_is_none_or_one_engagement():
     assert fit_curve(at, strain + follows[: at.size], angle, curve, FITTED[:3]).unfitted_drift is None
 
 
+def test_noise_is_what_does_not_repeat_at_the_same_place():
+    """Of samples so few that the curve itself changes from one to the next: its change is no noise."""
+    angle, curve = _curve()
+    at = np.sort(np.random.default_rng(6).uniform(-0.3, 0.35, 60))
+    clean = 1.3 * np.interp(at, angle, curve) + 2e-4
+    assert fit_curve(at, clean, angle, curve, ("offset", "scale")).noise < 1e-9 * np.ptp(curve)
+    noisy = clean + np.random.default_rng(8).normal(0.0, 2e-5, at.size)
+    made = fit_curve(at, noisy, angle, curve, ("offset", "scale"))
+    assert made.noise * made.scale == pytest.approx(2e-5, rel=0.35)
+
+
 def test_noise_that_goes_together_widens_the_standard_errors():
     rng, (angle, curve), ratios = np.random.default_rng(3), _curve(), []
     at = np.arange(-0.3, 0.35, 0.0005)

@@ -49,6 +49,9 @@ def equal(psi=30.0, kappa=0.5, zeta=0.03):
     C = 1e-6 * K
     sign = np.diag(P)
     g = RigidGear(2.882, (0.008, 0.009, 0.0143), 0.07048, 0.02114, K, C)
+    for matrix in (g.bearing_stiffness, g.bearing_damping):
+        with pytest.raises(ValueError, match="read-only"):
+            matrix[0, 0] = 1.0
     h = RigidGear(2.882, (0.008, 0.009, 0.0143), 0.07048, 0.02114, sign[:, None] * K * sign, sign[:, None] * C * sign)
     return HelicalPairModel(g, h, MeshParameters(3e8, kappa, partial_face_mu(kappa), psi * DEG), 1e-6, zeta)
 

@@ -170,3 +170,18 @@ def test_faces_that_stand_apart_touch_as_rigid_flanks_do(offset):
     apart = -unloaded_error(pair, gaps, roll) / other.base_radius - cycle.error
     assert np.ptp(cycle.error) > 0.1 * ARCSEC
     assert np.ptp(apart) < 1e-3 * ARCSEC
+
+
+@pytest.mark.parametrize("beta", [0.0, 15.0])
+def test_no_load_repeats_after_a_base_pitch_however_far_the_gears_have_turned(beta):
+    """Of crowned flanks on tilted shafts: the next tooth is where this one was."""
+    pair = GearPair(gear(23, beta, "right"), gear(41, beta, "left"))
+    gaps = FlankGaps(
+        driver_flank=(CutRemoval(pair.driver, crown=3.0, parabola=2.0),), tilt=ShaftTilt(out_of_plane=2e-4)
+    )
+    roll = np.linspace(pair.x_start, pair.x_end, 7)
+    found = unloaded_error(pair, gaps, roll)
+    assert np.ptp(found) > 0.0
+    for pitches in (-9, 4, 11):
+        again = unloaded_error(pair, gaps, roll + pitches * pair.base_pitch)
+        assert np.abs(again - found).max() < 1e-9 * np.abs(found).max() + 1e-15

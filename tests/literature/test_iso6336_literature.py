@@ -240,6 +240,7 @@ def test_blank_factor_bounds():
 def test_rim_and_deep_tooth_factors_are_continuous():
     # 1.6 ln(2.242/1.2) = 1.00003: the standard's own rounding
     assert root.rim_factor(1.2 - 1e-12, 1.0) == pytest.approx(1.0, abs=1e-3)
+    assert root.rim_factor(2.0, 2.5) == pytest.approx(1.6 * math.log(2.242 / 0.8), rel=1e-15)
     assert root.deep_tooth_factor(2.05 + 1e-12) == pytest.approx(1.0, abs=1e-3)
     assert root.deep_tooth_factor(2.5) == pytest.approx(0.7, abs=2e-3)
 
@@ -257,6 +258,7 @@ def test_rim_and_deep_tooth_factors_are_continuous():
         (lambda: root.RackTooth(-25), "external"),
         (lambda: root.root_form(root.RackTooth(25, dedendum=1.25, tip_radius=0.9), 27.0), "fillets overlap"),
         (lambda: root.stress_correction_factor(2.0, 1.0, 0.1), "q_s"),
+        (lambda: root.stress_correction_factor(1.6, 1.0, 0.1), "q_s"),
         (lambda: root.root_form(root.RackTooth(25), 20.0), "below the base diameter"),
         (lambda: root.root_form(root.RackTooth(12, 0.6), 19.0), "pointed"),
         (lambda: root.rim_factor(0.4, 1.0), "must exceed 0.5"),
