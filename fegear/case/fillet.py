@@ -142,18 +142,6 @@ class FilletPart(Part):
             )  # fmt: skip
         return PointsFillet(places, self.frame == "space", form, scatter)
 
-    def on(self, tooth: InvoluteSide, module: float, find: FindFile | None) -> InvoluteSide:
-        """A tooth with this fillet; the tooth itself where it is asymmetric, or where the file cannot be looked for.
-
-        Parameters as of `shape`.
-        """
-        from fegear.geometry.custom_fillet_tooth import with_fillet
-        from fegear.geometry.external_tooth import Tooth
-        from fegear.geometry.internal_tooth import InternalTooth
-
-        shape = self.shape(module, find) if isinstance(tooth, (Tooth, InternalTooth)) else None
-        return tooth if shape is None or not isinstance(tooth, (Tooth, InternalTooth)) else with_fillet(tooth, shape)
-
     def _points(self, find: FindFile | None) -> list[tuple[float, float]] | None:
         if self.file is None:
             return list(zip(self.x or (), self.y or (), strict=True))
@@ -171,3 +159,44 @@ class FilletPart(Part):
                 key, f'"{self.file}"', f"has {len(x):,} points; {_FEWEST_POINTS} to {_MOST_POINTS:,} are supported"
             )
         return list(zip(x, y, strict=True))
+
+
+def with_fillets_of_case(
+    tooth: InvoluteSide, module: float, find: FindFile | None, fillet: FilletPart | None, coast: FilletPart | None
+) -> InvoluteSide:
+    """A tooth with the fillets that a case gives; as its tool makes it where their files cannot be looked for.
+
+    Parameters
+    ----------
+    tooth : InvoluteSide
+    module : float
+        [m].
+    find : callable, optional
+        Finds a file of the case.
+    fillet, coast : FilletPart, optional
+        Of both sides of equal flanks, or of the drive side, and of the coast side.
+
+    Raises
+    ------
+    InputError
+        If a file is no table of points, or the tooth cannot have a fillet.
+    """
+    from fegear.geometry.external_tooth import Tooth
+    from fegear.geometry.internal_tooth import InternalTooth
+
+    shape = None if fillet is None else fillet.shape(module, find)
+    if isinstance(tooth, (Tooth, InternalTooth)):
+        from fegear.geometry.custom_fillet_tooth import with_fillet
+
+        return tooth if shape is None else with_fillet(tooth, shape)
+    from fegear.geometry.asymmetric_fillets import with_fillets
+    from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
+    from fegear.geometry.asymmetric_tooth import AsymmetricSide
+
+    try:
+        beside = None if coast is None else coast.shape(module, find)
+    except InputError as error:
+        raise InputError(f"coast_{error.key}", error.value, error.rule, error.remedy) from None
+    if (shape is None and beside is None) or not isinstance(tooth, (AsymmetricSide, AsymmetricInternalSide)):
+        return tooth
+    return with_fillets(tooth, drive=shape, coast=beside)

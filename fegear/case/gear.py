@@ -17,7 +17,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM, Gear
 from fegear.geometry.inspection import span
 from fegear.geometry.internal_tooth import InternalTooth
-from fegear.geometry.involute_side import Flank
+from fegear.geometry.involute_side import Flank, InvoluteSide
 
 if TYPE_CHECKING:
     from fegear.case.fillet import FindFile
@@ -118,7 +118,11 @@ class GearPart(GearKeys):
         """
         m = self.module_length
         try:
-            tooth = self._tooth(m) if self.fillet is None else self.fillet.on(self._tooth(m), m, find)
+            tooth: InvoluteSide = self._tooth(m)
+            if self.fillet is not None or self.coast_fillet is not None:
+                from fegear.case.fillet import with_fillets_of_case
+
+                tooth = with_fillets_of_case(tooth, m, find, self.fillet, self.coast_fillet)
             width = 1e-3 if self.face_width is None else self.face_width
             held = self._held_radius(tooth.root_radius * m)
             body = None if self.body is None else self.body.build(tooth.root_radius * m, held, width)
@@ -236,7 +240,7 @@ class GearPart(GearKeys):
         if error.key in ("tip_rounding", "tip_chamfer"):
             length = self.tip_radius_rounding if error.key == "tip_rounding" else self.tip_chamfer
             return InputError(error.key, f"{length * 1e3:.6g} mm", in_mm(error.rule), in_mm(error.remedy))
-        if error.key.startswith("fillet"):
+        if error.key.removeprefix("coast_").startswith("fillet"):
             return InputError(error.key, in_mm(str(error.value)), in_mm(error.rule), in_mm(error.remedy))
         if error.key != "tip_radius":
             return error

@@ -25,7 +25,6 @@ _EXTERNAL_ONLY = {
 
 #: Keys that are for gears with equal flanks only, and what to do with them.
 _SYMMETRIC_ONLY = {
-    "fillet": "remove it: fillets are those of the rack",
     "transverse_pressure_angle": "remove it",
     "tooth_mesh": "remove it: its mesh is generated",
     "body": "remove it: gears with asymmetric teeth are solid discs",
@@ -65,7 +64,7 @@ def check_asymmetric(part: GearKeys) -> None:
             value=part.rack.tip_radius,
         )  # fmt: skip
     if not part.asymmetric:
-        for key in ("coast_relief", "coast_lead", "coast_measured"):
+        for key in ("coast_relief", "coast_lead", "coast_measured", "coast_fillet"):
             if getattr(part, key) is not None:
                 both = key.removeprefix("coast_")
                 raise refuse("requires asymmetric teeth", f"specify {both} (both flanks)", key=key)

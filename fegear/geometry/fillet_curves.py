@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
-from fegear.geometry.curves import Arc, Curve
+from fegear.geometry.curves import Arc, Curve, smooth_pieces
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -195,3 +195,62 @@ class ArcsFillet:
     def speed(self, parameter: ArrayLike) -> Array:
         """One."""
         return np.ones(np.shape(parameter))
+
+
+@dataclass(frozen=True, slots=True)
+class TurnedCurve:
+    """A curve turned clockwise about the gear's centre, away from the centre line of the tooth.
+
+    Parameters
+    ----------
+    curve : Curve
+    angle : float
+        [rad].
+    """
+
+    curve: Curve
+    angle: float
+
+    @property
+    def start(self) -> float:
+        """Of the curve."""
+        return self.curve.start
+
+    @property
+    def end(self) -> float:
+        """Of the curve."""
+        return self.curve.end
+
+    @property
+    def smooth_parts(self) -> tuple[Curve, ...]:
+        """Those of the curve, turned."""
+        return tuple(turned_curve(part, self.angle) for part in smooth_pieces((self.curve,)))
+
+    def _turned(self, vectors: Array) -> Array:
+        s, c = math.sin(self.angle), math.cos(self.angle)
+        return np.stack([c * vectors[0] + s * vectors[1], c * vectors[1] - s * vectors[0]])
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Points [modules], shape (2, N)."""
+        return self._turned(self.curve.points(parameter))
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Unit normals out of the material, shape (2, N)."""
+        return self._turned(self.curve.normals(parameter))
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Of the curve [1/modules]."""
+        return self.curve.curvatures(parameter)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """Of the curve [modules]."""
+        return self.curve.speed(parameter)
+
+
+def turned_curve(curve: Curve, angle: float) -> Curve:
+    """A curve turned clockwise about the gear's centre by an angle [rad]; an arc stays one."""
+    if isinstance(curve, Arc):
+        s, c = math.sin(angle), math.cos(angle)
+        x, y = curve.centre
+        return replace(curve, centre=(c * x + s * y, c * y - s * x), start=curve.start + angle, end=curve.end + angle)
+    return TurnedCurve(curve, angle)

@@ -8,16 +8,17 @@ undercut does, the outer corner between both is kept. Lengths are in modules, in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
-from fegear.geometry.curves import Arc, Curve, Involute
+from fegear.geometry.curves import Arc
 from fegear.geometry.fillet_curves import DEGREE, ArcsFillet, EllipseFillet, SplineFillet
 from fegear.geometry.fitted_points import interpolated, smoothed
+from fegear.geometry.flank_above import FlankAbove, Foot
 
 #: Largest angle between fillet and flank, or root circle, that is taken for a tangent [rad].
 STEEPEST_JOINT = math.radians(3.0)
@@ -26,95 +27,6 @@ STEEPEST_JOINT = math.radians(3.0)
 OFF_THE_FLANK = 2e-3
 #: Fewest points of a fillet.
 FEWEST_POINTS = 4
-
-
-@dataclass(frozen=True, slots=True)
-class FlankAbove:
-    """What a fillet is fitted to: the involute above it, the root circle and the middle of the tooth space.
-
-    Parameters
-    ----------
-    base_radius, base_half_angle : float
-        Of the involute [modules, rad].
-    side : {1, -1}
-        1 of an external tooth, -1 of an internal one.
-    half_pitch : float
-        pi / z [rad].
-    root_radius, form_radius : float
-        As the tool makes them [modules].
-    """
-
-    base_radius: float
-    base_half_angle: float
-    side: int
-    half_pitch: float
-    root_radius: float
-    form_radius: float
-
-    def roll(self, radius: float) -> float:
-        """Roll angle at a radius outside the base circle [rad]."""
-        return (
-            self.side
-            * math.sqrt(max((radius - self.base_radius) * (radius + self.base_radius), 0.0))
-            / self.base_radius
-        )
-
-    def point(self, roll: float) -> Array:
-        """Of the involute, shape (2,)."""
-        return Involute(self.base_radius, self.base_half_angle, 0.0, 1.0).points(roll)
-
-    def normal(self, roll: float) -> Array:
-        """Out of the material, shape (2,)."""
-        return Involute(self.base_radius, self.base_half_angle, 0.0, 1.0).normals(roll)
-
-    def tangent(self, roll: float) -> Array:
-        """Toward the tip, shape (2,)."""
-        n = self.normal(roll)
-        return self.side * np.array([-n[1], n[0]])
-
-    def in_space(self, points: Array) -> Array:
-        """Points beside and along the centre line of the tooth space, shape (2, ...), and back."""
-        s, c = math.sin(self.half_pitch), math.cos(self.half_pitch)
-        return np.stack([points[1] * s - points[0] * c, points[1] * c + points[0] * s])
-
-    def start(self, key: str, form_radius: float | None) -> float:
-        """Roll angle where the flank begins at a form circle, by default that of the tool.
-
-        Raises
-        ------
-        GeometryError
-            If no involute is there.
-        """
-        radius = self.form_radius if form_radius is None else form_radius
-        if not radius >= self.base_radius:
-            raise GeometryError(
-                key, f"{radius:.6g} modules", f"must be at least the base radius of {self.base_radius:.6g} modules",
-                "start the flank outside the base circle",
-            )  # fmt: skip
-        return self.roll(radius)
-
-
-class Foot(NamedTuple):
-    """A fillet below a flank.
-
-    Attributes
-    ----------
-    fillet : Curve
-    roll : float
-        Roll angle where the involute begins [rad].
-    root_radius : float
-        [modules].
-    root_land_half_angle : float
-        Half the angle of the root land that is left [rad].
-    corner : bool
-        Whether the flank begins in a corner, as with undercut.
-    """
-
-    fillet: Curve
-    roll: float
-    root_radius: float
-    root_land_half_angle: float
-    corner: bool = False
 
 
 class FilletShape(Protocol):
@@ -159,10 +71,7 @@ class PointsFillet:
         """
         points, roll = self.up_to_the_flank(flank)
         points[:, -1] = flank.point(roll)
-        land = _land(points[:, 0], flank, max(self.scatter, OFF_THE_FLANK))
-        if land == 0.0:
-            radius = float(np.hypot(*points[:, 0]))
-            points[:, 0] = radius * math.sin(flank.half_pitch), radius * math.cos(flank.half_pitch)
+        land = _land(points, flank, max(self.scatter, OFF_THE_FLANK))
         free = (
             smoothed(points, (None, None), self.scatter) if self.scatter > 0.0 else interpolated(points, (None, None))
         )
@@ -249,10 +158,7 @@ class ControlFillet:
         """The fillet below a flank; refusals as of `PointsFillet`."""
         points, roll = PointsFillet(self.control, self.of_space).up_to_the_flank(flank)
         points[:, -1] = flank.point(roll)
-        land = _land(points[:, 0], flank, OFF_THE_FLANK)
-        if land == 0.0:
-            radius = float(np.hypot(*points[:, 0]))
-            points[:, 0] = radius * math.sin(flank.half_pitch), radius * math.cos(flank.half_pitch)
+        land = _land(points, flank, OFF_THE_FLANK)
         legs = points[:, 1] - points[:, 0], points[:, -1] - points[:, -2]
         (first, last), corner = _directions(points, flank, roll, legs)
         if first is not None:
@@ -267,18 +173,26 @@ class ControlFillet:
         return Foot(curve, roll, float(np.hypot(*points[:, 0])), land, corner)
 
 
-def _land(first: Array, flank: FlankAbove, reach: float) -> float:
-    """Half the angle of the root land that is left before the first point; zero in the middle of the space [rad]."""
-    radius, polar = float(np.hypot(*first)), math.atan2(first[0], first[1])
-    land = flank.half_pitch - polar
-    if abs(land) * radius <= reach:
-        return 0.0
-    if land < 0.0:
+def _land(points: Array, flank: FlankAbove, reach: float) -> float:
+    """Angle of the root land before the first point up to the middle of the space, negative beyond it [rad].
+
+    The first point is put where the other fillet of the space ends, if it lies within a reach of it [modules].
+    """
+    x, y = points[:, 0]
+    given, polar = math.hypot(x, y), math.atan2(x, y)
+    radius = flank.at_the_bottom(given, "fillet.points", reach)
+    left = flank.last - polar
+    if left * radius < -reach:
+        middle = "the middle of" if flank.beyond == 0.0 else "the other fillet of"
         raise GeometryError(
-            "fillet.points", "the first point", f"is {-land * radius:.3g} modules beyond the middle of the tooth space",
+            "fillet.points", "the first point", f"is {-left * radius:.3g} modules beyond {middle} the tooth space",
             "start the points in the middle of the tooth space, or specify a smaller fillet",
         )  # fmt: skip
-    return land
+    if abs(left) * radius <= reach:
+        polar = flank.last
+    if polar == flank.last or radius != given:
+        points[:, 0] = radius * math.sin(polar), radius * math.cos(polar)
+    return flank.half_pitch - polar
 
 
 def _directions(
@@ -338,6 +252,9 @@ class EllipseOnSpace:
         """
         roll = flank.start("fillet.form_diameter", self.form_radius)
         root = _root(self.root_radius, flank, roll)
+        beyond = flank.beyond or 0.0
+        if beyond:  # on the line up to which the other fillet leaves room
+            flank = replace(flank, half_pitch=flank.last)
         (x, y), (tx, ty) = flank.in_space(flank.point(roll)), flank.in_space(flank.tangent(roll))
         up, rise = flank.side * (float(y) - root), flank.side * float(ty)
         # through (x, up) with the slope rise / tx, level at (0, 0): 1/b from both conditions, then the other axis
@@ -356,7 +273,7 @@ class EllipseOnSpace:
                 "fillet.form_diameter", f"{2.0 * math.hypot(x, y):.6g} modules", rule, remedy,
             )  # fmt: skip
         curve = EllipseFillet(flank.half_pitch, root, float(beside), float(along), end, flank.side)
-        return Foot(curve, roll, root, 0.0)
+        return Foot(curve, roll, root, 0.0 - beyond)
 
 
 @dataclass(frozen=True, slots=True)
@@ -386,7 +303,7 @@ class ArcFillet:
         """
         if len(self.radii) == 2:
             return self._two(flank)
-        root = flank.root_radius if self.root_radius is None else self.root_radius
+        root = _root_circle(self.root_radius, flank)
         if not self.radii:
             roll = flank.start("fillet.form_diameter", self.form_radius)
             root = _root(self.root_radius, flank, roll)
@@ -439,9 +356,15 @@ class ArcFillet:
         raise found
 
 
+def _root_circle(given: float | None, flank: FlankAbove) -> float:
+    """Root radius: as given, else that of the other fillet or of the tool."""
+    usual = flank.root_radius if flank.bottom is None else flank.bottom
+    return flank.at_the_bottom(usual if given is None else given, "fillet.root_diameter", OFF_THE_FLANK)
+
+
 def _root(given: float | None, flank: FlankAbove, roll: float) -> float:
     """Root radius, which must lie below the form circle."""
-    root, form = flank.root_radius if given is None else given, float(np.hypot(*flank.point(roll)))
+    root, form = _root_circle(given, flank), float(np.hypot(*flank.point(roll)))
     if not (flank.side * (form - root) > 1e-3 and root > 0.0):
         below = "below" if flank.side > 0 else "above"
         raise GeometryError(
@@ -455,10 +378,12 @@ def _of_arcs(flank: FlankAbove, root: float, roll: float, centres: list[Array], 
     """The fillet of arcs about centres from the root circle to the flank."""
     x, y = centres[0]
     land = flank.half_pitch - math.atan2(x, y)
-    if land * root < -1e-9:
+    left = flank.last - math.atan2(x, y)
+    if left * root < -1e-9:
+        middle = "the middle of" if flank.beyond == 0.0 else "the other fillet of"
         raise GeometryError(
             "fillet.radii", " and ".join(f"{radius:.4g}" for radius in radii[::-1]) + " modules",
-            f"extend {-land * root:.3g} modules beyond the middle of the tooth space",
+            f"extend {-left * root:.3g} modules beyond {middle} the tooth space",
             "choose smaller radii, or another form_diameter",
         )  # fmt: skip
     directions = [np.array([-x, -y]) * flank.side]
@@ -475,4 +400,4 @@ def _of_arcs(flank: FlankAbove, root: float, roll: float, centres: list[Array], 
         Arc((float(c[0]), float(c[1])), -radius, float(a), float(b))
         for c, radius, a, b in zip(centres, radii, angles, angles[1:], strict=False)
     )
-    return Foot(ArcsFillet(arcs), roll, root, max(land, 0.0) if land * root > 1e-6 else 0.0)
+    return Foot(ArcsFillet(arcs), roll, root, land if left * root > 1e-6 else flank.half_pitch - flank.last)

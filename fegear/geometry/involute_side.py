@@ -313,8 +313,8 @@ class InvoluteSide(ABC):
 
 
 @dataclass(frozen=True)
-class SideOfTooth(InvoluteSide):
-    """A side of which another tooth has the given numbers: the whole tooth, or the tooth as its tool makes it."""
+class TakenOver:
+    """What is given of any tooth, taken over from another one."""
 
     teeth: int = field(init=False, repr=False)
     profile_shift: float = field(init=False, repr=False)
@@ -325,6 +325,11 @@ class SideOfTooth(InvoluteSide):
     helix_angle: float = field(init=False, repr=False)
 
     def take_over(self, tooth: GivenNumbers) -> None:
-        """Have the given numbers of a tooth; while this side is made."""
-        for given in fields(SideOfTooth):
+        """Have the given numbers of a tooth; while this one is made."""
+        for given in fields(TakenOver):
             object.__setattr__(self, given.name, getattr(tooth, given.name))
+
+
+@dataclass(frozen=True)
+class SideOfTooth(TakenOver, InvoluteSide):
+    """A side of which another tooth has the given numbers: the whole tooth, or the tooth as its tool makes it."""

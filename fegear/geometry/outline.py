@@ -146,6 +146,7 @@ def _cutter_in_gear(tooth: InternalTooth | AsymmetricInternalSide, rolled: float
 
 def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
     """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
+    from fegear.geometry.asymmetric_fillets import AsymmetricFilletSide
     from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
     from fegear.geometry.asymmetric_tooth import AsymmetricSide
     from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
@@ -154,6 +155,8 @@ def tool_in_gear(tooth: InvoluteSide, rolled: float) -> Array:
         return _cutter_in_gear(tooth, rolled)
     if isinstance(tooth, (Tooth, AsymmetricSide)):
         return rack_in_gear(tooth, rolled)
+    if isinstance(tooth, AsymmetricFilletSide):
+        return turned(tool_in_gear(tooth.as_generated, rolled), tooth.turn)
     if isinstance(tooth, CustomFilletTooth):
         return tool_in_gear(tooth.generated, rolled)
     raise TypeError(f"no tool available for a {type(tooth).__name__}")

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.geometry.pair import MEMBER_WORDS, MEMBERS, GearPair, Member
+from fegear.geometry.shaped_side import ShapedSide
 
 #: Less than this is no interference [m], as round-off and printed diameters leave it.
 _MEETS = 1e-6
@@ -128,23 +129,29 @@ def refuse_shaped(pair: GearPair) -> None:
     GeometryError
         With the limit.
     """
-    for member in MEMBERS:
-        gear, tip_of = pair.gear(member), MEMBERS[member == "driver"]
-        if not gear.shaped:
-            continue
-        mate = pair.gear(tip_of)
-        reach = float(pair.radius(pair.x_of_radius(mate.involute_tip_radius, tip_of), member))
-        if gear.tooth.side * (gear.form_radius - reach) > _MEETS:
-            side = "above" if gear.tooth.side > 0 else "inside"
-            raise GeometryError(
-                f"{member}.fillet", f"root form diameter {2e3 * gear.form_radius:.6g} mm",
-                f"is {side} the active root diameter of {2e3 * reach:.6g} mm, which the mating tip reaches",
-                f"start the flank at {2e3 * reach:.6g} mm or closer to the root",
-            )  # fmt: skip
-        found = interference(pair, tip_of, _CLOSELY)
-        if found.root_clearance <= 0.0 or found.fillet_gap < -_MEETS:
-            deep = -min(found.root_clearance, found.fillet_gap)
-            raise GeometryError(
-                f"{member}.fillet", "the fillet", f"is cut by the path of the mating tip by {deep * 1e3:.4g} mm",
-                "move it closer to the root circle, or reduce the mating tip diameter",
-            )  # fmt: skip
+    for seen in (pair, pair.from_the_back) if pair.asymmetric else (pair,):
+        for member in MEMBERS:
+            tooth = seen.gear(member).tooth
+            if isinstance(tooth, ShapedSide) and tooth.fillet_key is not None:
+                _refuse_shaped(seen, member, tooth.fillet_key)
+
+
+def _refuse_shaped(pair: GearPair, member: Member, key: str) -> None:
+    """Refuse a fillet below a working flank."""
+    gear, tip_of = pair.gear(member), MEMBERS[member == "driver"]
+    mate = pair.gear(tip_of)
+    reach = float(pair.radius(pair.x_of_radius(mate.involute_tip_radius, tip_of), member))
+    if gear.tooth.side * (gear.form_radius - reach) > _MEETS:
+        side = "above" if gear.tooth.side > 0 else "inside"
+        raise GeometryError(
+            f"{member}.{key}", f"root form diameter {2e3 * gear.form_radius:.6g} mm",
+            f"is {side} the active root diameter of {2e3 * reach:.6g} mm, which the mating tip reaches",
+            f"start the flank at {2e3 * reach:.6g} mm or closer to the root",
+        )  # fmt: skip
+    found = interference(pair, tip_of, _CLOSELY)
+    if found.root_clearance <= 0.0 or found.fillet_gap < -_MEETS:
+        deep = -min(found.root_clearance, found.fillet_gap)
+        raise GeometryError(
+            f"{member}.{key}", "the fillet", f"is cut by the path of the mating tip by {deep * 1e3:.4g} mm",
+            "move it closer to the root circle, or reduce the mating tip diameter",
+        )  # fmt: skip

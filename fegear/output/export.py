@@ -11,8 +11,6 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.rack import rack_pinion
 from fegear.case.nearest import nearest
-from fegear.geometry.asymmetric_internal_tooth import AsymmetricInternalSide
-from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.output.export_formats import FORMATS, Format, Request, added_formats
 
 if TYPE_CHECKING:
@@ -241,9 +239,9 @@ def _left_out(scene: Scene, gear: str, wanted: Mapping[str, Format], written: Se
     """What files do not hold of a gear's teeth: solids of rings, relief of meshes, what differs over face and teeth."""
     part, remarks = scene.case.gear[gear], []
     tooth = scene.gears[gear].tooth
-    if isinstance(tooth, (AsymmetricSide, AsymmetricInternalSide)):
+    if tooth.working_flank is not None:
         up = "root" if tooth.internal else "tip"
-        remarks.append(f"Gear {gear}: seen with the tooth {up} up, the {tooth.flank} flank is on the right.")
+        remarks.append(f"Gear {gear}: seen with the tooth {up} up, the {tooth.working_flank} flank is on the right.")
     if scene.gears[gear].tooth.internal and (solid := _of(wanted, "solid mesh")):
         remarks.append(f"Gear {gear} is internal: no {', '.join(sorted(solid))} is written for it.")
     meshes = sorted(name for name in written if wanted[name].holds in ("plane mesh", "solid mesh"))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import RangeError
 from fegear.base.notes import exceeding, neglecting
@@ -21,13 +21,13 @@ from fegear.case.part import at
 from fegear.case.reading import Scene
 from fegear.fem.plane.settings import MeshSettings, Solver, level_for, settings_at
 from fegear.geometry.gear import Gear
+from fegear.geometry.shaped_side import ShapedSide
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.base.solution_cache import SolutionCache
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
 
 def needed_reach(scene: Scene, name: str) -> int:
@@ -189,16 +189,13 @@ def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> t
 
 def fillet_remarks(name: str, gear: Gear) -> tuple[str, ...]:
     """That points of a fillet scatter, where its curvature swings."""
-    if not gear.shaped:
-        return ()
-    tooth = cast("CustomFilletTooth", gear.tooth)
-    if tooth.swings <= _SWINGS:
-        return ()
-    said = (
-        f"Gear {name}: curvature of the specified fillet has {tooth.swings} maxima between root circle and flank. "
-        "Root stress follows them; set fillet.scatter to the accuracy of the points."
+    return tuple(
+        f"Gear {name}: curvature of the specified {tooth.fillet_key.replace('_', ' ')} has {tooth.swings} maxima "
+        f"between root circle and flank. Root stress follows them; set {tooth.fillet_key}.scatter to the accuracy of "
+        "the points."
+        for tooth in ((gear.tooth, gear.tooth.back) if gear.asymmetric else (gear.tooth,))
+        if isinstance(tooth, ShapedSide) and tooth.fillet_key is not None and tooth.swings > _SWINGS
     )
-    return (said,)
 
 
 def support_remarks(name: str, influence: GearInfluence) -> tuple[str, ...]:

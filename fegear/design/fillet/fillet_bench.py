@@ -25,7 +25,8 @@ from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.custom_fillet_tooth import CustomFilletTooth, with_fillet
-from fegear.geometry.fillet_shapes import FilletShape, FlankAbove
+from fegear.geometry.fillet_shapes import FilletShape
+from fegear.geometry.flank_above import FlankAbove
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.pair import Member

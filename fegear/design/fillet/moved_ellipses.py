@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.geometry.fillet_shapes import EllipseOnSpace, FlankAbove, PointsFillet
+from fegear.geometry.fillet_shapes import EllipseOnSpace, PointsFillet
+from fegear.geometry.flank_above import FlankAbove
 
 Basis = Literal["waves", "bumps"]
 #: Points by which a fillet is drawn.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from fegear.base.notes import assuming, failing
 from fegear.base.printed import figures
@@ -27,13 +27,13 @@ from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute_side import Flank
 from fegear.geometry.mass import MassProperties
 from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.shaped_side import ShapedSide
 from fegear.geometry.tip_interference import interference
 from fegear.results.forecasts import INVOLUTE
 from fegear.results.gear.drawing_data import Drawing
 
 if TYPE_CHECKING:
     from fegear.engine.figure.figure import DeferredFigure, Figure
-    from fegear.geometry.custom_fillet_tooth import CustomFilletTooth
 
 
 def _everything(scene: Scene) -> tuple[str, ...]:
@@ -341,13 +341,17 @@ def _on_pairs(seen: Seen) -> Iterator[str]:
 
 def _fillets(seen: Seen) -> Iterator[str]:
     """Numbers of fillets that no tool generates, beside those of the tool."""
+    twins = {coast_name(name) for name in seen.data.gears}
     for name, gear in seen.data.gears.items():
-        if gear.shaped:
-            tooth = cast("CustomFilletTooth", gear.tooth)
-            m, made = 1e3 * gear.module, tooth.generated
+        sides = (gear.tooth, gear.tooth.back) if gear.asymmetric else (gear.tooth,)
+        for tooth in sides if name not in twins else ():
+            if not isinstance(tooth, ShapedSide) or tooth.fillet_key is None:
+                continue
+            m, made = 1e3 * gear.module, tooth.as_generated
             corner = ", the involute starts in a corner" if tooth.undercut else ""
+            which = f"{tooth.working_flank} fillet" if gear.asymmetric else "fillet"
             yield (
-                f"Gear {name}: fillet as specified, root form diameter {2.0 * m * tooth.form_radius:.6g} mm (tool: "
+                f"Gear {name}: {which} as specified, root form diameter {2.0 * m * tooth.form_radius:.6g} mm (tool: "
                 f"{2.0 * m * made.form_radius:.6g}), root diameter {2.0 * m * tooth.root_radius:.6g} mm (tool: "
                 f"{2.0 * m * made.root_radius:.6g}), minimum radius of curvature "
                 f"{figures(m * tooth.smallest_radius, 3)} mm{corner}."
