@@ -48,7 +48,7 @@ TWO_ARCS = ArcFillet((1.5, 0.3), TOOTH.coast.form_radius + 0.05, DEEP)
 
 FILLETS = {
     "drive ellipse": {"drive": EllipseOnSpace()},
-    "coast arc": {"coast": ArcFillet((0.33,))},
+    "coast arcs": {"coast": ArcFillet((1.5, 0.3), TOOTH.coast.form_radius + 0.03)},
     "both deeper": {"drive": ARC, "coast": TWO_ARCS},
     "points and ellipse": {"drive": points_of(TOOTH.drive), "coast": EllipseOnSpace()},
     "control points": {"drive": ControlFillet(with_fillets(
@@ -87,7 +87,7 @@ def test_generated_fillets_given_by_points_are_the_generated_tooth(tooth):
     assert found[1] == pytest.approx(found[0], rel=2e-5)
 
 
-@pytest.mark.parametrize("shape", [EllipseOnSpace(), ArcFillet((0.6,)), PointsFillet(points_of(Tooth(28)).points)])
+@pytest.mark.parametrize("shape", [EllipseOnSpace(), ArcFillet((0.5,)), PointsFillet(points_of(Tooth(28)).points)])
 def test_equal_flanks_are_the_symmetric_tooth(shape):
     one = with_fillets(AsymmetricTooth(28, rack(20.0, 20.0, (0.25, 0.25))).drive, drive=shape, coast=shape)
     other = with_fillet(Tooth(28, BasicRack(1.0, 1.25, 0.25)), shape)
