@@ -27,8 +27,10 @@ from fegear.case.part import (
 from fegear.geometry.plausible import refuse_shaft
 from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.life import LifeRating
-from fegear.shafts.printed_bearing import PrintedBearing
+from fegear.shafts.permissible_tilt import PermissibleTilt, tilt_of_kind
+from fegear.shafts.printed_bearing import Kind, PrintedBearing
 from fegear.shafts.section import Section
+from fegear.shafts.shaft_strength import ShaftStrength
 
 if TYPE_CHECKING:
     from fegear.shafts.beam import Shaft
@@ -128,8 +130,8 @@ class LoadPart(Part):
     )
 
 
-class ShaftInSpacePart(Part):
-    """A shaft parallel to z: sections from its left end on, its gears, bearings, coupling and loads."""
+class _ShaftPart(Part):
+    """What a shaft has besides its strength."""
 
     axis: Annotated[list[Length], Field(min_length=2, max_length=2)] = Field(
         default=[0.0, 0.0], description="Position of the axis: x and y."
@@ -172,6 +174,24 @@ class ShaftInSpacePart(Part):
         made = tuple(Section(one.length, one.outer, one.inner, one.outer_end, one.inner_end) for one in self.sections)
         modulus = math.inf if rigid or self.rigid else self.material.modulus
         return Shaft(made, modulus, self.material.poisson_ratio)
+
+
+if TYPE_CHECKING:
+
+    class _ShaftKeys(_ShaftPart, ShaftStrength):  # type: ignore[misc]  # frozen by pydantic
+        """Keys of the spec."""
+
+else:
+    _ShaftKeys = keys_of(ShaftStrength, base=_ShaftPart)
+
+
+class ShaftInSpacePart(_ShaftKeys):  # type: ignore[misc]  # frozen by pydantic
+    """A shaft parallel to z: sections from its left end on, its gears, bearings, coupling, loads and strength."""
+
+    @property
+    def strength(self) -> ShaftStrength:
+        """Against yielding."""
+        return ShaftStrength(self.yield_strength, self.safety_yield)
 
 
 class RollingElementsPart(Part):
@@ -238,6 +258,11 @@ class BearingPart(Part):
     housing_axial: StiffnessOrZero | None = Field(
         default=None, description="Axial stiffness of the bearing seat in the housing. Default: rigid."
     )
+    permissible_tilt: Angle | None = Field(
+        default=None,
+        description="Permissible tilt of the inner ring in the outer one (catalogue). Default: guide values by kind, "
+        "0.003 rad for deep groove ball, 0.0012 rad for cylindrical and tapered roller bearings.",
+    )
     life: BearingLifePart | None = Field(
         default=None,
         description="Catalogue ratings, for bearing life to ISO 281; `{}` for an estimate from the dimensions.",
@@ -267,6 +292,9 @@ class BearingPart(Part):
         for key in ("housing_radial", "housing_axial"):
             if getattr(self, key) == 0.0:
                 raise refuse("must be greater than zero", "specify a stiffness above zero, or remove it", key=key)
+        if self.permissible_tilt is not None and not self.permissible_tilt > 0.0:
+            raise refuse("must be greater than zero", "specify that of the catalogue, or remove it",
+                         key="permissible_tilt")  # fmt: skip
         if self.elements is not None and self.elements.kind == "roller" and self.elements.roller_length is None:
             raise refuse("is required for rollers", 'set roller_length = "12 mm"', key="elements.roller_length")
         return self
@@ -305,6 +333,18 @@ class BearingPart(Part):
             size = known.diameter if isinstance(known, RollingElementsPart) else known.element_diameter
             axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2)
         return LifeRating(rated, kind, **factors, axial=axial)
+
+    @property
+    def tilt(self) -> PermissibleTilt | None:
+        """How far its rings may tilt against each other: as given, or by kind; None where no kind is known."""
+        if self.permissible_tilt is not None:
+            return PermissibleTilt(self.permissible_tilt, self.permissible_tilt)
+        if (printed := self.printed) is not None:
+            return tilt_of_kind(printed.kind, printed.inside.contact_angle)
+        if (rolling := self.elements) is None:
+            return None
+        kind: Kind = "ball" if rolling.kind == "ball" else "tapered" if rolling.contact_angle else "cylindrical"
+        return tilt_of_kind(kind, rolling.contact_angle)
 
     @property
     def printed(self) -> CatalogueBearing | None:

@@ -21,6 +21,7 @@ from fegear.commands.terminal import Voice, leave
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fegear.base.notes import Note
     from fegear.case.drafts.answers import Answers
 
 
@@ -152,7 +153,8 @@ def new(
                 raise InputError("--power", shown(power), "requires a speed, which this kind has not", "use --torque")
             voice.say(f"Torque of --power at an assumed speed of {ASSUMED_SPEED}; specify --speed")
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
-    _check(text, path)
+    for note in _check(text, path):
+        voice.note(note)
     if not no_schema:
         beside = path.with_name(SCHEMA_FILE)
         write_schema(beside, "schema", remedy="move it, or use --no-schema")
@@ -269,12 +271,18 @@ def _asked() -> Answers:
     return Answers(kind, told)
 
 
-def _check(text: str, path: Path) -> None:
-    """Refuse numbers that make no case, before anything is written."""
+def _check(text: str, path: Path) -> tuple[Note, ...]:
+    """Refuse numbers that make no case, before anything is written; what of a gearbox cannot be built.
+
+    A module, teeth and bearings for a life may ask for more room than there is between two shafts.
+    """
     import tomllib
 
+    from fegear.case.built.bearing_room import said_of_room
     from fegear.case.reading import build_scene
     from fegear.engine.plan import make_plan
     from fegear.results.catalogue import STAGES
 
-    make_plan(build_scene(tomllib.loads(text), path.stem, path.parent), STAGES)
+    scene = build_scene(tomllib.loads(text), path.stem, path.parent)
+    make_plan(scene, STAGES)
+    return said_of_room(scene)

@@ -102,10 +102,19 @@ class Shaft:
             )  # fmt: skip
         return min(max(z, 0.0), length)
 
-    def diameters(self, z: ArrayLike) -> tuple[Array, Array]:
-        """Outer and inner diameter at places [m]."""
+    def diameters(self, z: ArrayLike, of: ArrayLike | None = None) -> tuple[Array, Array]:
+        """Outer and inner diameter at places [m].
+
+        Parameters
+        ----------
+        z : array_like
+            From the left end [m].
+        of : array_like, optional
+            As many places that say which of two sections that meet there counts; that to the right without them.
+        """
         at = np.asarray(z, dtype=float)
-        which = np.clip(np.searchsorted(self.steps, at, side="right") - 1, 0, len(self.sections) - 1)
+        inside = at if of is None else np.asarray(of, dtype=float)
+        which = np.clip(np.searchsorted(self.steps, inside, side="right") - 1, 0, len(self.sections) - 1)
         ends = np.array([one.ends for one in self.sections])[which]
         share = (at - self.steps[which]) / np.diff(self.steps)[which]
         found = ends[..., 0] + (ends[..., 1] - ends[..., 0]) * share[..., None]

@@ -104,7 +104,8 @@ class Deflection:
     inside: Array = field(default_factory=lambda: np.empty((0, 6)))
 
     @cached_property
-    def _all(self) -> tuple[Array, Array]:
+    def acting(self) -> tuple[Array, Array]:
+        """Places and forces of all that acts on it, bearings among them, shapes (m,), (m, 6)."""
         places = np.array([seat.at for seat in self.loaded.seats])
         forces = np.column_stack([self.bearing_forces, np.zeros(len(places))])
         return (
@@ -123,13 +124,13 @@ class Deflection:
 
     def bent(self, z: ArrayLike) -> Array:
         """Share of the shaft itself, from its left end on, shape (n, 6)."""
-        at, loads = self._all
+        at, loads = self.acting
         return self.loaded.shaft.bent(z, at, loads)
 
     @property
     def line(self) -> ShaftLine:
         """The whole axis, bearings, steps and forces among its places."""
-        shaft, (at, _) = self.loaded.shaft, self._all
+        shaft, (at, _) = self.loaded.shaft, self.acting
         z = distinct(shaft.steps, at, np.linspace(0.0, shaft.length, _PLACES))
         return ShaftLine(z, *self.at(z).T)
 
@@ -164,7 +165,7 @@ class Deflection:
     @property
     def balance(self) -> Array:
         """Sum of all forces, and of all moments about the left end, over the largest: round-off, shape (2,)."""
-        at, loads = self._all
+        at, loads = self.acting
         moved = np.einsum("nab,nb->na", carry(at), loads)
         most = np.abs(moved[:, :3]).max(initial=0.0), np.abs(moved[:, 3:]).max(initial=0.0)
         left = np.abs(moved.sum(axis=0))

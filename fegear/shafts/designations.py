@@ -115,6 +115,13 @@ _NAMED = frozenset(one[:-2] for one in KNOWN)
 _FORM = re.compile(r"^(?:(?:SKF|FAG|INA|NSK|NTN|SNR|NACHI|KOYO|TIMKEN)\s+)?([A-Z]{0,3})\s?(\d{3,5})(?=$|[\s\-/.A-Z])")
 
 
+def plain_designation(designation: str) -> str:
+    """A designation as `KNOWN` has it, if it has: without maker, spaces and what a maker adds."""
+    plain = designation.strip().upper()
+    form = _FORM.match(plain)
+    return f"{form[1]}{form[2]}" if form else plain
+
+
 def envelope_of(designation: str) -> Envelope:
     """Kind and dimensions of a designation: ``6206``, ``6206-2Z/C3``, ``NU 210 ECP``, ``FAG 30206-A``.
 
@@ -123,11 +130,10 @@ def envelope_of(designation: str) -> Envelope:
     InputError
         If it is none that is known.
     """
-    plain = designation.strip().upper()
-    form = _FORM.match(plain)
-    name = f"{form[1]}{form[2]}" if form else plain
+    name = plain_designation(designation)
     if name in KNOWN:
         return KNOWN[name]
+    form = _FORM.match(designation.strip().upper())
     swapped = [one for one in KNOWN if sorted(one) == sorted(name)]
     other = form is not None and not swapped and name[:-2] not in _NAMED and re.fullmatch(r"[1-9][0-9]{3,4}", name)
     if other:

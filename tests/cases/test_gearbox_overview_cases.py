@@ -115,9 +115,11 @@ def test_an_overload_names_what_fails_first_and_at_most_three():
     weakest = outcome.data.bearings[0]
     assert said[0].startswith(f"Pair {outcome.data.meshes[0].pair}, the weakest of 2: S_H ")
     assert said[2].startswith(f"Bearing {weakest.bearing} of shaft {weakest.shaft}, the weakest of ")
-    assert said[2].endswith("(required 5000 h).")
+    assert "(required 5000 h); shaft mid, the weakest of 3: nominal stress " in said[2]
+    assert said[2].endswith("S_yield 1.11 (minimum 1.2).")
+    assert " ".join(said).count("Change ") == len(changes)
     assert all(one.count("K_Hβ") <= 1 for one in said[:3])
-    assert run.answer.tables == ("gearbox_meshes", "gearbox_bearings")
+    assert run.answer.tables == ("gearbox_changes", "gearbox_meshes", "gearbox_bearings", "gearbox_shafts")
     assert not any("mesh stiffness" in one for one in run.answer.sentences)
     assert "times as large" in bearing.remedy
 
@@ -138,7 +140,7 @@ def mesh(peak=0.9, factor=1.5, margin=math.nan, over=12e-6, by=(10e-6, 1e-6, 3e-
 def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_leave_of_the_misalignment():
     def said(remaining):
         one = replace(mesh(margin=0.8), remaining=remaining)
-        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=(), failures=())
+        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=(), failures=(), checked=())
         return " ".join(_sentences(types.SimpleNamespace(data=data)))
 
     assert said(12e-6) == (

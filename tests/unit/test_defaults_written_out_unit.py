@@ -28,7 +28,10 @@ from fegear.results.catalogue import STAGES
 CASES = Path(__file__).parents[2] / "cases"
 SCHEMA = Schema()
 #: A note on what was assumed goes when the default is written: it was confirmed.
-CONFIRMED = {"MaterialPart.young_modulus", "StrengthPart.quality", "OperationPart.application_factor"}
+CONFIRMED = {
+    "MaterialPart.young_modulus", "StrengthPart.quality", "OperationPart.application_factor",
+    "ShaftInSpacePart.yield_strength",
+}  # fmt: skip
 #: A column's name, which no shipped trace has by default: the traces of `test_gauges_unit` do.
 ELSEWHERE = {"MeasuredStrainPart.strain_column"}
 #: The first and the last with `samples`, as the page says.

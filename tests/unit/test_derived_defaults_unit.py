@@ -298,7 +298,7 @@ def off(one, other):
 
 #: Where a page derives what no row writes: what is not there (a rigid bearing, no film), or has no value of its own ...
 NOT_THERE = {
-    "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected",
+    "AccuracyPart.corner_distance", "BearingPart.permissible_tilt", "BearingPlacePart.around", "Case.neglected",
     "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
     "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from fegear.base.errors import InputError
@@ -95,16 +95,19 @@ class Answers:
     kind : str
     given : mapping of str to str
         Answers by the name of their question.
+    suited : mapping of str to str
+        In place of defaults: a module with which bodies have room.
     """
 
     kind: str
     given: Mapping[str, str]
+    suited: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse what cannot be read, or has no meaning for this kind."""
         if self.kind not in KINDS:
             raise InputError("--kind", f'"{self.kind}"', "is an unknown kind of case", nearest(self.kind, KINDS))
-        asked = {question.name: question for question in questions(self.kind, self.given)}
+        asked = {question.name: question for question in self._questions}
         for name, text in self.given.items():
             if name not in asked:
                 raise InputError(
@@ -120,7 +123,12 @@ class Answers:
 
     def __getitem__(self, name: str) -> str:
         """Return an answer, given or assumed."""
-        return self.given.get(name) or next(q.default for q in questions(self.kind, self.given) if q.name == name)
+        known = self.given.get(name) or self.suited.get(name)
+        return known or next(q.default for q in self._questions if q.name == name)
+
+    @property
+    def _questions(self) -> list[Question]:
+        return questions(self.kind, {**self.suited, **self.given})
 
     def assumed(self, name: str) -> bool:
         """Whether no one gave it."""
@@ -128,7 +136,7 @@ class Answers:
 
     def has(self, name: str) -> bool:
         """Whether the drawing has it: a question of this kind, and not answered by "none"."""
-        return name in {q.name for q in questions(self.kind, self.given)} and self[name] != _NONE
+        return name in {q.name for q in self._questions} and self[name] != _NONE
 
     @property
     def helical(self) -> bool:
@@ -142,7 +150,7 @@ class Answers:
 
     def si(self, name: str) -> float:
         """An answer that is a quantity, in SI; of a range its upper end."""
-        question = next(q for q in questions(self.kind, self.given) if q.name == name)
+        question = next(q for q in self._questions if q.name == name)
         return to_si((ends(self[name]) or (self[name],))[-1], question.dimension, _option(name))
 
 

@@ -13,7 +13,15 @@ from string import Template
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
-from fegear.case.drafts.two_stages import ChosenBearing, LaidOut, PlacedShaft, centre_distance, laid_out, two_stages
+from fegear.case.drafts.two_stages import (
+    ChosenBearing,
+    LaidOut,
+    PlacedShaft,
+    centre_distance,
+    laid_out,
+    two_stages,
+    with_room,
+)
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -92,7 +100,8 @@ _SHAFT = """\
 ]
 gears = [{gears}]
 bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}"{reversed} }}]
-{coupling}"""
+{coupling}yield_strength = "275 MPa"     # assumed: S355 up to 250 mm, EN 10025-2
+"""
 _BEARING = """\
 [bearing.{name}]
 designation = "{designation}"
@@ -180,6 +189,8 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         TOML with comments.
     """
     kind = KINDS[answers.kind]
+    if answers.kind in ("gearbox", TWO_STAGES):
+        answers = with_room(answers)
     file = f"{stem}.toml"
     teeth = "/".join(answers.numbers("teeth"))
     head = _HEAD.format(

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.first_size import MODULES
+from fegear.case.drafts.kinds import TWO_STAGES
 from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
 from fegear.shafts.axial_factors import AxialFactors
@@ -136,22 +137,45 @@ def two_stages(answers: Answers) -> LaidOut:
     drafts: list[LaidOut] = []
     while not drafts or drafts[-1].stages[1].si("module") < 0.999e-3 * MODULES[-1]:
         drafts.append(laid_out((first, _second(answers, first, least))))
-        if _apart(drafts[-1]):
+        if _beside(drafts[-1], 1):
             return drafts[-1]
         least = next(one for one in MODULES if one > 1.001e3 * drafts[-1].stages[1].si("module"))
     return drafts[0]
 
 
-def _apart(laid: LaidOut) -> bool:
-    """Whether the wheel of the first stage has room beside the output shaft, and bearings have beside each other.
+def with_room(answers: Answers) -> Answers:
+    """Answers of a gearbox with the smallest module whose centre distances keep all bodies apart, if none is given.
 
-    It is the centre distance of the second stage that gives both; the first one has its own module.
+    Bearings follow from forces and life: near a ratio of one they may need more than the gears do.
+
+    Parameters
+    ----------
+    answers : Answers
     """
-    gap = _APART * laid.stages[1].si("module")
-    needed = [_tips(laid.stages[0])[1] + 0.5 * laid.shafts[2].thick]
-    ends = zip(laid.shafts[1].bearings.values(), laid.shafts[2].bearings.values(), strict=True)
-    needed += [0.5 * (one.outside + other.outside) for one, other in ends]
-    return laid.distances[1] >= max(needed) + gap
+    if not answers.assumed("module"):
+        return answers
+    first = answers.si("module")
+    for module in MODULES:
+        if module < 0.999e3 * first:
+            continue
+        suited = {"module": f"{module:.6g} mm", "torque": answers["torque"]}
+        made = replace(answers, suited=suited) if module > 1.001e3 * first else answers
+        if _apart(two_stages(made) if made.kind == TWO_STAGES else laid_out((made,))):
+            return made
+    return answers
+
+
+def _apart(laid: LaidOut) -> bool:
+    return all(_beside(laid, stage) for stage in range(len(laid.stages)))
+
+
+def _beside(laid: LaidOut, stage: int) -> bool:
+    """Whether the shafts of a stage have room for their bearings, the last one also beside the wheel of the first."""
+    ends = zip(laid.shafts[stage].bearings.values(), laid.shafts[stage + 1].bearings.values(), strict=True)
+    needed = max(0.5 * (one.outside + other.outside) for one, other in ends)
+    if stage:
+        needed = max(needed, _tips(laid.stages[0])[1] + 0.5 * laid.shafts[stage + 1].thick)
+    return laid.distances[stage] >= needed + _APART * laid.stages[stage].si("module")
 
 
 def laid_out(stages: tuple[Answers, ...]) -> LaidOut:

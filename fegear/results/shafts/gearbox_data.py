@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,8 +14,10 @@ from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.design.flanks.lead_correction import LevelLead
+from fegear.results.shafts.checked_shafts import STRAIGHTER, CheckedShaft, ShaftChecks, TiltedBearing, tilted_bearings
 from fegear.results.shafts.drawn_gearbox import DrawnGearbox
 from fegear.shafts.gearbox import CAUSES
+from fegear.shafts.larger_bearing import LargerBearing, larger_bearing
 from fegear.shafts.life import EXPONENT, LifeRating
 
 #: What misaligns a mesh, and what makes it less.
@@ -104,6 +106,19 @@ class BearingAtGlance:
     duration: float = shown("h", "basic rating life L_10h at the speed of its shaft", name="life_hours")
     margin: float = shown("", "load at the required life over the present one", name="load_margin")
     exponent: float = math.nan
+    tilt: float = shown("arcmin", "tilt of the inner ring in the outer one", default=math.nan)
+    permissible: float = shown("arcmin", "permissible tilt: as given, or maximum guide value of its kind",
+                               name="tilt_permissible", default=math.nan)  # fmt: skip
+    tilted: TiltedBearing | None = None
+    designation: str = shown("", "designation", default="")
+    larger: str = shown("", "bearing that reaches the required life, with its bore", name="change_to", default="")
+    other: LargerBearing | None = None
+
+    @property
+    def least(self) -> float:
+        """Load that life and tilt permit over the present one; infinite where neither is known."""
+        tilt = math.inf if self.tilted is None else self.tilted.margin
+        return min(_last(self.margin), tilt)
 
 
 @dataclass(frozen=True)
@@ -131,6 +146,8 @@ class GearboxData:
         Largest life that a pair is rated for [s]; NaN where none is.
     failures : tuple of Note
         Why the gearbox cannot be built, the worst first: bodies that cut each other, bores that are not their shaft's.
+    checked : tuple of CheckedShaft
+        Shafts against yielding, the weakest first.
     """
 
     shafts: LoadedShafts
@@ -139,11 +156,16 @@ class GearboxData:
     bearings: tuple[BearingAtGlance, ...]
     required_hours: float
     failures: tuple[Note, ...] = ()
+    checked: tuple[CheckedShaft, ...] = ()
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:
         """At most three, the most urgent first: what cannot be built or fails, what wastes load, then the weakest."""
-        urgent = [*filter(None, map(_of_mesh, self.meshes)), *filter(None, map(self._of_bearing, self.bearings))]
+        every = (
+            *map(_of_mesh, self.meshes), *map(_of_shaft, self.checked), *map(_of_tilt, self.bearings),
+            *map(self._of_bearing, self.bearings),
+        )  # fmt: skip
+        urgent = [one for one in every if one is not None]
         named = {one.part for one in urgent}
         found = [*map(_of_failure, self.failures), *sorted(urgent, key=lambda one: one.margin)]
         for one in self._improvements():
@@ -167,21 +189,55 @@ class GearboxData:
 
     def _shortest(self, one: BearingAtGlance) -> Change:
         hours = one.duration / 3600.0
+        longer = figures(hours * _MORE**one.exponent)
+        remedy = f"{percent(_MORE - 1.0, whole=True)} more dynamic load rating C: {longer} h"
+        if one.other is not None:
+            remedy = _changed_to(one, one.other)
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
             f"life {figures(hours)} h, required {figures(self.required_hours / 3600.0)} h: minimum reserve of bearings",
-            f"{percent(_MORE - 1.0, whole=True)} more dynamic load rating C: {figures(hours * _MORE**one.exponent)} h",
-            urgent=False,
+            remedy, urgent=False,
         )  # fmt: skip
 
     def _of_bearing(self, one: BearingAtGlance) -> Change | None:
         if not one.margin < 1.0:
             return None
+        remedy = f"a dynamic load rating C {figures(1.0 / one.margin)} times as large"
+        if one.other is not None:
+            remedy = f"{_changed_to(one, one.other)}, or C {figures(1.0 / one.margin)} times as large"
+        elif one.designation:
+            remedy += " (no tabulated bearing of this kind with the same bore or series reaches it)"
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
-            f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h",
-            f"a dynamic load rating C {figures(1.0 / one.margin)} times as large",
+            f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h", remedy,
         )  # fmt: skip
+
+
+def _changed_to(one: BearingAtGlance, other: LargerBearing) -> str:
+    """Another designation with its life at the present forces, its size where it is not that of the present bore."""
+    hours = one.duration / 3600.0 * other.revolutions / one.life
+    size = f"outside diameter {figures(other.outside_diameter * 1e3, 4)} mm"
+    if not other.same_bore:
+        size = f"bore {figures(other.bore * 1e3, 4)} mm, {size}"
+    return f"{other.designation} instead of {one.designation} ({size}): {figures(hours)} h by its estimated C"
+
+
+def _of_shaft(one: CheckedShaft) -> Change | None:
+    """A shaft that yields."""
+    if not one.margin < 1.0:
+        return None
+    needed = figures(one.strength * 1e-6 / one.margin)
+    return Change(
+        one.margin, f"shaft {one.shaft}", one.found,
+        f"a diameter of {figures(one.needed * 1e3)} mm there, or a yield strength of {needed} MPa",
+    )  # fmt: skip
+
+
+def _of_tilt(one: BearingAtGlance) -> Change | None:
+    """A bearing that is tilted more than its kind permits."""
+    if one.tilted is None or not one.tilted.margin < 1.0:
+        return None
+    return Change(one.tilted.margin, f"bearing {one.bearing} of shaft {one.shaft}", one.tilted.found, STRAIGHTER)
 
 
 def _of_failure(note: Note) -> Change:
@@ -218,12 +274,24 @@ def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
     """The lead correction against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
+    if one.lead.whole:
+        return _corrected(one.lead, gained=gained)
     slope = one.lead.slope
     amounts = [f"helix slope C_Hβ {figures(slope * 1e6)} µm with {end_of_slope(slope)}"] if slope else []
     if one.lead.crowning:
         amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
     return f"lead correction ({' and '.join(amounts)} on the driver{gain})"
+
+
+def _corrected(lead: LevelLead, *, gained: bool) -> str:
+    """The lead that `lead-correction` recommends, in place of the present one."""
+    end = f" with {end_of_slope(lead.slope)}" if lead.slope else ""
+    gain = f"; K_Hβ of the loaded flanks {lead.before:.2f} -> {lead.after:.2f}" if gained else ""
+    return (
+        f"the lead of lead-correction (helix slope C_Hβ {figures(lead.slope * 1e6)} µm{end}, crowning C_β "
+        f"{figures(lead.crowning * 1e6)} µm on the driver in place of the present ones{gain})"
+    )
 
 
 def end_of_slope(slope: float) -> str:
@@ -285,9 +353,10 @@ def safeties(found: Iterator[tuple[object, dict[str, tuple[float, float]]]], end
 
 def bearings_at_glance(
     data: LoadedShafts,
-    names: Sequence[Sequence[str]],
     lives: Sequence[Sequence[LifeRating | None]],
     speeds: Sequence[Sequence[float]],
+    designations: Sequence[Sequence[str]],
+    checks: ShaftChecks,
     required: float,
 ) -> tuple[BearingAtGlance, ...]:
     """Every bearing, the least load margin first, then the shortest life.
@@ -295,24 +364,42 @@ def bearings_at_glance(
     Parameters
     ----------
     data : LoadedShafts
-    names, lives, speeds : sequence of sequence
-        Of every bearing by shafts: its name, rating, and the speed of its rings against each other [rad/s].
+    lives, speeds, designations : sequence of sequence
+        Of every bearing by shafts: its rating, the speed of its rings against each other [rad/s], its designation.
+    checks : ShaftChecks
     required : float
         Life [s].
     """
     found = []
-    for shaft, bent, of_names, of_lives, of_speeds in zip(
-        data.gearbox.names, data.nominal.bent, names, lives, speeds, strict=True
-    ):
+    every = zip(data.nominal.bent, lives, speeds, designations, tilted_bearings(checks, data.nominal.bent), strict=True)
+    for bent, of_lives, of_speeds, of_designations, of_tilts in every:
         loads = bent.bearing_loads(tuple(of_lives))
-        for k, name in enumerate(of_names):
+        for k, tilted in enumerate(of_tilts):
             rating = of_lives[k]
             duration = float(loads.life[k]) * 2.0 * math.pi / of_speeds[k] if of_speeds[k] > 0.0 else math.nan
             exponent = math.nan if rating is None else EXPONENT[rating.kind]
             margin = (duration / required) ** (1.0 / exponent)
             radial, axial = float(loads.force_radial[k]), abs(float(loads.force_axial[k]))
-            found.append(BearingAtGlance(name, shaft, radial, axial, float(loads.life[k]), duration, margin, exponent))
-    return tuple(sorted(found, key=lambda one: (_last(one.margin), _last(one.duration), _last(one.life))))
+            permissible = math.nan if tilted.permissible is None else tilted.permissible.high
+            found.append(BearingAtGlance(
+                tilted.bearing, tilted.shaft, radial, axial, float(loads.life[k]), duration, margin, exponent,
+                tilted.tilt, permissible, tilted, of_designations[k],
+            ))  # fmt: skip
+    ordered = sorted(found, key=lambda one: (one.least, _last(one.margin), _last(one.duration), _last(one.life)))
+    first = next((one for one in ordered if math.isfinite(one.margin)), None)
+    return tuple(_with_larger(one, improved=one is first) for one in ordered)
+
+
+def _with_larger(one: BearingAtGlance, *, improved: bool) -> BearingAtGlance:
+    """With the bearing to change to where its life is too short, or `improved`: the next larger one."""
+    if not one.designation or not math.isfinite(one.margin) or not (one.margin < 1.0 or improved):
+        return one
+    wanted = one.life * (one.margin**-one.exponent if one.margin < 1.0 else 1.0)
+    other = larger_bearing(one.designation, one.radial, one.axial, wanted)
+    if other is None:
+        return one
+    short = f"{other.designation} (bore {figures(other.bore * 1e3, 4)} mm)" if one.margin < 1.0 else ""
+    return replace(one, other=other, larger=short)
 
 
 def meshes_in_order(meshes: Sequence[MeshAtGlance]) -> tuple[MeshAtGlance, ...]:

@@ -15,7 +15,7 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
 from fegear.contact.wide.on_shafts import FlankForces
-from fegear.design.flanks.lead_correction import level_lead
+from fegear.design.flanks.lead_correction import LevelLead, level_lead
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.sheet.answer import Answer
@@ -27,9 +27,11 @@ from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_pairs
 from fegear.results.rating.rated_methods import methods
 from fegear.results.rating.rating_data import RatingData
+from fegear.results.shafts.checked_shafts import ShaftChecks, checked_shafts, checks_of, said_of_checks
 from fegear.results.shafts.drawn_gearbox import drawn_gearbox
 from fegear.results.shafts.gearbox_data import (
     CAUSE_WORDS,
+    BearingAtGlance,
     GearboxData,
     MeshAtGlance,
     Safety,
@@ -38,8 +40,10 @@ from fegear.results.shafts.gearbox_data import (
     safeties,
 )
 from fegear.results.shafts.gearbox_scheme import scheme
+from fegear.results.shafts.lead_correction import LEAD_CORRECTION_TASK, LeadInputs, ground_leads, inputs_of_leads
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
+    fed_pairs,
     inputs_of_shafts,
     loaded_shafts,
     mesh_forces,
@@ -56,11 +60,11 @@ if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
-    from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
+    from fegear.results.shafts.lead_correction import LeadData
     from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
@@ -84,12 +88,16 @@ class GearboxInputs:
         Of every mesh; None where the case lacks what a rating needs.
     wide, loaded : tuple of bool
         Of every mesh, whether its flanks are loaded over the face, and whether it has a transmission error.
-    bearings, lives, speeds : tuple of tuple
-        Of every bearing by shafts: its name, rating, and the speed of its rings against each other [rad/s].
+    lives, speeds, designations : tuple of tuple
+        Of every bearing by shafts: its rating, the speed of its rings against each other [rad/s], its designation,
+        empty without one.
+    checks : ShaftChecks
     required : float
         Longest life that pairs are rated for [s]; NaN where none is given.
     why : tuple of str
         Why something is missing.
+    leads : LeadInputs or None
+        Where the case asks for lead corrections, too: those are what is named here.
     """
 
     shafts: LoadedShaftsInputs
@@ -97,11 +105,13 @@ class GearboxInputs:
     rated: tuple[PairToRate | None, ...]
     wide: tuple[bool, ...]
     loaded: tuple[bool, ...]
-    bearings: tuple[tuple[str, ...], ...]
     lives: tuple[tuple[LifeRating | None, ...], ...]
     speeds: tuple[tuple[float, ...], ...]
+    designations: tuple[tuple[str, ...], ...]
+    checks: ShaftChecks
     required: float
     why: tuple[str, ...]
+    leads: LeadInputs | None = None
 
 
 def _refused(check: object, scene: Scene, pair: str) -> str:
@@ -152,8 +162,14 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         inputs_of_shafts(scene, name), drawn_gearbox(scene),
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
-        names, lives, speeds, required, tuple(why),
+        lives, speeds, tuple(tuple(part[one].designation or "" for one in row) for row in names), checks_of(scene),
+        required, tuple(why), inputs_of_leads(scene, name) if _corrects(scene) else None,
     )  # fmt: skip
+
+
+def _corrects(scene: Scene) -> bool:
+    """Whether the case asks for lead corrections: one run has one slope of a mesh."""
+    return LEAD_CORRECTION_TASK.stage in scene.case.results and bool(fed_pairs(scene))
 
 
 def _speeds(scene: Scene) -> dict[str, float]:
@@ -184,8 +200,13 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
     states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
     leads = _leads(inputs, upstream, shafts, work)
     meshes = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
-    bearings = bearings_at_glance(shafts, inputs.bearings, inputs.lives, inputs.speeds, inputs.required)
-    return GearboxData(shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required, _failures(inputs))
+    bearings = bearings_at_glance(
+        shafts, inputs.lives, inputs.speeds, inputs.designations, inputs.checks, inputs.required
+    )
+    checked = checked_shafts(inputs.checks, shafts.nominal.bent)
+    return GearboxData(
+        shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required, _failures(inputs), checked
+    )
 
 
 def _failures(inputs: GearboxInputs) -> tuple[Note, ...]:
@@ -195,7 +216,15 @@ def _failures(inputs: GearboxInputs) -> tuple[Note, ...]:
 
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
-    """Of every mesh whose flanks are loaded with the shafts, the helix slope against their tilt."""
+    """Of every mesh whose flanks are loaded with the shafts, the lead of `lead-correction` or a slope against tilt."""
+    if inputs.leads is not None:
+        data = cast("LeadData", upstream[LEAD_CORRECTION_TASK])
+        best = {one.pair: one for one in ground_leads(data, inputs.leads)}
+        return [
+            LevelLead(one.slope, float(one.before[-1]), one.best.flanks, one.crowning, whole=True)
+            if (one := best.get(mesh.pair)) else None
+            for mesh in inputs.shafts.gearbox.meshes
+        ]  # fmt: skip
     meshes = mesh_forces(inputs.shafts, upstream, work)
     return [
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
@@ -255,6 +284,8 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
             found.append(Task("loaded-flanks", mesh.pair))
         if _has_error(scene, mesh.pair):
             found.append(Task("transmission-error", mesh.pair))
+    if _corrects(scene):
+        found.append(LEAD_CORRECTION_TASK)
     return tuple(found)
 
 
@@ -294,16 +325,23 @@ def _sentences(seen: Seen) -> Iterator[str]:
     if math.isfinite(first.te_peak_to_peak):
         known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
     yield f"Pair {first.pair}{many}: {', '.join(known)}."
-    yield from _weakest_bearing(data)
-    for number, one in enumerate(data.changes):
-        yield f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+    weakest = "; ".join(one for one in (_weakest_bearing(data), _weakest_shaft(data)) if one)
+    if weakest:
+        yield f"{weakest[0].upper()}{weakest[1:]}."
+    changes = [
+        f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+        for number, one in enumerate(data.changes)
+    ]
+    yield from changes[:1]
+    if changes[1:]:  # an answer has five sentences
+        yield " ".join(changes[1:])
 
 
-def _weakest_bearing(data: GearboxData) -> Iterator[str]:
+def _weakest_bearing(data: GearboxData) -> str:
     """Of those with a life: the first in order, which has the least margin or the shortest life."""
     lives = [one for one in data.bearings if math.isfinite(one.life)]
     if not lives:
-        return
+        return ""
     first = lives[0]
     life = (
         f"{figures(first.duration / 3600.0)} h" if math.isfinite(first.duration)
@@ -311,7 +349,16 @@ def _weakest_bearing(data: GearboxData) -> Iterator[str]:
     )  # fmt: skip
     required = f" (required {figures(data.required_hours / 3600.0)} h)" if math.isfinite(data.required_hours) else ""
     many = f", the weakest of {len(lives)}" if len(lives) > 1 else ""
-    yield f"Bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}."
+    return f"bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}"
+
+
+def _weakest_shaft(data: GearboxData) -> str:
+    if not data.checked:
+        return ""
+    one, many = data.checked[0], len(data.checked)
+    of = f", the weakest of {many}" if many > 1 else ""
+    stress, safety = figures(one.equivalent * 1e-6), f"S_yield {one.safety:.2f} (minimum {figures(one.required)})"
+    return f"shaft {one.shaft}{of}: nominal stress {stress} MPa at {figures(one.at * 1e3)} mm, {safety}"
 
 
 def _by_cause(n: int, cause: str) -> Cell:
@@ -335,11 +382,23 @@ def _with_error(key: str, error: str) -> Cell:
     return replace(_known(key), error=lambda seen: [getattr(one, error) for one in seen.data.meshes])
 
 
+def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
+    found = [one.larger for one in bearings]
+    return found if any(found) else None
+
+
+#: What the safety of shafts lacks.
+_NOTCHES = (
+    "Gearbox: fatigue of the shafts and notch effects (steps, keyways, fits; DIN 743) are not evaluated; multiply the "
+    "nominal stresses of shaft-deflection by your stress concentration factors (bending alternates with the rotation)."
+)
+
+
 _SHEET = Sheet(
     answer=Answer(
         _sentences, figure="gearbox",
         covers=("misalignment", "shaft-deflection", "load-distribution", "rating", "transmission-error"),
-        tables=("gearbox_meshes", "gearbox_bearings"),
+        tables=("gearbox_changes", "gearbox_meshes", "gearbox_bearings", "gearbox_shafts"),
     ),
     name=lambda _asked: "",
     tables=(
@@ -356,9 +415,18 @@ _SHEET = Sheet(
             "gearbox_bearings", "Bearings of the gearbox, the shortest life first",
             (
                 "bearing", "shaft", "radial", "axial",
-                *(_known(key, "bearings") for key in ("life", "duration", "margin")),
+                *(_known(key, "bearings") for key in ("life", "duration", "margin", "tilt", "permissible")),
+                Cell("larger", lambda seen: _changes_to(seen.data.bearings)),
             ),
             of="bearings", when="bearings",
+        ),
+        Rows(
+            "gearbox_shafts", "Shafts of the gearbox, the weakest first",
+            (
+                "shaft", "margin", "safety", "required", "strength", "equivalent", "bending", "torsion", "axial", "at",
+                "diameter",
+            ),
+            of="checked",
         ),
         Rows(
             "gearbox_changes", "What to change first", ("part", "finding", "remedy"), of="changes", when="changes",
@@ -367,8 +435,9 @@ _SHEET = Sheet(
     figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
-        lambda _seen: [neglecting("Gearbox: shaft strength (bending and torsional stress, notches) is not evaluated.")],
-        lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
+        lambda _seen: [neglecting(_NOTCHES)],
+        lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),
+        lambda seen: overlooked(seen.asked.checks.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
     ),
 )  # fmt: skip
 

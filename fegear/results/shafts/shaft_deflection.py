@@ -17,8 +17,10 @@ from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage
 from fegear.results import forecasts
+from fegear.results.shafts.checked_shafts import ShaftChecks, checked_shafts, checks_of, said_of_checks
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.deflection import BearingLoads
+from fegear.shafts.stress import ShaftStress, nominal_stress
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -43,6 +45,7 @@ class DeflectionInputs:
     bearings: tuple[tuple[str, ...], ...]
     lives: tuple[tuple[LifeRating | None, ...], ...]
     errors: tuple[tuple[float | None, ...], ...]
+    checks: ShaftChecks
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class DeflectedShaft:
 
     bent: Deflection
     loads: BearingLoads
+    stress: ShaftStress
     name: str = shown("", "name of the shaft", name="shaft")
     bearings: tuple[str, ...] = shown("", "name", name="bearing")
     stiffness: Array | None = shown("N/um", "slope of the radial bearing force", name="radial_stiffness", default=None)
@@ -62,7 +66,7 @@ def _inputs(scene: Scene, _name: str) -> DeflectionInputs:
     known = scene.case.bearing
     lives = tuple(tuple(known[one].rating for one in row) for row in names)
     errors = tuple(tuple(printed.error if (printed := known[one].printed) else None for one in row) for row in names)
-    return DeflectionInputs(names, lives, errors)
+    return DeflectionInputs(names, lives, errors, checks_of(scene))
 
 
 def _compute(_inputs: DeflectionInputs, upstream: Upstream, _work: Work) -> LoadedShafts:
@@ -78,7 +82,8 @@ def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedSha
     ):
         slope = bent.radial_stiffness if estimated else None
         off = None if slope is None else slope * np.array([np.nan if one is None else one for one in errors])
-        found.append(DeflectedShaft(bent, bent.bearing_loads(lives), name, bearings, slope, off))
+        loads = bent.bearing_loads(lives)
+        found.append(DeflectedShaft(bent, loads, nominal_stress(bent), name, bearings, slope, off))
     return found
 
 
@@ -113,7 +118,7 @@ def _most_bent(seen: Seen) -> DeflectedShaft:
 
 
 def _sentences(seen: Seen) -> Iterator[str]:
-    """Shortest life of a bearing, largest deflection, largest bearing force."""
+    """Shortest life of a bearing, largest deflection, largest bearing force, the weakest shaft."""
     of_bearings = [(one, k) for one in seen.data for k in range(len(one.bearings))]
     lives = [(one.loads.life[k], one, k) for one, k in of_bearings if np.isfinite(one.loads.life[k])]
     if lives:
@@ -131,6 +136,13 @@ def _sentences(seen: Seen) -> Iterator[str]:
             f"Bearing {one.bearings[k]} of shaft {one.name}: radial force {figures(one.loads.force_radial[k] * 1e-3)} "
             f"kN{_of(len(of_bearings), 'the largest of')}."
         )
+    yield from _strained(seen)
+
+
+def _strained(seen: Seen) -> Iterator[str]:
+    """The shaft that is nearest to yielding."""
+    checked = checked_shafts(seen.asked.checks, [one.bent for one in seen.data])
+    yield f"Shaft {checked[0].shaft}{_of(len(checked), 'the weakest of')}: {checked[0].found}."
 
 
 def _of(count: int, words: str) -> str:
@@ -147,6 +159,10 @@ _SHEET = Sheet(
             ("z", "x", "y", "along", "turn_x", "turn_y", "twist"), of="bent.line", each="",
         ),
         Rows(
+            "shaft_stress_{one.name}", "Nominal stress of shaft {one.name}",
+            ("z", "diameter", "bending", "torsion", "axial", "equivalent"), of="stress", each="",
+        ),
+        Rows(
             "bearing_forces", "Forces and lives of the bearings",
             (
                 "name", "bearings", *(f"loads.{key}" for key in BearingLoads.__dataclass_fields__),
@@ -155,7 +171,10 @@ _SHEET = Sheet(
             stacked="",
         ),
     ),
-    remarks=(lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, [one.bent for one in seen.data]),),
+    remarks=(
+        lambda seen: overlooked(seen.asked.bearings, seen.asked.lives, [one.bent for one in seen.data]),
+        lambda seen: said_of_checks(seen.asked.checks, [one.bent for one in seen.data]),
+    ),
     figures=(
         Chart(
             "shaft_deflection_{one.name}", "Deflection of shaft {one.name}",
@@ -168,6 +187,24 @@ _SHEET = Sheet(
                 ),
             ),
             of="bent.line", each="",
+        ),
+        Chart(
+            "shaft_stress_{one.name}", "Nominal stress of shaft {one.name}",
+            "Shaft {one.name}: nominal stress of its sections from bending, torsion and axial force, without notches; "
+            "bending alternates with the rotation.",
+            (
+                Over(
+                    "z",
+                    tuple(
+                        Line(key, words, f"series:{n}", look={"markers": False})
+                        for n, (key, words) in enumerate(
+                            (("equivalent", "equivalent (von Mises)"), ("bending", "bending"), ("torsion", "torsion"))
+                        )
+                    ),
+                    options={"label": "nominal stress"},
+                ),
+            ),
+            of="stress", each="",
         ),
     ),
 )  # fmt: skip
