@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
-    from fegear.results.shafts.lead_correction import LeadData
+    from fegear.results.shafts.lead_correction import GroundLead, LeadData
     from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
@@ -221,15 +221,20 @@ def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work
         data = cast("LeadData", upstream[LEAD_CORRECTION_TASK])
         best = {one.pair: one for one in ground_leads(data, inputs.leads)}
         return [
-            LevelLead(one.slope, float(one.before[-1]), one.best.flanks, one.crowning, whole=True)
-            if (one := best.get(mesh.pair)) else None
-            for mesh in inputs.shafts.gearbox.meshes
-        ]  # fmt: skip
+            None if mesh.pair not in best else _of_correction(best[mesh.pair], mesh.load * radius)
+            for mesh, radius in zip(inputs.shafts.gearbox.meshes, data.radii, strict=True)
+        ]
     meshes = mesh_forces(inputs.shafts, upstream, work)
     return [
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
         for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
     ]
+
+
+def _of_correction(one: GroundLead, torque: float) -> LevelLead:
+    """The recommended lead with its K_Hbeta under the nominal load."""
+    k = int(np.argmin(np.abs(one.torque - torque)))
+    return LevelLead(one.slope, float(one.before[k]), float(one.after[k]), one.crowning, whole=True)
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
