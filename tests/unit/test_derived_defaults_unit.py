@@ -298,7 +298,7 @@ def off(one, other):
 
 #: Where a page derives what no row writes: what is not there (a rigid bearing, no film), or has no value of its own ...
 NOT_THERE = {
-    "AccuracyPart.corner_distance", "BearingPart.permissible_tilt", "BearingPlacePart.around", "Case.neglected",
+    "AccuracyPart.corner_distance", "BearingPlacePart.around", "Case.neglected",
     "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
     "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",
@@ -316,7 +316,7 @@ NOT_THERE = {
     "SetStiffnessPart.turning", "ShaftInSpacePart.coupling", "StiffnessPart.face_positions", "StiffnessPart.gear",
     "ToothContactPart.load", "TrainPart.balance", "WebHolesPart.tooth", "fegear__case__shaft__BearingPart.axial",
     "fegear__case__shaft__BearingPart.housing_axial", "fegear__case__shaft__BearingPart.housing_radial",
-    "fegear__case__shaft__BearingPart.radial",
+    "fegear__case__shaft__BearingPart.permissible_tilt", "fegear__case__shaft__BearingPart.radial",
 }  # fmt: skip
 #: ... or needs a formula, a search or solid gears of its own.
 NOT_WRITTEN = {

@@ -5,23 +5,15 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from importlib.resources import files
 from string import Template
 
-from fegear.base.units import from_si
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
-from fegear.case.drafts.two_stages import (
-    ChosenBearing,
-    LaidOut,
-    PlacedShaft,
-    centre_distance,
-    laid_out,
-    two_stages,
-    with_room,
-)
+from fegear.case.drafts.shafts_text import amount, length, shafts_text
+from fegear.case.drafts.two_stages import LaidOut, centre_distance, laid_out, two_stages, with_room
 from fegear.case.text_file import toml_string
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
@@ -91,29 +83,6 @@ _OPERATED = """\
 lubricant = {{ viscosity_40 = "220 mm^2/s", temperature = "70 degC" }}     # assumed: mineral oil ISO VG 220
 operation = {{ application_factor = 1.0, life = {life} }}     # {assumed}
 """
-_SHAFT = """\
-[shaft.{name}]{note}
-{axis}sections = [
-    {{ length = "{seat_length}", outer = "{seat}" }},
-    {{ length = "{between}", outer = "{thick}" }},
-    {{ length = "{seat_length}", outer = "{seat}" }},
-]
-gears = [{gears}]
-bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}"{reversed} }}]
-{coupling}yield_strength = "275 MPa"     # assumed: S355 up to 250 mm, EN 10025-2
-"""
-_BEARING = """\
-[bearing.{name}]
-designation = "{designation}"
-life = {{}}     # {rated} of the designation{short}
-"""
-_STIFF = """\
-[bearing.{name}]
-radial = {radial}     # with its seat, assumed: pinion too small for tabulated designations
-{fixed}"""
-#: What a bearing is rated by, and what is said of one that does not last.
-_RATED_BY = {"floating": "C"}
-_SHORT = "; shorter life: none within the root circle lasts as long"
 #: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
 _RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
 _NO_RELIEF = 'relief = { tip = { amount = "15 um", length = "4 mm" } }'
@@ -168,9 +137,6 @@ _BORE, _RIM, _HALF_WIDTH = 0.5, 1.21, 0.02
 #: Mesh stiffness per face width, assumed for a ring and for reliefs [Pa]: c_gamma of ISO 6336 for steel.
 _PER_WIDTH = 20e9
 
-#: Radial stiffness per bore of deep groove ball bearings of middle size and their seats [N/m / m].
-_PER_BORE = 7e9
-
 
 def draft(answers: Answers, stem: str, schema: str = "") -> str:
     """Write a case file.
@@ -210,7 +176,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
-        "half_width": _length(_HALF_WIDTH * answers.si("module")),
+        "half_width": length(_HALF_WIDTH * answers.si("module")),
         "relief": _ON if _modified_by_assumption(answers) else _EFFECTS["tip_relief"][not answers.has("tip_relief")],
         "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
         **(_train(answers) if answers.kind == "train" else {}),
@@ -261,12 +227,12 @@ def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None)
     bore, note = _BORE * root, "half the root radius"
     if 0.0 < (thinner := root - _RIM * (1.0 + dedendum)) < bore:
         bore, note = thinner, "a rim of 1.2 tooth depths"
-    texts |= {"bore_radius": _length(bore * module), "bore_note": note}
+    texts |= {"bore_radius": length(bore * module), "bore_note": note}
     if answers.kind == "gearbox":
         texts |= {"bore_note": "that of the shaft"}
     if answers.helical:
         return _HELICAL.format(**{**texts, "hand": ("right", "left")[number], **(other or {})})
-    texts["tip_diameter"] = _length(module * (teeth + 2.0 * (1.0 + shift)))
+    texts["tip_diameter"] = length(module * (teeth + 2.0 * (1.0 + shift)))
     return _SPUR.format(**{**texts, **(other or {})})
 
 
@@ -274,10 +240,10 @@ def _modified(answers: Answers, number: int, texts: Mapping[str, str]) -> str:
     """Lines for the flanks of a gear, and for its rating in a gearbox."""
     lines = [_RELIEF.format(**texts) if answers.has("tip_relief") else f"# {_NO_RELIEF}"]
     if answers.kind in HELICAL:
-        amount, along = _deflection(answers), _ALONG * answers.si("module")
-        crowned = _CROWNED.format(crowning=toml_string(_amount(_CROWNING * amount, "um")))
+        depth, along = _deflection(answers), _ALONG * answers.si("module")
+        crowned = _CROWNED.format(crowning=toml_string(amount(_CROWNING * depth, "um")))
         if _modified_by_assumption(answers):
-            sizes = {"amount": toml_string(_amount(amount, "um")), "length": toml_string(_amount(along, "mm"))}
+            sizes = {"amount": toml_string(amount(depth, "um")), "length": toml_string(amount(along, "mm"))}
             lines = [_ROUNDED.format(**sizes) + _ASSUMED]
         if number == 0:
             lines.append(crowned + _ASSUMED if _modified_by_assumption(answers) else f"# {crowned}")
@@ -301,15 +267,15 @@ def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
     """A ring gear with a cutter of two fifths of its teeth, which makes involutes up to usual tip circles."""
     teeth, module = int(texts["teeth"]), answers.si("module")
     return _RING.format(
-        **texts, cutter=max(10, 2 * teeth // 5), rim=json.dumps(_length(USUAL_RING_RIM * module)),
-        tip_diameter=_length(module * (teeth - 2.0 * (1.0 + shift))),
+        **texts, cutter=max(10, 2 * teeth // 5), rim=json.dumps(length(USUAL_RING_RIM * module)),
+        tip_diameter=length(module * (teeth - 2.0 * (1.0 + shift))),
     )  # fmt: skip
 
 
 def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
     """The pair; `other` texts stand in place of its own."""
     first, second = map(json.dumps, KINDS[answers.kind].gears)
-    distance = _length(centre_distance(answers))
+    distance = length(centre_distance(answers))
     own = {
         "pair": "I", "first": first, "second": second, "centre_distance": distance, "load": _load(answers),
         "range": _range(answers), **_texts(answers, ("speed",)),
@@ -342,39 +308,31 @@ def _range(answers: Answers) -> str:
     return f"# torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for a range, instead of torque"
 
 
-def _length(value: float) -> str:
-    return f"{value * from_si('mm'):.6g} mm"
-
-
-def _amount(value: float, unit: str) -> str:
-    return f"{float(f'{value * from_si(unit):.2g}'):g} {unit}"
-
-
 def _train(answers: Answers) -> Mapping[str, str]:
     """Motor, shafts and machine of a size that suits the gears."""
     radii = [0.5 * answers.si("module") * int(teeth) for teeth in answers.numbers("teeth")]
     inertia = [_BODIES * 0.5 * math.pi * _STEEL * answers.si("face_width") * radius**4 for radius in radii]
-    millimetres = partial(_amount, unit="mm")
+    millimetres = partial(amount, unit="mm")
     speed = answers.si("speed")
     return {
         "torque": answers["torque"],
-        "backlash": _amount(_BACKLASH * answers.si("module"), "um"),
+        "backlash": amount(_BACKLASH * answers.si("module"), "um"),
         "motor_inertia": f"{inertia[0]:.3g} kg*m^2",
         "load_inertia": f"{inertia[1]:.3g} kg*m^2",
         "shaft_length": millimetres(8.0 * radii[0]),
         "input_diameter": millimetres(1.2 * radii[0]),
         "output_diameter": millimetres(1.2 * radii[0] * (radii[1] / radii[0]) ** (1.0 / 3.0)),
-        "slowest": _amount(_SLOWEST * speed, "rpm"),
-        "fastest": _amount(_FASTEST * speed, "rpm"),
+        "slowest": amount(_SLOWEST * speed, "rpm"),
+        "fastest": amount(_FASTEST * speed, "rpm"),
     }
 
 
 def _gearbox(answers: Answers) -> Mapping[str, str]:
     """Gears, shafts and bearings of one stage."""
     found, names = laid_out((answers,)), KINDS["gearbox"].gears
-    gears = [_gear(answers, n, {"bore_radius": _length(hole)}) for n, hole in enumerate(found.holes)]
+    gears = [_gear(answers, n, {"bore_radius": length(hole)}) for n, hole in enumerate(found.holes)]
     return {
-        "gears": "\n".join(gears), "shafts": _shafts(found, ("input", "output"), names, ((0,), (1,))),
+        "gears": "\n".join(gears), "shafts": shafts_text(found, ("input", "output"), names, ((0,), (1,))),
         "operated": _operated(answers),
     }  # fmt: skip
 
@@ -391,7 +349,7 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
         grown["profile_shift_note"] = _note(answers, "profile_shift")
         for member in range(2):
             at = 2 * stage + member
-            other = {"name": names[at], "hand": hands[at], "bore_radius": _length(found.holes[at]), **grown}
+            other = {"name": names[at], "hand": hands[at], "bore_radius": length(found.holes[at]), **grown}
             gears.append(_gear(own, member, other))
         follows = {
             "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",
@@ -404,58 +362,8 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
     on = ((0,), (1, 2), (3,))
     return {
         "gears": "\n".join(gears), "pairs": "\n".join(pairs),
-        "shafts": _shafts(found, ("input", "middle", "output"), names, on),
+        "shafts": shafts_text(found, ("input", "middle", "output"), names, on),
     }  # fmt: skip
-
-
-def _shafts(found: LaidOut, names: Sequence[str], gears: Sequence[str], on: Sequence[tuple[int, ...]]) -> str:
-    """Shafts of these names with their gears, `on` each, and bearings."""
-    shafts = "\n".join(_placed_shaft(found, n, names, [(gears[at], at // 2) for at in own]) for n, own in enumerate(on))
-    bearings = "\n".join(
-        _bearing(f"{name}_{role}", role, bearing, lasts=one.lasts)
-        for name, one in zip(names, found.shafts, strict=True)
-        for role, bearing in sorted(one.bearings.items(), key=lambda each: each[0] == "floating")
-    )
-    said = (
-        "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
-        "from\n# them (ISO 281). Values of a catalogue are better and belong to one designation, as of a 6306:\n"
-        '# life = { dynamic_rating = "29.6 kN" }, catalogue = { static_rating = "16 kN" }; X, Y and e are of ISO 281.\n'
-    )
-    if any(one.tapered for one in found.shafts):
-        said += (
-            "# Tapered bearings against each other where a ball and a roller bearing would need a shaft thicker than "
-            "the\n# root circle of its pinion: its teeth are cut into the shaft.\n"
-        )
-    return f"{shafts}\n{said}\n{bearings}"
-
-
-def _bearing(name: str, role: str, bearing: ChosenBearing, *, lasts: bool) -> str:
-    """A bearing by its designation, or by an assumed stiffness."""
-    if not bearing.designation:
-        stiffness = toml_string(_amount(_PER_BORE * bearing.bore, "N/um"))
-        return _STIFF.format(name=name, radial=stiffness, fixed="fixed = true\n" if role == "locating" else "")
-    rated = _RATED_BY.get(role, "C, X, Y and e")
-    return _BEARING.format(name=name, designation=bearing.designation, rated=rated, short="" if lasts else _SHORT)
-
-
-def _placed_shaft(found: LaidOut, n: int, names: Sequence[str], gears: Sequence[tuple[str, int]]) -> str:
-    """A shaft by its number, with its gears and their stages."""
-    one: PlacedShaft = found.shafts[n]
-    name, seat = names[n], 2.0 * found.ends[0]
-    left, right = one.bearings
-    away = sum(found.distances[:n])
-    note = "" if n else "     # distances along it from its left end; places and sizes are assumed"
-    coupling = "" if n else 'coupling = "0 mm"     # where the torque enters\n'
-    if n == len(names) - 1:
-        coupling = f'coupling = "{_length(found.length)}"\n'
-    return _SHAFT.format(
-        name=name, note=note, axis=f'axis = ["{_length(away)}", "0 mm"]     # centre distance\n' if n else "",
-        seat_length=_length(seat), seat=_length(one.seat), between=_length(found.length - 2.0 * seat),
-        thick=_length(one.thick), left=left, right=right, first=_length(found.ends[0]), last=_length(found.ends[1]),
-        reversed=", reversed = true" if one.tapered else "",
-        gears=", ".join(f'{{ gear = "{gear}", at = "{_length(found.middles[stage])}" }}' for gear, stage in gears),
-        coupling=coupling,
-    )  # fmt: skip
 
 
 def _planetary(answers: Answers) -> Mapping[str, str]:
@@ -475,10 +383,10 @@ def _planetary(answers: Answers) -> Mapping[str, str]:
         "planets": str(planets),
         "set_torque": torque,
         "set_speed": at,
-        "slowest": _amount(_SLOWEST * speed, "rpm"),
-        "fastest": _amount(_FASTEST * speed, "rpm"),
-        "ring_mesh": _amount(stiffness, "N/um"),
-        "pin": _amount(0.5 * stiffness, "N/um"),
+        "slowest": amount(_SLOWEST * speed, "rpm"),
+        "fastest": amount(_FASTEST * speed, "rpm"),
+        "ring_mesh": amount(stiffness, "N/um"),
+        "pin": amount(0.5 * stiffness, "N/um"),
         "carrier_mass": f"{carrier:.3g} kg",
         "carrier_inertia": f"{0.5 * carrier * radius**2:.3g} kg*m^2",
         "pin_errors": ", ".join(['"20 um"', *['"0 um"'] * (planets - 1)]),
@@ -498,8 +406,8 @@ def _rack(answers: Answers) -> Mapping[str, str]:
     module, relieved = answers.si("module"), answers.has("tip_relief")
     texts = _texts(answers, ("torque", "tip_relief", "relief_length") if relieved else ("torque",))
     return {
-        "reference_height": _length(_RACK_HEIGHT * module),
-        "backlash": _amount(_BACKLASH * module, "um"),
+        "reference_height": length(_RACK_HEIGHT * module),
+        "backlash": amount(_BACKLASH * module, "um"),
         "torque": texts["torque"],
         "torque_note": ", assumed" if answers.assumed("torque") else "",
         "rack_relief": _RACK_RELIEF.format(**texts) if relieved else _NO_RACK_RELIEF,

@@ -80,15 +80,12 @@ class LevelLead:
         K_Hbeta in the gaps of the present flanks.
     crowning : float
         Besides the present one; zero where the slope is nearly as good without [m].
-    whole : bool
-        Whether slope and crowning take the place of the present ones: those of `LeadCorrection`.
     """
 
     slope: float
     before: float
     after: float
     crowning: float = 0.0
-    whole: bool = False
 
 
 def level_lead(mesh: FlankForces, shafts: ShaftGaps, load: float) -> LevelLead | None:

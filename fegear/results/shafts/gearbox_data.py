@@ -274,24 +274,12 @@ def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
     """The lead correction against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
-    if one.lead.whole:
-        return _corrected(one.lead, gained=gained)
     slope = one.lead.slope
     amounts = [f"helix slope C_Hβ {figures(slope * 1e6)} µm with {end_of_slope(slope)}"] if slope else []
     if one.lead.crowning:
         amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
     return f"lead correction ({' and '.join(amounts)} on the driver{gain})"
-
-
-def _corrected(lead: LevelLead, *, gained: bool) -> str:
-    """The lead that `lead-correction` recommends, in place of the present one."""
-    end = f" with {end_of_slope(lead.slope)}" if lead.slope else ""
-    gain = f"; K_Hβ of the loaded flanks {lead.before:.2f} -> {lead.after:.2f}" if gained else ""
-    return (
-        f"the lead of lead-correction (helix slope C_Hβ {figures(lead.slope * 1e6)} µm{end}, crowning C_β "
-        f"{figures(lead.crowning * 1e6)} µm on the driver in place of the present ones{gain})"
-    )
 
 
 def end_of_slope(slope: float) -> str:

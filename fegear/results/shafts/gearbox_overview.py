@@ -15,7 +15,7 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
 from fegear.contact.wide.on_shafts import FlankForces
-from fegear.design.flanks.lead_correction import LevelLead, level_lead
+from fegear.design.flanks.lead_correction import level_lead
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.sheet.answer import Answer
@@ -40,10 +40,8 @@ from fegear.results.shafts.gearbox_data import (
     safeties,
 )
 from fegear.results.shafts.gearbox_scheme import scheme
-from fegear.results.shafts.lead_correction import LEAD_CORRECTION_TASK, LeadInputs, ground_leads, inputs_of_leads
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
-    fed_pairs,
     inputs_of_shafts,
     loaded_shafts,
     mesh_forces,
@@ -60,11 +58,11 @@ if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
-    from fegear.results.shafts.lead_correction import GroundLead, LeadData
     from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
@@ -96,8 +94,6 @@ class GearboxInputs:
         Longest life that pairs are rated for [s]; NaN where none is given.
     why : tuple of str
         Why something is missing.
-    leads : LeadInputs or None
-        Where the case asks for lead corrections, too: those are what is named here.
     """
 
     shafts: LoadedShaftsInputs
@@ -111,7 +107,6 @@ class GearboxInputs:
     checks: ShaftChecks
     required: float
     why: tuple[str, ...]
-    leads: LeadInputs | None = None
 
 
 def _refused(check: object, scene: Scene, pair: str) -> str:
@@ -163,13 +158,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         lives, speeds, tuple(tuple(part[one].designation or "" for one in row) for row in names), checks_of(scene),
-        required, tuple(why), inputs_of_leads(scene, name) if _corrects(scene) else None,
+        required, tuple(why),
     )  # fmt: skip
-
-
-def _corrects(scene: Scene) -> bool:
-    """Whether the case asks for lead corrections: one run has one slope of a mesh."""
-    return LEAD_CORRECTION_TASK.stage in scene.case.results and bool(fed_pairs(scene))
 
 
 def _speeds(scene: Scene) -> dict[str, float]:
@@ -216,25 +206,12 @@ def _failures(inputs: GearboxInputs) -> tuple[Note, ...]:
 
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
-    """Of every mesh whose flanks are loaded with the shafts, the lead of `lead-correction` or a slope against tilt."""
-    if inputs.leads is not None:
-        data = cast("LeadData", upstream[LEAD_CORRECTION_TASK])
-        best = {one.pair: one for one in ground_leads(data, inputs.leads)}
-        return [
-            None if mesh.pair not in best else _of_correction(best[mesh.pair], mesh.load * radius)
-            for mesh, radius in zip(inputs.shafts.gearbox.meshes, data.radii, strict=True)
-        ]
+    """Of every mesh whose flanks are loaded with the shafts, the helix slope against their tilt."""
     meshes = mesh_forces(inputs.shafts, upstream, work)
     return [
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
         for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
     ]
-
-
-def _of_correction(one: GroundLead, torque: float) -> LevelLead:
-    """The recommended lead with its K_Hbeta under the nominal load."""
-    k = int(np.argmin(np.abs(one.torque - torque)))
-    return LevelLead(one.slope, float(one.before[k]), float(one.after[k]), one.crowning, whole=True)
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
@@ -289,8 +266,6 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
             found.append(Task("loaded-flanks", mesh.pair))
         if _has_error(scene, mesh.pair):
             found.append(Task("transmission-error", mesh.pair))
-    if _corrects(scene):
-        found.append(LEAD_CORRECTION_TASK)
     return tuple(found)
 
 
@@ -392,6 +367,11 @@ def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
     return found if any(found) else None
 
 
+#: Which of two slopes of one mesh is to be ground.
+_ESTIMATED = (
+    "Gearbox: helix slopes and crownings of its changes are estimates under nominal load, in addition to the present "
+    "lead; the lead to grind, over all loads and in place of the present one, is that of lead-correction."
+)
 #: What the safety of shafts lacks.
 _NOTCHES = (
     "Gearbox: fatigue of the shafts and notch effects (steps, keyways, fits; DIN 743) are not evaluated; multiply the "
@@ -441,6 +421,7 @@ _SHEET = Sheet(
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
         lambda _seen: [neglecting(_NOTCHES)],
+        lambda seen: [_ESTIMATED] if any(one.lead is not None for one in seen.data.meshes) else [],
         lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),
         lambda seen: overlooked(seen.asked.checks.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
     ),

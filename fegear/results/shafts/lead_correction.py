@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.results.shafts.rated_lead import RatedLead
 
-#: The one task of this stage.
-LEAD_CORRECTION_TASK = Task("lead-correction", "all")
 #: The design with the corrected slope and the present crowning, where the correction has less.
 _KEPT = "lead correction, present crowning"
 #: Seconds of one search on computed flanks under one load.
@@ -106,8 +104,7 @@ class GroundLead:
         return self.leads[1]
 
 
-def inputs_of_leads(scene: Scene, name: str) -> LeadInputs:
-    """As `Stage.inputs`."""
+def _inputs(scene: Scene, name: str) -> LeadInputs:
     shafts = inputs_of_shafts(scene, name)
     drivers = tuple(scene.case.pair[mesh.pair].driver for mesh in shafts.gearbox.meshes)
     counts = scene.case.effects.relief  # a lead that does not count is none that the correction adds to
@@ -130,7 +127,7 @@ def _compute(inputs: LeadInputs, upstream: Upstream, work: Work) -> LeadData:
     return LeadData(tuple(mesh.pair for mesh in box.meshes), radii, found)
 
 
-def ground_leads(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
+def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
     """Of every corrected mesh, the one that gains most first."""
     rows = zip(
         data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, asked.rated, strict=True
@@ -240,7 +237,7 @@ def _known(key: str) -> Cell:
 
 _SHEET = Sheet(
     answer=Answer(_sentences, figure=lambda seen: f"lead_correction_{seen.data[0].pair}" if seen.data else ""),
-    of=ground_leads,
+    of=_ground,
     name=lambda _asked: "",
     tables=(
         Rows(
@@ -290,7 +287,7 @@ def _check(scene: Scene, _name: str) -> None:
 
 LEAD_CORRECTION = Stage(
     subjects=shafts_of,
-    inputs=inputs_of_leads,
+    inputs=_inputs,
     compute=_compute,
     present=_SHEET.present,
     needs=_needs,
