@@ -197,13 +197,13 @@ def said_of_checks(checks: ShaftChecks, bent: Sequence[Deflection]) -> Iterator[
         if one.margin < 1.0:
             yield failing(
                 f"Shaft {one.shaft}: {one.found}; increase the diameter there to {figures(one.needed * 1e3)} mm or "
-                f"shaft.{one.shaft}.yield_strength",
+                f"shaft.{one.shaft}.yield_strength.",
                 one.margin,
             )
         if one.assumed:
             yield assuming(
                 f"Shaft {one.shaft}: yield strength {figures(one.strength * 1e-6)} MPa assumed (S355 up to 250 mm, "
-                "EN 10025-2); specify shaft.NAME.yield_strength"
+                "EN 10025-2); specify shaft.NAME.yield_strength."
             )
     for row in tilted_bearings(checks, bent):
         for tilted in row:
@@ -211,9 +211,9 @@ def said_of_checks(checks: ShaftChecks, bent: Sequence[Deflection]) -> Iterator[
                 continue
             text = f"Bearing {tilted.bearing}: {tilted.found} on shaft {tilted.shaft}"
             if tilted.tilt > limit.high:
-                yield failing(f"{text}; {STRAIGHTER}", tilted.margin)
+                yield failing(f"{text}; {STRAIGHTER}.", tilted.margin)
             else:
-                yield exceeding(f"{text}; specify permissible_tilt of the catalogue, or {STRAIGHTER}")
+                yield exceeding(f"{text}; specify permissible_tilt of the catalogue, or {STRAIGHTER}.")
 
 
 #: What tilts bearings less.
