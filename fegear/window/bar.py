@@ -72,7 +72,6 @@ class Bar:
                 with ui.element("div"):
                     for name in ("to-large", "to-digits", "to-exercise"):
                         ui.element("button").classes("button").props(f"type=button id={name}")
-            ui.element("button").classes("button").props("type=button id=to-answers")
             ui.element("button").classes("button").props("type=button id=stop hidden")
             ui.element("div").classes("state").props("role=status id=state")  # the page writes it: it changes often
         self._told = ui.label().classes("told")

@@ -140,9 +140,12 @@ class Bench:
             self.compute()
 
     def _tell_exercise(self, before: View) -> None:
-        """Have all pages hide or show the answers: a class sees what its lecturer has asked for, and no more."""
-        now = {"exercise": self.view.exercise, "revealed": self.view.revealed}
-        if now != {"exercise": before.exercise, "revealed": before.revealed}:
+        """Have all pages ask the same, and hide or show the answers: a class sees what its lecturer does, no more."""
+        now, earlier = (
+            {"exercise": one.exercise, "revealed": one.revealed, "question": one.question}
+            for one in (self.view, before)
+        )
+        if now != earlier:
             self.tell("exercise", now)
 
     def tell(self, what: str, content: Content | None = None) -> None:

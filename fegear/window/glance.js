@@ -35,25 +35,26 @@ const fegearGlance = (() => {
       "How does the load of one planet change over a mesh cycle?",
     ],
   };
-  let asking = 0, hiding = false;
+  let hiding = false;
   /** The question of an exercise, and room for the student's own answer, which stands beside the computed one later. */
   function ask() {
-    let host = $("question");
-    if (!view.exercise) { host?.remove(); hiding = false; return; }
-    if (!host) {
-      host = Object.assign(made("details", "question"), { id: "question", open: true });
-      const answer = Object.assign(made("textarea"), { rows: 3, placeholder: "Your answer, in one sentence" });
+    const host = $("question"), asked = $("asked");
+    if (!host || !asked) return;
+    host.hidden = !view.exercise;
+    if (!view.exercise) { hiding = false; return; }
+    if (!asked.firstChild) {
+      const answer = Object.assign(made("textarea"), { rows: 1, placeholder: "Your answer, in one sentence" });
       answer.setAttribute("aria-label", "Your answer");
       answer.addEventListener("keydown", (event) => event.stopPropagation());
       const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
-      next.onclick = () => { asking += 1; answer.value = ""; ask(); };
-      host.append(made("summary", "", "Exercise"), made("p"), answer, next);
-      document.body.append(host);
+      next.onclick = () => { keep({ question: (view.question ?? 0) + 1 }); ask(); };
+      asked.append(made("p"), answer, next);
     }
-    const [words, answer] = [host.querySelector("p"), host.querySelector("textarea")];
+    const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")];
     const all = QUESTIONS[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"];
-    words.textContent = all[asking % all.length];
-    if (!view.revealed && !hiding) answer.value = ""; // another exercise
+    const question = all[Math.abs(view.question ?? 0) % all.length], another = words.textContent !== question;
+    words.textContent = question;
+    if (another || (!view.revealed && !hiding)) answer.value = ""; // another exercise
     hiding = !view.revealed;
     answer.readOnly = !!view.revealed;
   }

@@ -192,6 +192,8 @@ class View(NamedTuple):
         Whether numbers have all digits and their errors.
     revealed : bool
         Whether they have been asked for since; not kept for the next time.
+    question : int
+        Number of the question that is asked.
     """
 
     pictures: tuple[str, ...] = ()
@@ -203,6 +205,7 @@ class View(NamedTuple):
     exercise: bool = False
     digits: bool = False
     revealed: bool = False
+    question: int = 0
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""

@@ -147,6 +147,9 @@ class Page:
                 with ui.element("div").classes("inputs").props('role=region aria-label="Case"'):
                     self._inputs = Inputs(self._bench)
                 with ui.element("main").classes("outputs").props('aria-label="Results"'):
+                    with ui.element("section").props('id=question hidden aria-label="Exercise"'):
+                        ui.element("div").props("id=asked")  # the page writes it
+                        ui.element("button").classes("button").props("type=button id=to-answers")
                     with ui.element("div").props("id=glance"):
                         ui.element("div").props("id=hands")
                         ui.element("div").props('id=small role=region aria-label="Thumbnails"')

@@ -109,7 +109,10 @@ def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_d
     def told():
         return [content for what, content in bench.heard if what == "exercise"]
 
-    hidden, shown = {"exercise": True, "revealed": False}, {"exercise": True, "revealed": True}
+    def page(**said):
+        return {"exercise": True, "revealed": False, "question": 0} | said
+
+    hidden, shown = page(), page(revealed=True)
     bench.see_otherwise({"large": True})
     assert told() == []
     bench.see_otherwise({"exercise": True, "revealed": False})
@@ -125,7 +128,10 @@ def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_d
     assert [what for what, _ in bench.heard].index("exercise") < [what for what, _ in bench.heard].index("asked")
     bench.put(bench.desk.text.replace("800 N", "700 N"), moving=False)
     bench.see_otherwise({"exercise": False})
-    assert told() == [hidden, {"exercise": False, "revealed": False}]
+    assert told() == [hidden, page(exercise=False)]
+    bench.heard.clear()
+    bench.see_otherwise({"exercise": True, "question": 2})  # the next question is that of all pages
+    assert told() == [page(question=2)]
 
 
 def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp_path):
