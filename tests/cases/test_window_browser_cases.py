@@ -191,19 +191,16 @@ def asked_and_answered(browser) -> None:
     """The question of an exercise lies above the figures, hidden or shown, and covers nothing."""
     place = "document.getElementById('{}').getBoundingClientRect().{}"
     shown = "getComputedStyle(document.getElementById('small')).display !== 'none'"
-    browser.run("document.getElementById('to-exercise').click()")
-    assert not browser.run(shown)
-    assert browser.run("document.querySelector('#question p').textContent").endswith("?")
-    for _ in ("hidden", "shown"):
+    for press_first, state in (("to-exercise", f"!({shown})"), ("to-answers", shown)):
+        browser.run(f"document.getElementById('{press_first}').click()")
+        browser.until(state)
         bottom, top = browser.run(place.format("question", "bottom")), browser.run(place.format("glance", "top"))
         assert bottom > browser.run(place.format("question", "top")) + 20
         assert top >= bottom - 0.5
         assert browser.run(place.format("glance", "bottom")) <= browser.run("innerHeight") + 0.5
-        browser.run("document.getElementById('to-answers').click()")
-    browser.run("document.getElementById('to-answers').click()")
-    assert browser.run(shown)
+        assert browser.run("document.querySelector('#question p').textContent").endswith("?")
     browser.run("document.getElementById('to-exercise').click()")
-    assert browser.run("document.getElementById('question').hidden")
+    browser.until("document.getElementById('question').hidden")
 
 
 def test_a_value_stepped_by_keyboard_changes_the_results_and_one_that_is_refused_leaves_them(browser, serve, tmp_path):
