@@ -109,6 +109,8 @@ def _known() -> dict[str, Envelope]:
 
 #: All designations, without prefixes and suffixes.
 KNOWN = _known()
+#: Dimensions that differ by less are one [m].
+_SAME = 1e-6
 #: Their series, in front of the two digits of the bore.
 _NAMED = frozenset(one[:-2] for one in KNOWN)
 #: Letters, digits, then what a maker adds (cage, seals, clearance), set off by a letter, dash, slash or space.
@@ -120,6 +122,23 @@ def plain_designation(designation: str) -> str:
     plain = designation.strip().upper()
     form = _FORM.match(plain)
     return f"{form[1]}{form[2]}" if form else plain
+
+
+def designation_of(kind: Kind, bore: float, outside_diameter: float, width: float) -> str:
+    """The first designation with this envelope; empty where none has it.
+
+    Parameters
+    ----------
+    kind : {"ball", "cylindrical", "tapered"}
+    bore, outside_diameter, width : float
+        [m].
+    """
+    size = bore, outside_diameter, width
+    for name, one in KNOWN.items():
+        own = one.bore, one.outside_diameter, one.width
+        if one.kind == kind and all(abs(a - b) < _SAME for a, b in zip(own, size, strict=True)):
+            return name
+    return ""
 
 
 def envelope_of(designation: str) -> Envelope:

@@ -22,6 +22,7 @@ import numpy as np
 
 from fegear.base.arrays import Array, Index, ReadOnlyArrays, distinct
 from fegear.base.shown import shown
+from fegear.shafts.beam import Shaft
 from fegear.shafts.deflection import Deflection
 
 #: Places along a shaft that are looked at besides its steps, bearings and forces.
@@ -47,14 +48,16 @@ class ShaftStress(ReadOnlyArrays):
         return int(np.argmax(self.equivalent >= self.equivalent.max() * (1.0 - 1e-9)))
 
 
-def nominal_stress(bent: Deflection) -> ShaftStress:
+def nominal_stress(bent: Deflection, drawn: Shaft | None = None) -> ShaftStress:
     """Stresses of a shaft in equilibrium.
 
     Parameters
     ----------
     bent : Deflection
+    drawn : Shaft, optional
+        Its sections as they are; by default those that bend, which bodies of gears on it begin inside of.
     """
-    shaft, (at, loads) = bent.loaded.shaft, bent.acting
+    shaft, (at, loads) = drawn or bent.loaded.shaft, bent.acting
     cuts = distinct(shaft.steps, at, np.linspace(0.0, shaft.length, _PLACES))
     middle = np.repeat(0.5 * (cuts[:-1] + cuts[1:]), 2)
     z = np.column_stack([cuts[:-1], cuts[1:]]).ravel()
@@ -70,6 +73,7 @@ def nominal_stress(bent: Deflection) -> ShaftStress:
     axial = resultant[:, 2] / area
     equivalent = np.sqrt((np.abs(axial) + bending) ** 2 + 3.0 * torsion**2)
     found = np.column_stack([outer, bending, torsion, axial, equivalent])
+    found[np.abs(found) < _SAME * np.abs(found).max(axis=0)] = 0.0  # round-off of what balances
     return ShaftStress(*np.column_stack([z, found])[_jumps(found)].T)
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fegear.case.built.gears_on_shafts import strained
+from fegear.case.reading import build_scene
 from fegear.results.shafts.checked_shafts import ShaftChecks, checked_shafts, said_of_checks, tilted_bearings
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import stiff
@@ -100,15 +104,18 @@ def test_a_shaft_around_another_carries_what_its_bearings_leave_it():
     assert found.bending.max() == pytest.approx(bending_of(500.0 * 0.1, 0.06, 0.03), rel=1e-10)
 
 
-def checks(strength=None, tilts=(None, None), factor=1.0, assumed=False):
-    return ShaftChecks(("a",), (strength or ShaftStrength(),), (assumed,), (factor,), (("left", "right"),), (tilts,))
+def checks(bent, strength=None, tilts=(None, None), factor=1.0, assumed=False):
+    drawn = tuple(one.loaded.shaft for one in bent)
+    limits = (strength or ShaftStrength(),), (assumed,), (factor,)
+    return ShaftChecks(("a",), drawn, *limits, (("left", "right"),), (tilts,))
 
 
 def test_a_thin_shaft_under_a_large_torque_fails_and_the_named_diameter_does_not():
     def of(d, factor=1.0):
         box = loaded(((0.4, d),), (0.1, 0.3), [(0, 0, 0, 0, 0, 500.0), (0, 0, 0, 0, 0, -500.0)])
         bent = deflect((box,))
-        return checked_shafts(checks(factor=factor), bent)[0], list(said_of_checks(checks(factor=factor), bent))
+        asked = checks(bent, factor=factor)
+        return checked_shafts(asked, bent)[0], list(said_of_checks(asked, bent))
 
     thin, notes = of(0.01)
     assert thin.equivalent == pytest.approx(math.sqrt(3.0) * torsion_of(500.0, 0.01), rel=1e-12)  # 4411 MPa
@@ -122,7 +129,10 @@ def test_a_thin_shaft_under_a_large_torque_fails_and_the_named_diameter_does_not
     assert of(1.001 * thin.needed)[1] == []
     assert of(thin.needed, 1.5)[0].margin == pytest.approx(1.0 / 1.5, rel=1e-9)
     assert "at K_A 1.5" in of(0.01, 1.5)[1][0]
-    assert len(list(said_of_checks(checks(assumed=True), deflect((loaded(((0.4, 0.05),), 0.1, [(0,) * 6]),))))) == 1
+    idle = deflect((loaded(((0.4, 0.05),), 0.1, [(0,) * 6]),))
+    (note,) = said_of_checks(checks(idle, assumed=True), idle)
+    assert "275 MPa assumed" in note
+    assert math.isinf(checked_shafts(checks(idle), idle)[0].safety)
 
 
 def test_the_tilt_of_a_bearing_is_the_slope_of_the_beam():
@@ -132,15 +142,33 @@ def test_the_tilt_of_a_bearing_is_the_slope_of_the_beam():
     inertia = math.pi / 64 * d**4
     left, right = (force * a * b * (span + far) / (6 * E * inertia * span) for far in (b, a))
     tilts = (PermissibleTilt(0.5 * left, 0.999 * left), PermissibleTilt(1.001 * right, 2.0 * right))
-    (found,) = tilted_bearings(checks(tilts=tilts), bent)
+    (found,) = tilted_bearings(checks(bent, tilts=tilts), bent)
     assert found[0].tilt == pytest.approx(left, rel=1e-9)
     assert found[1].tilt == pytest.approx(right, rel=1e-9)
-    (note,) = [one for one in said_of_checks(checks(ShaftStrength(1e12), tilts), bent) if one.startswith("Bearing")]
+    (note,) = [
+        one for one in said_of_checks(checks(bent, ShaftStrength(1e12), tilts), bent) if one.startswith("Bearing")
+    ]
     assert note.startswith(f"Bearing left: tilt {left * 10800 / math.pi:.3g}' (")
     assert note.margin == pytest.approx(0.999)
     between = (None, PermissibleTilt(0.999 * right, 1.001 * right))
-    (unsure,) = said_of_checks(checks(ShaftStrength(1e12), between), bent)
+    (unsure,) = said_of_checks(checks(bent, ShaftStrength(1e12), between), bent)
     assert "specify permissible_tilt of the catalogue" in unsure
+
+
+def test_sections_are_those_of_the_case_and_end_at_root_circles():
+    text = (Path(__file__).parents[2] / "cases" / "two_stage_shafts.toml").read_text("utf-8")
+    document = tomllib.loads(text)
+    document["shaft"]["in"]["sections"] = [{"length": "120 mm", "outer": "30 mm"}]
+    document["gear"]["a"]["bore_radius"] = "8 mm"  # held inside of the shaft: teeth are cut into it
+    scene = build_scene(document, "box", Path())
+    assert strained(scene, "in").diameters([40.0e-3])[0] == pytest.approx([0.03])
+    document["shaft"]["in"]["sections"][0]["outer"] = "70 mm"  # as thick as the tips
+    scene = build_scene(document, "box", Path())
+    half = 0.5 * scene.gears["a"].face_width
+    shaft, root = strained(scene, "in"), 2.0 * scene.gears["a"].root_radius
+    assert root < 0.07
+    found = shaft.diameters([0.04 - 0.99 * half, 0.04 + 0.99 * half, 0.04 + 1.01 * half, 0.1])[0]
+    assert found == pytest.approx([root, root, 0.07, 0.07])
 
 
 def test_guide_values_by_kind():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fegear.shafts.designations import KNOWN, envelope_of
+from fegear.shafts.designations import KNOWN, designation_of, envelope_of
 from fegear.shafts.larger_bearing import larger_bearing, rating_of
 
 
@@ -45,3 +45,11 @@ def test_by_hand():
     )
     assert larger_bearing("6206", 3e6, 0.0, 1e9) is None
     assert larger_bearing("7206", 3e3, 0.0, 1e6) is None  # a series that is not tabulated
+
+
+def test_an_envelope_has_the_designation_that_has_it():
+    one = KNOWN["6305"]
+    assert designation_of("ball", one.bore, one.outside_diameter, one.width) == "6305"
+    assert designation_of("ball", one.bore, one.outside_diameter, 1.01 * one.width) == ""
+    roller = KNOWN["NU204"]  # N, NJ and NUP share its envelope and its rating
+    assert designation_of("cylindrical", roller.bore, roller.outside_diameter, roller.width).endswith("204")

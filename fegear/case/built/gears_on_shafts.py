@@ -86,6 +86,27 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
     return StiffenedShaft(replace(shaft, gears=tuple(bodies.values())), bodies, tuple(said))
 
 
+def strained(scene: Scene, name: str) -> Shaft:
+    """A shaft by its sections, no thicker than the root circles of gears that are cut into it: what carries it.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the shaft.
+    """
+    part = scene.case.shaft[name]
+    shaft = part.build()
+    for place in part.gears:
+        gear = scene.gears[place.gear]
+        if not gear.tooth.internal:
+            half = 0.5 * gear.face_width
+            low, high = (min(max(place.at + end, 0.0), shaft.length) for end in (-half, half))
+            if high - low > _PIECE * shaft.length:
+                shaft = _filled(shaft, low, high, 2.0 * gear.root_radius, thinner=True)
+    return shaft
+
+
 def _body(gear: Gear, place: GearPlacePart, sense: int) -> RevolvedBody:
     """What lies between the held radius of a gear and its root circle, along its shaft."""
     half = 0.5 * gear.face_width
@@ -108,8 +129,8 @@ def _body(gear: Gear, place: GearPlacePart, sense: int) -> RevolvedBody:
     )  # fmt: skip
 
 
-def _filled(shaft: Shaft, low: float, high: float, outer: float) -> Shaft:
-    """The shaft with another outer diameter between two places."""
+def _filled(shaft: Shaft, low: float, high: float, outer: float, *, thinner: bool = False) -> Shaft:
+    """The shaft with another outer diameter between two places, `thinner`: where it is thicker."""
     found = []
     for section, start in zip(shaft.sections, shaft.steps, strict=False):
         end = start + section.length
@@ -119,6 +140,8 @@ def _filled(shaft: Shaft, low: float, high: float, outer: float) -> Shaft:
             s, t = (a - start) / section.length, (b - start) / section.length
             hole = h0 + (h1 - h0) * s, h0 + (h1 - h0) * t
             inside = low - _PIECE < a and b < high + _PIECE
-            ends = (outer, outer) if inside else (d0 + (d1 - d0) * s, d0 + (d1 - d0) * t)
+            ends = d0 + (d1 - d0) * s, d0 + (d1 - d0) * t
+            if inside:
+                ends = (min(ends[0], outer), min(ends[1], outer)) if thinner else (outer, outer)
             found.append(Section(b - a, ends[0], hole[0], ends[1], hole[1]))
     return replace(shaft, sections=tuple(found))

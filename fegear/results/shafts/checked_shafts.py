@@ -11,11 +11,13 @@ import numpy as np
 from fegear.base.notes import Note, assuming, exceeding, failing
 from fegear.base.printed import figures
 from fegear.base.shown import shown
+from fegear.case.built.gears_on_shafts import strained
 from fegear.shafts.permissible_tilt import PermissibleTilt
 from fegear.shafts.stress import ShaftStress, diameter_for, nominal_stress
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
+    from fegear.shafts.beam import Shaft
     from fegear.shafts.deflection import Deflection
     from fegear.shafts.shaft_strength import ShaftStrength
 
@@ -28,6 +30,8 @@ class ShaftChecks:
     ----------
     names : tuple of str
         Of the shafts.
+    drawn : tuple of Shaft
+        Their sections, no thicker than root circles that are cut into them.
     strengths : tuple of ShaftStrength
     assumed : tuple of bool
         Whether the yield strength is the default.
@@ -39,6 +43,7 @@ class ShaftChecks:
     """
 
     names: tuple[str, ...]
+    drawn: tuple[Shaft, ...]
     strengths: tuple[ShaftStrength, ...]
     assumed: tuple[bool, ...]
     factors: tuple[float, ...]
@@ -138,7 +143,8 @@ def checks_of(scene: Scene) -> ShaftChecks:
                 factors[name] = max(factors[name], pair.operation.application_factor)
     names = tuple(tuple(place.bearing for place in part.bearings) for part in shafts.values())
     return ShaftChecks(
-        tuple(shafts), tuple(part.strength for part in shafts.values()),
+        tuple(shafts), tuple(strained(scene, name) for name in shafts),
+        tuple(part.strength for part in shafts.values()),
         tuple("yield_strength" not in part.given for part in shafts.values()), tuple(factors.values()), names,
         tuple(tuple(bearings[one].tilt for one in row) for row in names),
     )  # fmt: skip
@@ -154,10 +160,10 @@ def checked_shafts(checks: ShaftChecks, bent: Sequence[Deflection]) -> tuple[Che
         The shafts under the nominal load.
     """
     found = []
-    for name, one, strength, assumed, factor in zip(
-        checks.names, bent, checks.strengths, checks.assumed, checks.factors, strict=True
+    for name, one, drawn, strength, assumed, factor in zip(
+        checks.names, bent, checks.drawn, checks.strengths, checks.assumed, checks.factors, strict=True
     ):
-        stress = nominal_stress(one)
+        stress = nominal_stress(one, drawn)
         k, most = stress.most, float(stress.equivalent.max())
         safety = strength.yield_strength / (factor * most) if most > 0.0 else np.inf
         found.append(CheckedShaft(

@@ -49,6 +49,7 @@ from fegear.results.shafts.loaded_shafts import (
     shafts_of,
 )
 from fegear.results.shafts.shaft_deflection import overlooked
+from fegear.shafts.designations import designation_of
 from fegear.shafts.gearbox import CAUSES
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
+    from fegear.case.shaft import BearingPart
     from fegear.contact.wide.on_shafts import LoadedShafts
     from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
@@ -157,9 +159,18 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         inputs_of_shafts(scene, name), drawn_gearbox(scene),
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
-        lives, speeds, tuple(tuple(part[one].designation or "" for one in row) for row in names), checks_of(scene),
+        lives, speeds, tuple(tuple(_designation(part[one]) for one in row) for row in names), checks_of(scene),
         required, tuple(why),
     )  # fmt: skip
+
+
+def _designation(part: BearingPart) -> str:
+    """That of the case, otherwise one with the dimensions of its catalogue; empty where none is known."""
+    if part.designation is not None:
+        return part.designation
+    if (printed := part.printed) is None or (printed.kind == "ball" and printed.contact_angle):
+        return ""
+    return designation_of(printed.kind, printed.bore, printed.outside_diameter, printed.width)
 
 
 def _speeds(scene: Scene) -> dict[str, float]:
@@ -312,9 +323,10 @@ def _sentences(seen: Seen) -> Iterator[str]:
         f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
         for number, one in enumerate(data.changes)
     ]
-    yield from changes[:1]
-    if changes[1:]:  # an answer has five sentences
-        yield " ".join(changes[1:])
+    alone = 0 if data.failures else 1  # an answer has five sentences
+    yield from changes[:alone]
+    if changes[alone:]:
+        yield " ".join(changes[alone:])
 
 
 def _weakest_bearing(data: GearboxData) -> str:

@@ -77,13 +77,14 @@ def _deflected(data: LoadedShafts, asked: DeflectionInputs) -> list[DeflectedSha
     """Every shaft; stiffness with its error where a bearing is estimated."""
     estimated = any(error is not None for row in asked.errors for error in row)
     found = []
-    for name, bent, bearings, lives, errors in zip(
-        data.gearbox.names, data.nominal.bent, asked.bearings, asked.lives, asked.errors, strict=True
-    ):
+    for name, bent, drawn, bearings, lives, errors in zip(
+        data.gearbox.names, data.nominal.bent, asked.checks.drawn, asked.bearings, asked.lives, asked.errors,
+        strict=True,
+    ):  # fmt: skip
         slope = bent.radial_stiffness if estimated else None
         off = None if slope is None else slope * np.array([np.nan if one is None else one for one in errors])
         loads = bent.bearing_loads(lives)
-        found.append(DeflectedShaft(bent, loads, nominal_stress(bent), name, bearings, slope, off))
+        found.append(DeflectedShaft(bent, loads, nominal_stress(bent, drawn), name, bearings, slope, off))
     return found
 
 
