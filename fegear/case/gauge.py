@@ -33,11 +33,11 @@ class MeasuredStrainPart(Part):
     torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
         default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
     )
-    fit: list[Literal["offset", "scale", "shift", "drift"]] = Field(
+    fit: list[Literal["offset", "scale", "shift", "drift", "runout"]] = Field(
         default_factory=list,
         description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load), "
-        "`shift` (zero of the angle) and `drift` (of the bridge, linear over the turns; needs `offset`). Default: "
-        "nothing.",
+        "`shift` (zero of the angle), `drift` (of the bridge, linear over the turns; needs `offset`) and `runout` "
+        "(once per turn, from the samples outside the mesh; needs `offset`). Default: nothing.",
     )
     reverse: bool = Field(
         default=False, description="The measured angle is counted against the direction of rotation of the gear."
@@ -47,8 +47,9 @@ class MeasuredStrainPart(Part):
     def _sensible(self) -> Self:
         if len(set(self.fit)) < len(self.fit):
             raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
-        if "drift" in self.fit and "offset" not in self.fit:
-            raise refuse("contains drift without offset", "add offset", value=list(self.fit), key="fit")
+        for one in ("drift", "runout"):
+            if one in self.fit and "offset" not in self.fit:
+                raise refuse(f"contains {one} without offset", "add offset", value=list(self.fit), key="fit")
         if self.angle_column == self.strain_column:
             raise refuse("is the column of the angle", "specify another column", key="strain_column")
         if self.torque_column in (self.angle_column, self.strain_column):

@@ -10,22 +10,30 @@ Spikes, dropouts and saturated samples (`fegear.contact.trace_outliers`) are lef
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.shown import shown, shows
+from fegear.contact.fitted_line import (
+    FITTED as FITTED,  # noqa: PLC0414  (for readers of curves)
+)
+from fegear.contact.fitted_line import (
+    Fitted as Fitted,  # noqa: PLC0414  (for readers of curves)
+)
+from fegear.contact.fitted_line import FittedLine, linear, squares_left, standard_errors
 from fegear.contact.trace_outliers import Beside, outliers, suspected
-from fegear.contact.trace_scatter import gain_by_turns, noise_of
+from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from fegear.base.arrays import Array, Mask
+    from numpy.typing import NDArray
 
-Fitted = Literal["offset", "scale", "shift", "drift"]
-FITTED: tuple[Fitted, ...] = ("offset", "scale", "shift", "drift")
+    from fegear.base.arrays import Array, Mask
+    from fegear.contact.once_per_turn import OncePerTurn
+
 #: Fewest turns of a trace that tell a drift from the curve: each of its places is there twice.
 DRIFT_TURNS = 2.0
 #: Fewest samples within the computed curve, beside those that the fit takes.
@@ -49,8 +57,6 @@ _ROUNDS = 5
 _PLACE = 1.0 / 500.0
 #: Part of the variance of a trace from which on it is noise, with no shape to be told.
 _ALL_NOISE = 0.9
-#: Largest correlation of neighbouring residuals with which standard errors are counted.
-_MOST_CORRELATED = 0.99
 
 
 class NothingToCompareError(ValueError):
@@ -88,6 +94,14 @@ class FittedCurve:
     gain_scatter : float
         Standard error of the gain by what does not repeat at the same place (noise, torque from turn to turn): without
         the difference of shape, which `gain_error` has.
+    wave : OncePerTurn or None
+        What the trace has once per turn outside the mesh, where it was looked for.
+    wave_less : bool
+        Whether that is subtracted.
+    turn_gains : ndarray, shape (T,)
+        Gain of each turn, in their order; empty of fewer than three.
+    gain_noise : float
+        Standard error of the gain by the noise alone.
     left_out_angle, left_out : ndarray, shape (J,)
         Spikes, dropouts and saturated samples within the computed curve, as `angle` and `measured`.
     """
@@ -125,6 +139,37 @@ class FittedCurve:
     spikes: int = shown("", "spikes and dropouts left out", name="measured_spikes", default=0)
     saturated: int = shown("", "saturated samples left out", name="measured_saturated", default=0)
     saturated_at: float | None = None
+    wave: OncePerTurn | None = None
+    wave_less: bool = False
+    turn_gains: Array = field(default_factory=lambda: np.zeros(0))
+    gain_noise: float = 0.0
+
+    @property
+    @shows("um/m", "amplitude of the part of the trace once per turn of the gear", name="measured_runout")
+    def runout(self) -> float | None:
+        """Outside the mesh; None where it was not looked for."""
+        return None if self.wave is None else self.wave.amplitude
+
+    @property
+    @shows("um/m", "standard error of measured_runout", name="measured_runout_standard_error")
+    def runout_error(self) -> float | None:
+        """By the scatter of the samples outside the mesh."""
+        return None if self.wave is None else self.wave.error
+
+    @property
+    @shows("deg", "rotation of the gear at the maximum of the part once per turn", name="measured_runout_angle")
+    def runout_angle(self) -> float | None:
+        """Less the shift [rad]."""
+        return None if self.wave is None else float(np.mod(self.wave.place - self.shift + math.pi, _TURN) - math.pi)
+
+    @property
+    def unfitted_runout(self) -> OncePerTurn | None:
+        """Once per turn, where it is not subtracted, certain, and large beside the curve."""
+        wave = self.wave
+        if wave is None or self.wave_less:
+            return None
+        large = wave.amplitude > _DRIFT_PART * float(np.ptp(self.computed)) * abs(self.scale)
+        return wave if large and wave.amplitude > _DRIFT_ERRORS * wave.error else None
 
     @property
     def unfitted_drift(self) -> float | None:
@@ -145,6 +190,40 @@ class FittedCurve:
     def residual(self) -> Array:
         """Shape (K,)."""
         return self.measured - self.computed
+
+    @property
+    @shows("um/m", "measured strain, less the offset, not divided by the scale", label="strain")
+    def as_measured(self) -> Array:
+        """Shape (K,)."""
+        return self.measured * (self.scale or 1.0)
+
+    @property
+    @shows("um/m", "computed strain times the scale", label="strain")
+    def fitted(self) -> Array:
+        """By ascending `drawn_angle`, shape (K,)."""
+        return (self.computed * self.scale)[self._ascending]
+
+    @property
+    @shows("deg", "rotation of the gear", label="rotation of the gear")
+    def drawn_angle(self) -> Array:
+        """Ascending, shape (K,)."""
+        return self.angle[self._ascending]
+
+    @property
+    def _ascending(self) -> NDArray[np.intp]:
+        return np.argsort(self.angle, kind="stable")
+
+    @property
+    @shows("um/m", "measured strain less the computed one times the scale", label="residual")
+    def left_by_fit(self) -> Array:
+        """Shape (K,)."""
+        return self.as_measured - self.computed * self.scale
+
+    @property
+    @shows("um/m", "sample left out", label="strain")
+    def left_out_as_measured(self) -> Array:
+        """Shape (J,)."""
+        return self.left_out * (self.scale or 1.0)
 
     @property
     @shows("um/m", "standard error of measured_offset", name="measured_offset_standard_error")
@@ -195,19 +274,6 @@ class FittedCurve:
     def samples(self) -> int:
         """K."""
         return int(self.angle.size)
-
-
-@dataclass(frozen=True)
-class _Line:
-    """What is linear in a fit: measured = offset + drift * turn + scale * curve."""
-
-    offset: float
-    scale: float
-    drift: float
-
-    def less(self, measured: Array, turn: Array) -> Array:
-        """Measured without offset and drift."""
-        return np.asarray(measured - self.offset - (self.drift * turn if self.drift else 0.0))
 
 
 def fit_curve(
@@ -261,7 +327,7 @@ class _Fit:
     """
 
     shift: float
-    line: _Line
+    line: FittedLine
     middle_turn: float
     inside: Mask
     used: Mask
@@ -302,8 +368,8 @@ class _Computed:
         turn = turn - middle_turn
         if "shift" in asked:
             step = 2.0 * self._half / _STEPS
-            shift = _refined(lambda at: _squares(self.at(self.within(at, a)), y, turn, asked), shift, step)
-        line = _linear(self.at(self.within(shift, a)), y, turn, asked)
+            shift = _refined(lambda at: squares_left(self.at(self.within(at, a)), y, turn, asked), shift, step)
+        line = linear(self.at(self.within(shift, a)), y, turn, asked)
         inside = np.abs(self.within(shift, angle) - self._middle) <= self._half
         return _Fit(shift, line, middle_turn, inside, used)
 
@@ -335,11 +401,11 @@ class _Computed:
         reach = 2.0 * self._half * _SLOPE
         slope = (self.at(places + reach) - self.at(places - reach)) / (2.0 * reach)
 
-        def with_errors(*more: Fitted, noise: float | None = None) -> tuple[_Line, dict[Fitted, float]]:
+        def with_errors(*more: Fitted, noise: float | None = None) -> tuple[FittedLine, dict[Fitted, float]]:
             these: tuple[Fitted, ...] = tuple(one for one in FITTED if one in asked or one in more)
-            fitted = _linear(found, y, turn, these)
+            fitted = linear(found, y, turn, these)
             residual = fitted.less(y, turn) - fitted.scale * found
-            return fitted, _standard_errors(found, slope, fitted.scale, residual, these, turn - beyond, noise)
+            return fitted, standard_errors(found, slope, fitted.scale, residual, these, turn - beyond, noise)
 
         errors = with_errors()[1]
         if "shift" in asked and _jumps(self._angle, self._curve):  # between two samples the jump may be anywhere
@@ -348,16 +414,16 @@ class _Computed:
         gain, of_gain = with_errors("scale")
         rest = gain.less(y, turn)
         noise = noise_of(places, rest - gain.scale * found)
-        scatter = max(
-            with_errors("scale", noise=noise)[1]["scale"],
-            gain_by_turns(turn, found, rest, gain.scale, free="offset" in asked),
-        )
+        of_turns = gains_of_turns(turn, found, rest, gain.scale, free="offset" in asked)
+        by_noise = with_errors("scale", noise=noise)[1]["scale"]
+        scatter = max(by_noise, of_mean(of_turns))
         drifting = with_errors("offset", "drift") if spanned > 1.0 else None
         return FittedCurve(
             asked, {one: errors.get(one, 0.0) for one in FITTED}, 0, line.offset + line.drift * beyond, line.scale,
             float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
             line.less(y, turn) / (line.scale or 1.0), found, line.drift, drifting and drifting[0].drift,
             drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,
+            turn_gains=of_turns, gain_noise=by_noise,
         )  # fmt: skip
 
 
@@ -420,51 +486,3 @@ def _refined(squares: Callable[[float], float], shift: float, step: float) -> fl
 
     ends = shift - 2.0 * step, shift + 2.0 * step
     return float(minimize_scalar(squares, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x)
-
-
-def _linear(curve: Array, measured: Array, turn: Array, asked: tuple[Fitted, ...]) -> _Line:
-    """Offset, scale and drift by least squares, those that are asked for; the mean of the turns is zero."""
-    scale, size = 1.0, float(turn @ turn) if "drift" in asked else 0.0
-
-    def free(of: Array) -> Array:  # of what offset and drift take up
-        one = of - of.mean() if "offset" in asked else of
-        return np.asarray(one - float(turn @ one) / size * turn if size else one)
-
-    if "scale" in asked:
-        c = free(curve)
-        power = float(c @ c)
-        scale = float(c @ free(measured)) / power if power else 0.0
-    rest = measured - scale * curve
-    return _Line(
-        float(rest.mean()) if "offset" in asked else 0.0, scale, float(turn @ rest) / size if size else 0.0
-    )  # fmt: skip
-
-
-def _squares(curve: Array, measured: Array, turn: Array, asked: tuple[Fitted, ...]) -> float:
-    line = _linear(curve, measured, turn, asked)
-    residual = line.less(measured, turn) - line.scale * curve
-    return float(residual @ residual)
-
-
-def _standard_errors(
-    curve: Array, slope: Array, scale: float, residual: Array, asked: tuple[Fitted, ...], turn: Array | None = None,
-    noise: float | None = None,
-) -> dict[Fitted, float]:  # fmt: skip
-    """Of what is fitted; neighbouring residuals that go together count as fewer samples, unless the noise is given."""
-    columns: dict[Fitted, Array] = {"offset": np.ones(curve.size), "scale": curve, "shift": -scale * slope}
-    if turn is not None:
-        columns["drift"] = turn
-    if not asked:
-        return {}
-    matrix = np.stack([columns[one] for one in asked], axis=1)
-    size = np.linalg.norm(matrix, axis=0)
-    size[size == 0.0] = 1.0
-    squares = float(residual @ residual)
-    variance = squares / max(curve.size - len(asked), 1)
-    follows = float(residual[1:] @ residual[:-1]) / squares if squares else 0.0
-    follows = min(max(follows, 0.0), _MOST_CORRELATED)
-    variance *= (1.0 + follows) / (1.0 - follows)
-    if noise is not None:
-        variance = noise**2
-    spread = np.diag(np.linalg.pinv((matrix / size).T @ (matrix / size))) * variance
-    return {one: float(math.sqrt(max(spread[i], 0.0)) / size[i]) for i, one in enumerate(asked)}

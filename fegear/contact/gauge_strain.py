@@ -29,6 +29,23 @@ def reach_of_places(peaks: Array, peak: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
+class StrainWith:
+    """What a gauge sees at the nominal load with one effect more.
+
+    Parameters
+    ----------
+    change : float
+        Of the peak, relative.
+    angle, strain : ndarray, shape (P,)
+        Rotation of the gear as in `GaugeHistory` [rad], and mean strain under the grid.
+    """
+
+    change: float
+    angle: Array
+    strain: Array
+
+
+@dataclass(frozen=True)
 class GaugeHistory:
     """What a gauge sees; strains in its direction, arrays over P positions of its tooth and L loads.
 

@@ -87,9 +87,16 @@ class OrderSpectrum(ReadOnlyArrays):
     """
 
     turns: float
-    phase: Array
+    phase: Array = shown("deg", "phase: order times the rotation of the shaft at the maximum")
     order: Array = shown("", "order per revolution of the shaft of the angle", label="order")
     amplitude: Array = shown("um", "amplitude of the measured transmission error", label="amplitude")
+
+    def line(self, order: float) -> OrderLine | None:
+        """An order that it has; None of a trace without a whole turn."""
+        at = int(np.abs(self.order - order).argmin())
+        if self.turns < 1.0 or abs(self.order[at] - order) > 1e-6:
+            return None
+        return OrderLine(order, float(self.amplitude[at]), float(self.phase[at]))
 
     def beside(self, lines: Sequence[OrderLine]) -> OrderSpectrum:
         """With further lines, in the place of any of the same order."""
@@ -174,6 +181,25 @@ class FittedError(FittedCurve):
     def residual(self) -> Array:
         """Shape (K,)."""
         return self.measured - self.computed
+
+    @property
+    @shows("um", "measured transmission error, mean of all teeth, less the offset, not divided by the scale",
+           label="transmission error")  # fmt: skip
+    def as_measured(self) -> Array:
+        """Shape (K,)."""
+        return super().as_measured
+
+    @property
+    @shows("um", "computed transmission error times the scale", label="transmission error")
+    def fitted(self) -> Array:
+        """Shape (K,)."""
+        return super().fitted
+
+    @property
+    @shows("um", "measured transmission error less the computed one times the scale", label="residual")
+    def left_by_fit(self) -> Array:
+        """Shape (K,)."""
+        return super().left_by_fit
 
     @property
     @shows("um", "standard error of measured_offset", name="measured_offset_standard_error")

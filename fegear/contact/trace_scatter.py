@@ -54,8 +54,8 @@ def noise_of(place: Array, residual: Array) -> float:
     return float(np.sqrt(np.mean(np.clip(off, -_CUT * usual, _CUT * usual) ** 2)))
 
 
-def gain_by_turns(turn: Array, curve: Array, rest: Array, scale: float, *, free: bool) -> float:
-    """Standard error of a gain by how it differs from turn to turn: torque that fluctuates, play that comes and goes.
+def gains_of_turns(turn: Array, curve: Array, rest: Array, scale: float, *, free: bool) -> Array:
+    """Gain of each turn: it differs by torque that fluctuates, play that comes and goes.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def gain_by_turns(turn: Array, curve: Array, rest: Array, scale: float, *, free:
 
     Returns
     -------
-    float
-        Zero of traces of fewer than three turns.
+    ndarray, shape (T,)
+        Of turns that have most of the curve, in their order; empty of traces with fewer than three.
     """
     number = np.floor(turn - turn.min() + _ROUNDED).astype(int)
     count = np.bincount(number)
@@ -78,6 +78,10 @@ def gain_by_turns(turn: Array, curve: Array, rest: Array, scale: float, *, free:
     power = np.bincount(number, own**2)
     whole = power > _POWER * power.mean()
     if np.count_nonzero(whole) < _TURNS:
-        return 0.0
-    gains = np.bincount(number, own * (rest - scale * curve))[whole] / power[whole]
-    return float(gains.std(ddof=1)) / math.sqrt(gains.size)
+        return np.zeros(0)
+    return np.asarray(scale + np.bincount(number, own * (rest - scale * curve))[whole] / power[whole])
+
+
+def of_mean(gains: Array) -> float:
+    """Standard error of the mean of gains of turns; zero of none."""
+    return float(gains.std(ddof=1)) / math.sqrt(gains.size) if gains.size else 0.0

@@ -9,7 +9,7 @@ import pytest
 from fegear.contact.fitted_curve import fit_curve
 from fegear.contact.trace_alternatives import alternatives, unexplained, whole_pitches
 from fegear.contact.trace_outliers import suspected
-from fegear.contact.trace_scatter import gain_by_turns, noise_of
+from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean
 
 #: Places [deg] and strain of a tooth of a spur pair in its tension and in its compression fillet.
 _AT = np.array([-25.0, -12.0, -10.5, -1.5, 0.0, 3.0, 4.5, 13.0, 14.5, 28.0])
@@ -169,7 +169,7 @@ def test_a_torque_that_fluctuates_from_turn_to_turn_widens_the_limit():
     curve = np.tile(np.interp(np.linspace(-25.0, 28.0, 200), _AT, _TENSION), 8)
     gain = 1.0 + rng.normal(0.0, 0.03, 8)
     measured = np.repeat(gain, 200) * curve
-    assert gain_by_turns(turn, curve, measured, gain.mean(), free=True) == pytest.approx(
+    assert of_mean(gains_of_turns(turn, curve, measured, gain.mean(), free=True)) == pytest.approx(
         gain.std(ddof=1) / math.sqrt(8.0), rel=1e-9
     )
-    assert gain_by_turns(turn[:400], curve[:400], measured[:400], 1.0, free=True) == 0.0
+    assert of_mean(gains_of_turns(turn[:400], curve[:400], measured[:400], 1.0, free=True)) == 0.0

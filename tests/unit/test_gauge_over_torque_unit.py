@@ -1,6 +1,7 @@
 """Traces of gauges with a column of the torque: levels told apart, run-up left out, gain over torque."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,32 @@ def test_levels_are_told_apart_and_the_gain_is_found_at_each(history, tmp_path):
     table = next(one for one in outcome.tables if one.name == "gauge_torques_g")
     assert len(table.columns) == 11
     assert any(one.key == "gauge_torques_g" for one in outcome.figures)
+
+
+def test_plateaus_that_the_pair_does_not_have_are_named(history, tmp_path):
+    """And those of which a longer run is compared: a staircase up and down again."""
+    written(tmp_path, history, staircase(8.0, 16.0, 24.0, 16.0, 8.0, turns=2))
+    one = read(case({"file": "t.csv", "fit": FIT}, torques=(24.0,)), tmp_path)
+    assert re.search(
+        r"left out \(steady at (8|8\.0\d), (16|15\.9|16\.1) N m: add to pair\.p\.torques to comp", one.reading
+    )
+    every = read(case({"file": "t.csv", "fit": FIT}), tmp_path)
+    assert [level.level for level in every.levels] == pytest.approx(TORQUES)
+    assert re.search(r"left out \(shorter runs at (8|8\.0\d), (16|15\.9|16\.1) N m\)", every.reading)
+    with pytest.raises(InputError, match=r'\.torques \(\["8[.0-9]* N\*m", "1[.0-9]+ N\*m", "2[.0-9]+ N'):
+        read(case({"file": "t.csv"}, torques=(40.0,)), tmp_path)
+
+
+def test_a_staircase_without_a_column_of_the_torque_is_recognised(history, tmp_path):
+    for name, levels in (("steps", TORQUES), ("steady", (24.0, 24.0, 24.0))):
+        written(tmp_path, history, staircase(*levels, turns=2, ramp=0.0))
+        text = (tmp_path / "t.csv").read_text().replace("torque [N*m]", "moment")
+        (tmp_path / f"{name}.csv").write_text(text)
+    steps, steady = (ran(case({"file": f"{name}.csv", "fit": FIT}), tmp_path) for name in ("steps", "steady"))
+    (said,) = (one for one in steps.remarks if "from turn to turn" in one)
+    assert said.endswith("the torque was not steady; add its column (torque_column), or give one file per torque.")
+    assert any("the torque was not steady from turn to turn" in one for one in steps.answer.sentences)
+    assert not any("from turn to turn" in one for one in steady.remarks)
 
 
 def test_the_run_up_does_not_count(history, tmp_path):

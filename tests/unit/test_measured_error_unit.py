@@ -201,22 +201,69 @@ def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
     np.testing.assert_allclose(columns["measured_amplitude"][first], 0.9 * columns["computed_amplitude"][first],
                                rtol=0.01)  # fmt: skip
     assert any(
-        "fitted over the whole curve, the measured transmission error is 10 % below the computed one, beyond" in remark
+        "measured transmission error does not agree with the computed one: 10 % below it (limit " in remark
         for remark in found.remarks
     )
-    sides, judged, largest = found.answer.sentences
+    judged, sides, once = found.answer.sentences
     assert sides.startswith("Encoders rig at 20 N m, peak-to-peak values: measured")
     assert "(includes noise), computed" in sides
-    assert judged.startswith("Encoders rig: fitted over the whole curve")
-    assert largest == "Encoders rig: largest order besides the mesh harmonics: 1 (eccentricity), amplitude 5 µm."
+    assert judged == (
+        "Encoders rig: measured transmission error does not agree with the computed one: 10 % below it (limit 1.0 %); "
+        "check torque, relief and the unit of the trace."
+    )
+    assert once.startswith("Encoders rig: once per revolution 5 µm of the driver (maximum at ")
+    assert once.endswith(": runout of gear, shaft or encoder, not part of the comparison.")
+    assert values["runout"] == pytest.approx(5e-6, rel=1e-2)
+    assert np.cos(values["runout_angle"]) == pytest.approx(1.0, abs=1e-3)
     high = found.data.last
     assert replace(high, estimated=False).verdict == ""
     near = replace(high, fitted=replace(high.fitted, gain=1.05), computed_error=0.35 * high.computed_peak_to_peak)
     assert (
-        "5.0 % above the computed one; this cannot be judged: the computed one is known to ±35 % only" in near.verdict
+        "is 5.0 % above the computed one; this cannot be judged: the computed one is known to ±35 % only"
+        in near.verdict
     )
     assert {figure.name for figure in found.figures} >= {"measured_te_rig", "measured_te_orders_rig",
                                                          "measured_te_harmonics_rig"}  # fmt: skip
+
+
+def test_both_gears_have_their_runout_with_its_place(computed, tmp_path):
+    """Of the mating gear by its own rotation; neither has a part in the comparison."""
+    written(tmp_path, "high.csv", computed, 1)
+    _, plain = numbers(ran(changed(), tmp_path))
+    lines = [line.split(",") for line in (tmp_path / "high.csv").read_text().splitlines()[1:]]
+    angle, te = np.array(lines, dtype=float).T
+    more = te + 3.0 * np.cos(np.radians(angle) * 20.0 / 31.0 - 2.0)
+    text = "".join(f"{a:.6f},{v:.8g}\n" for a, v in zip(angle, more, strict=True))
+    (tmp_path / "high.csv").write_text("angle [deg],te [um]\n" + text)
+    outcome, values = numbers(ran(changed(), tmp_path))
+    assert values["mate_runout"] == pytest.approx(3e-6, rel=2e-2)
+    assert values["mate_runout_angle"] == pytest.approx(2.0, abs=2e-2)
+    assert values["runout"] == pytest.approx(5e-6, rel=2e-2)
+    assert values["measured_scale"] == pytest.approx(plain["measured_scale"], rel=2e-3)
+    once = outcome.answer.sentences[2]
+    assert "µm of the driven gear (maximum at 11" in once, once
+    orders = next(one for one in outcome.tables if one.name == "measured_te_orders_rig")
+    assert "phase" in [column.name for column in orders.columns]
+
+
+def test_a_double_helical_pair_has_the_torques_of_both_halves(tmp_path):
+    """Its loads are those of one half: a torque of 20 N m was refused, and is a load of 10 N m on each."""
+    document = changed(traces=[{"file": "high.csv", "torque": "20 N*m"}])
+    for name, hand in (("a", "right"), ("b", "left")):
+        document["gear"][name] |= {"helix_angle": "20 deg", "hand": hand, "normal_module": "2 mm"}
+        del document["gear"][name]["module"]
+    document["pair"]["p"] |= {"double_helical": {"floating": "none"}, "width": "slices"}
+    rows = "".join(f"{a},{a % 7},{20 if a > 200 else 10}\n" for a in range(720))
+    (tmp_path / "high.csv").write_text("angle [deg],te [um],torque [N*m]\n" + rows)
+    scene = build_scene(document, "case", tmp_path)
+    found = encoders_of(scene, "rig")
+    radius = scene.pairs["p"].driver.base_radius
+    assert found.halves == 2
+    assert found.traces[0].load == pytest.approx(10.0 / radius)
+    document["encoders"]["rig"]["traces"] = [{"file": "high.csv"}]
+    both = encoders_of(build_scene(document, "case", tmp_path), "rig").traces
+    assert [one.load * radius for one in both] == pytest.approx([5.0, 10.0])
+    assert both[0].angle.size == pytest.approx(200, abs=20)
 
 
 def test_a_column_of_the_torque_parts_a_trace_by_the_torques_of_the_pair(computed, tmp_path):

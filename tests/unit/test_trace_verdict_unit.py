@@ -12,7 +12,7 @@ from fegear.contact.gauge_strain import reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
-from fegear.results.pair.trace_verdict import Otherwise, drawn_as, left_out, thinned, verdict
+from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, drawn_as, left_out, thinned, verdict
 
 ANGLE = np.linspace(-0.4, 0.5, 300)
 STRAIN = 9e-4 * np.interp(ANGLE, [-0.2, -0.15, 0.0, 0.05, 0.1, 0.2, 0.24], [0.0, 0.3, 0.9, 1.0, 0.6, 0.65, 0.0])
@@ -21,6 +21,8 @@ _PHASE = 2.0 * math.pi * np.arange(101) / 100.0
 #: Transmission error over a base pitch of 8 mm under two torques.
 X, LIGHT = 8e-3 * _PHASE / (2.0 * math.pi), 1e-6 * (np.sin(_PHASE) + 0.6 * np.cos(2.0 * _PHASE))
 HEAVY = 1e-6 * (3.0 * np.sin(_PHASE + 1.0) + 0.8 * np.sin(2.0 * _PHASE))
+#: Computed peak with places of the grid that change it by 1e-5 to either side.
+PEAK = ComputedPeak(9e-4, 0.0, 1e-4 * np.array([-1.0, 0.0, 1.0]), 9e-4 + 1e-5 * np.array([1.0, 0.0, -1.0]), 0.01)
 
 
 def strain(sign=1.0, sense=1.0, shift=0.0, noise=4e-6):
@@ -33,7 +35,7 @@ def judged(measured, fit=("offset", "scale"), *, teeth=24, brief=True, curves=No
     found = fit_curve(TURNS, measured, ANGLE, STRAIN, fit)
     better = alternatives(found, TURNS, measured, ANGLE, {"": STRAIN, **(curves or {})}, fit)
     otherwise = Otherwise(better, "tension", teeth, torques or {})
-    return verdict(found, 9e-4, (1e-5, 1e-5), 0.0, 0.01, otherwise, brief=brief)
+    return verdict(found, PEAK, otherwise, brief=brief)
 
 
 @pytest.mark.parametrize(
@@ -71,8 +73,8 @@ def test_the_other_fillet_is_named():
         (1.1e6, "; with a unit 1e+06 times smaller it is 1.1 times: check the unit of the strain"),
         (0.5, ", as of half the torque, or a quarter bridge evaluated as a half bridge; check torque and bridge"),
         (2.0, ", as of twice the torque, or a half bridge evaluated as a quarter bridge; check torque and bridge"),
-        (0.7, ", as computed at 150 N m; check the torque of the trace"), (1.3, "; check load, gauge factor and"),
-        (1.0, ", within ±1.5 %"),
+        (0.7, ", as computed at 150 N m; check the torque of the trace"), (1.3, "; check load and gauge factor (30"),
+        (1.0, "measured strain agrees with the computed one: "),
     ],
 )  # fmt: skip
 def test_a_ratio_with_a_reason_is_named_by_it(ratio, words):
@@ -84,7 +86,7 @@ def test_a_difference_of_shape_makes_no_verdict_milder():
     """The limit of a trace with noise is that of its noise, however large the residual of a wrong curve is."""
     bent = 1.06 * strain() + 8e-5 * np.sin(40.0 * TURNS)  # too far off, and of another shape
     said = judged(bent, brief=False)
-    assert "beyond ±1.5 %" in said  # of placement and load, nearly
+    assert "(limit 1.5 %: placement 1.1 %" in said  # of placement and load, nearly
     assert "scatter 0.2" in said
     noise = float(said.split("noise ")[1].split(" %")[0])
     assert noise < 3.0
@@ -94,11 +96,35 @@ def test_a_difference_of_shape_makes_no_verdict_milder():
 def test_the_limit_by_the_place_is_that_of_the_side_on_which_the_difference_lies():
     """Near the maximum over the fillet a grid elsewhere sees less, never more."""
     low, high = (fit_curve(TURNS, ratio * strain(), ANGLE, STRAIN, ("offset", "scale")) for ratio in (0.95, 1.05))
-    below, above = (verdict(one, 9e-4, (9e-5, 9e-6), 0.0, 0.01) for one in (low, high))
-    assert "below the computed one, within -10 % (placement 10 %" in below
-    assert "above the computed one, beyond +1.4 % (placement 1.0 %" in above
+    peak = replace(PEAK, places=9e-4 + np.array([9e-6, 0.0, -9e-5]))
+    below, above = (verdict(one, peak) for one in (low, high))
+    assert "agrees with the computed one: 5.0 % below it (limit 10 %: placement 10 %" in below
+    assert "; a grid 0.05 mm nearer to the tip or a torque or gauge factor 5.0 % lower would explain it; RMS" in below
+    assert "does not agree with the computed one: 5.0 % above it (limit 1.4 %: placement 1.0 %" in above
+    assert "; check load and gauge factor (5.0 % higher would explain it), then whether the grid is within" in above
     assert reach_of_places(np.array([-7.0, -10.0, -10.5]), -10.0) == (3.0, 0.5)
     assert reach_of_places(np.array([10.0]), 10.0) == (0.0, 0.0)
+
+
+def test_a_verdict_that_hangs_on_an_effect_that_is_off_is_not_given():
+    """What agrees without it need not agree with it; what is off either way is off."""
+    peak = replace(PEAK, neglected={"corner_contact": 0.04}, including="set corner_contact = true under [effects]")
+    without, far, both = (
+        verdict(fit_curve(TURNS, gain * strain(), ANGLE, STRAIN, ("offset", "scale")), peak, brief=True)
+        for gain in (0.96, 1.03, 0.98)
+    )
+    assert without == (
+        "measured strain is 4.0 % below the one computed without corner_contact and 0.20 % below that with it: this "
+        "cannot be judged; set corner_contact = true under [effects]"
+    )
+    assert "does not agree with the computed one: 3.0 % above it (limit 1.5 %), 7.1 % above it with corner_con" in far
+    assert "this cannot be judged" in both
+    small = verdict(
+        fit_curve(TURNS, strain(), ANGLE, STRAIN, ("offset", "scale")), replace(peak, neglected={"a": 5e-3})
+    )
+    assert (
+        "(limit 1.6 %: placement 1.1 %, load and gauge factor 1.0 %, computation 0 %, neglected effects 0.50 %" in small
+    )
 
 
 def test_a_scale_near_zero_is_no_fit_and_has_no_residual_over_it():
@@ -128,9 +154,10 @@ def test_what_is_left_out_is_counted_and_drawn_otherwise():
     assert left_out(cut).endswith(
         "samples are saturated at 600 µm/m (range of the amplifier); left out of the comparison, drawn as crosses"
     )
-    assert "samples are saturated at 600 µm/m" in verdict(cut, 9e-4, (1e-5, 1e-5), 0.0, 0.01, brief=True)
+    assert "samples are saturated at 600 µm/m" in verdict(cut, PEAK, brief=True)
     clean = fit_curve(TURNS, strain(), ANGLE, STRAIN)
-    assert left_out(clean) == left_out(None) == drawn_as(clean) == drawn_as(None) == ""
+    assert left_out(clean) == left_out(None) == drawn_as(None) == ""
+    assert drawn_as(clean) == " Points: strain as measured."
 
 
 def encoders(te, sign=1.0, sense=1.0, teeth=24, at=1.0):

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.case.built.trace_levels import no_level, of_driven, said_of_pair, torque_levels
+from fegear.case.built.trace_levels import no_level, of_driven, said_of_pair, said_of_rest, torque_levels
 from fegear.case.csv_file import read_columns
 
 if TYPE_CHECKING:
@@ -69,6 +69,8 @@ class Encoders:
         By load, ascending.
     estimates : bool
         Whether errors of the computed one are estimated.
+    halves : int
+        2 of a double helical pair, whose loads are those of one half.
     """
 
     pair: str
@@ -78,6 +80,7 @@ class Encoders:
     traces: tuple[ErrorTrace, ...]
     estimates: bool
     name: str = field(compare=False)
+    halves: int = 1
 
 
 def pair_of_encoders(scene: Scene, name: str) -> str:
@@ -103,7 +106,8 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     part, pair = scene.case.encoders[name], pair_of_encoders(scene, name)
     placed, mesh = scene.pairs[pair], scene.case.pair[pair]
     loads, nominal = mesh.all_loads(placed), mesh.normal_load(placed)
-    lever, traces, of_angle = placed.driver.base_radius, [], part.te_at != "line-of-action"
+    lever, of_angle = placed.driver.base_radius * mesh.halves, part.te_at != "line-of-action"
+    traces: list[ErrorTrace] = []
     said = said_of_pair(pair, np.array(loads) * lever)
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
@@ -114,10 +118,9 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
             pitch = 2.0 * np.pi / abs((placed.driver if part.shaft == "driver" else placed.driven).teeth)
             found = torque_levels(read.torque, read.angle, pitch, torques, part.torque_band)
             if not found:
-                raise no_level(f"{key}.file", one.file, pair, read.torque, torques, placed.ratio, part)
-            rest = read.angle.size - sum(run.stop - run.start for run in found.values())
+                raise no_level(f"{key}.file", one.file, pair, read.torque, read.angle, torques, placed.ratio, part)
             reading = [read.reading] if read.reading else []
-            reading += [f"{rest} samples at other torques left out"] if rest else []
+            reading += said_of_rest(read.torque, read.angle, list(found.values()), torques, part.torque_band, pair)
             traces += [
                 ErrorTrace(read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file, of_angle)
                 for k, run in found.items()
@@ -141,7 +144,9 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
         raise InputError(
             f"{again}.torque", torque, "is that of another trace", "specify the torque at which it was measured"
         )
-    return Encoders(pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), scene.estimates, name)
+    return Encoders(
+        pair, part.shaft, tuple(part.fit), part.load_tolerance, tuple(traces), scene.estimates, name, mesh.halves
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.printed import figures, percent
-from fegear.case.built.trace_levels import change_along, no_level, of_driven, torque_levels
+from fegear.case.built.trace_levels import change_along, no_level, of_driven, said_of_rest, torque_levels
 from fegear.case.csv_file import read_columns
 from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST, turns_along
 from fegear.contact.trace_outliers import suspected
@@ -64,6 +64,8 @@ class MeasuredStrain:
     levels : tuple of StrainLevel
         By torque, ascending, the nominal one among them; empty without a column of it.
     file : str
+    runout : bool
+        Whether what it has once per turn is subtracted.
     """
 
     angle: Array
@@ -72,6 +74,7 @@ class MeasuredStrain:
     reading: str
     levels: tuple[StrainLevel, ...] = ()
     file: str = field(compare=False, default="")
+    runout: bool = False
 
 
 def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str, teeth: int) -> MeasuredStrain:
@@ -112,7 +115,8 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
         at_nominal = next(one for one in levels if one.load == nominal)
         angle, strain = at_nominal.angle, at_nominal.strain
     _check(name, key, part, angle, strain)
-    return MeasuredStrain(angle, strain, tuple(part.fit), ", ".join(reading), levels, part.file)
+    fit = tuple(one for one in part.fit if one != "runout")
+    return MeasuredStrain(angle, strain, fit, ", ".join(reading), levels, part.file, "runout" in part.fit)
 
 
 def _levels(
@@ -125,14 +129,12 @@ def _levels(
     torques = np.array(loads) * placed.driver.base_radius * mesh.halves
     runs = torque_levels(torque, angle, pitch, torques, part.torque_band)
     if not runs:
-        raise no_level(key, part.file, pair, torque, torques, placed.ratio, part)
+        raise no_level(key, part.file, pair, torque, angle, torques, placed.ratio, part)
     levels: list[StrainLevel] = []
     said: list[str] = []
-    taken = 0
     for k, run in runs.items():
         count, change, at = run.stop - run.start, change_along(torque[run]), f"{figures(torques[k], 5)} N m"
         ramp = f"torque changes by {percent(abs(change))} along them" if abs(change) > part.torque_band else ""
-        taken += count
         # a whole turn on a slow ramp has the engagement of the tooth near the torque: better than none at the nominal
         usable = count >= FEWEST + len(part.fit) and not (ramp and (loads[k] != nominal or turns_of(angle[run]) < 1.0))
         if not usable:
@@ -151,9 +153,7 @@ def _levels(
             of_driven(float(np.median(torque)), torques, placed.ratio, part.torque_band)
             or f"set pair.{pair}.torque to a measured torque",
         )  # fmt: skip
-    if taken < angle.size:
-        said.insert(0, f"{angle.size - taken} samples at other torques left out")
-    return tuple(levels), said
+    return tuple(levels), said_of_rest(torque, angle, list(runs.values()), torques, part.torque_band, pair) + said
 
 
 def _check(name: str, key: str, part: MeasuredStrainPart, angle: Array, strain: Array) -> None:

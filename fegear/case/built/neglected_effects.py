@@ -60,6 +60,12 @@ def remedy(effects: EffectsPart, effect: str) -> str:
     return f"{line}."
 
 
+def including(effects: Iterable[str], part: EffectsPart) -> str:
+    """What switches several effects on, a clause; empty for none."""
+    lines = [f"{effect} = {part.example(effect)}" for effect in effects]
+    return f"set {' and '.join(lines)} under [effects]" if lines else ""
+
+
 def neglected_remarks(
     name: str, found: Neglected, effects: EffectsPart, tolerance: float, nominal: float,
     load_words: Callable[[float], str] | None = None,

@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.gauge_strain import GaugeHistory
+from fegear.base.effects import PLANE_EFFECTS, ROOT_EFFECTS
+from fegear.base.errors import InputError
+from fegear.contact.gauge_strain import GaugeHistory, StrainWith
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.neglected_effects import effects_off, with_effect
 from fegear.contact.plane.peaks import refined_peaks
 from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress
@@ -19,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
+    from fegear.contact.pair_spec import PairSpec
     from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.contact.plane.engagement import Engagement, Loaded
     from fegear.fem.plane.gauge import GaugesOnFillet
@@ -44,6 +48,7 @@ def gauge_history(
     tooth: int = 0,
     *,
     estimates: bool = True,
+    peaks: bool = False,
 ) -> GaugeHistory:
     """Follow a gauge from a base pitch before its tooth's contact to one after it.
 
@@ -68,6 +73,8 @@ def gauge_history(
         That has the gauge, in the order of meshing.
     estimates : bool
         Whether errors are estimated, and peaks looked for between positions.
+    peaks : bool
+        Whether peaks are looked for without errors, too.
     """
     source: RootStressInfluence = e.compliance.source(member)
     if getattr(source, "influence", None) is not gauges.influence:  # the pair's compliance comes from elsewhere
@@ -75,7 +82,7 @@ def gauge_history(
     at = int(np.argmin(np.abs(displacement)))
     centre = gauges.only(at)
     x = roll_positions(e, _POSITIONS)
-    if estimates:
+    if estimates or peaks:
         x = _with_peaks(e, nominal, x, member, source, (centre, opposite), tooth)
     states = loaded_states(e, shifted if estimates else (), loads, x, tooth)
     displaced = _teeth(e, states.rows, member, source, gauges)
@@ -94,6 +101,45 @@ def gauge_history(
         e.pair, member, gauges.side, math.copysign(sense, sense * seen), abs(seen) * error, error, seen * displaced,
         places[order], seen * displaced[:, :, at], seen * beside, displaced[:, :, at], displacement,
     )  # fmt: skip
+
+
+def gauge_neglects(
+    spec: PairSpec, e: Engagement, member: Member, gauges: GaugesOnFillet, opposite: GaugesOnFillet, tooth: int = 0
+) -> dict[str, StrainWith]:
+    """Strain at the nominal load with each effect that is off, by its name.
+
+    Data that are wrong while nothing uses them are passed over.
+
+    Parameters
+    ----------
+    spec : PairSpec
+    e : Engagement
+        Made of it.
+    member : {"driver", "driven"}
+    gauges : GaugesOnFillet
+        The grid alone.
+    opposite : GaugesOnFillet
+    tooth : int
+    """
+    nowhere = np.zeros(1)
+
+    def seen(one: Engagement) -> tuple[GaugeHistory, float]:
+        found = gauge_history(
+            one, (), [spec.nominal], spec.nominal, member, gauges, opposite, nowhere, tooth, estimates=False, peaks=True
+        )
+        return found, float(found.strain[found.peak_position(0), 0])
+
+    before = seen(e)[1]
+    strains: dict[str, StrainWith] = {}
+    for effect in effects_off(spec, (*PLANE_EFFECTS, *ROOT_EFFECTS)):
+        try:
+            other = with_effect(spec, e, effect)
+        except InputError:
+            continue
+        if other is not None:
+            found, peak = seen(other)
+            strains[effect] = StrainWith(peak / before - 1.0, found.angle, found.strain[:, 0])
+    return strains
 
 
 def _with_peaks(

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
-from fegear.contact.gauge_strain import GaugeHistory
+from fegear.base.effects import NEIGHBOUR_COUPLING
+from fegear.base.errors import InputError
+from fegear.contact.gauge_strain import GaugeHistory, StrainWith
 from fegear.contact.wide.mesh_matrix import mesh_stiffness
+from fegear.contact.wide.neglected_effects import effects_off, flanks_with
+from fegear.contact.wide.root_stress import rooted_lines
 from fegear.fem.solid.gauge import grid_on_face
 
 if TYPE_CHECKING:
@@ -131,6 +135,36 @@ def gauge_about_load(
         for force, rough in zip(fine, coarse, strict=True)
     )
     return GaugeAboutLoad(rooted.x, strain[:, 0], slope[:, 0], error, slope_error)
+
+
+def wide_gauge_neglects(
+    loaded: LoadedWidePair, member: Member, side: Side, grid: Grid, middle: float, z: float, influence: SolidInfluence
+) -> dict[str, StrainWith]:
+    """Strain at the nominal load with each effect that is off, by its name.
+
+    Contact along tip edges lets a tooth pair begin to carry sooner and go on for longer: the load on the others falls,
+    and with it the peak. Data that are wrong while nothing uses them are passed over. Parameters are those of
+    `wide_gauge_history`.
+    """
+    seen, arc = _Gauges(loaded, member, grid, z, influence), np.array([middle])
+    at = loaded.over.found
+    number = at.load.tolist().index(loaded.nominal)
+
+    def strain(found: LoadedFlanks, case: int, *, coupling: bool) -> tuple[Array, Array, float]:
+        rooted = rooted_lines(found.pair, member, found.lines, influence.fine, coupling=coupling)
+        mean = seen.means(rooted, side, arc, found.contact.force[:, :, case : case + 1])[0][:, 0, 0]
+        return rooted.x / found.pair.gear(member).base_radius, mean, float(mean[int(np.abs(mean).argmax())])
+
+    before = strain(at, number, coupling=loaded.coupling)[2]
+    strains: dict[str, StrainWith] = {}
+    for effect in effects_off(loaded.spec):
+        try:
+            found = flanks_with(effect, loaded.spec, loaded.flanks, loaded.gaps, loaded.over)
+        except InputError:
+            continue
+        angle, mean, peak = strain(found, 0, coupling=loaded.coupling or effect == NEIGHBOUR_COUPLING.name)
+        strains[effect] = StrainWith(peak / before - 1.0, angle, mean)
+    return strains
 
 
 class _Gauges:

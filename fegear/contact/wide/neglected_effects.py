@@ -39,51 +39,56 @@ def neglected_effects(spec: PairSpec, flanks: FlankPair, gaps: FlankGaps, over: 
     mean, factor = float(stated.mean[i]), float(stated.face_load_factor[i])
     changes: dict[str, tuple[Change, ...]] = {}
     wrong: dict[str, InputError] = {}
-    for effect in WIDE_EFFECTS:
-        if spec.is_on(effect) or not spec.has_data(effect):
-            continue
+    for effect in effects_off(spec):
         try:
-            if effect == CORNER_CONTACT.name:
-                sizes = _with_edges(spec, flanks, gaps, over)
-            else:
-                finer = replace(flanks, positions=over.found.lines.roll.size)
-                sizes = _with(effect, spec, finer, over.found, gaps)
+            found = flanks_with(effect, spec, flanks, gaps, over)
         except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
             wrong[effect] = error
             continue
+        # means over a base pitch hardly depend on the positions; beside edges they are not those of what is known
+        edges, one = effect == CORNER_CONTACT.name, over.found
+        before = (mean, factor) if edges else (float(one.mean_transmission_error[i]), float(one.face_load_factor[i]))
         changes[effect] = (
-            Change("mean transmission error", sizes[0], mean, spec.nominal, math.nan),
-            Change("K_Hbeta", sizes[1], factor, spec.nominal, math.nan),
-        )
+            Change(
+                "mean transmission error", float(found.mean_transmission_error[0]) - before[0], mean, spec.nominal,
+                math.nan,
+            ),
+            Change("K_Hbeta", float(found.face_load_factor[0]) - before[1], factor, spec.nominal, math.nan),
+        )  # fmt: skip
     return Neglected(changes, wrong)
 
 
-def _with_edges(spec: PairSpec, flanks: FlankPair, gaps: FlankGaps, over: OverPitch) -> tuple[float, float]:
-    """What contact along tip edges changes, at no more roll positions than means over a base pitch need."""
-    stated, i = over.stated, spec.loads.index(spec.nominal)
-    edged = replace(flanks, positions=_FEW, most_gap=usual_gap(spec.placed, spec.nominal))
-    found = edged.solve([spec.nominal], gaps)
-    changes = found.mean_transmission_error[0] - stated.mean[i], found.face_load_factor[0] - stated.face_load_factor[i]
-    return float(changes[0]), float(changes[1])
+def effects_off(spec: PairSpec) -> list[str]:
+    """Effects of a pair with its width that are off and have data."""
+    return [effect for effect in WIDE_EFFECTS if not spec.is_on(effect) and spec.has_data(effect)]
 
 
-def _with(
-    effect: str, spec: PairSpec, flanks: FlankPair, without: LoadedFlanks, gaps: FlankGaps
-) -> tuple[float, float]:
-    """What an effect that is off changes of mean transmission error and K_Hbeta, at the roll positions of both."""
+def flanks_with(
+    effect: str, spec: PairSpec, flanks: FlankPair, gaps: FlankGaps, over: OverPitch
+) -> LoadedFlanks:  # fmt: skip
+    """The pair under its nominal load with one effect more.
+
+    Contact along tip edges is followed at no more roll positions than means over a base pitch need; other effects at
+    those of what is known without them.
+
+    Raises
+    ------
+    InputError
+        If the data of the effect are wrong.
+    """
+    if effect == CORNER_CONTACT.name:
+        edged = replace(flanks, positions=_FEW, most_gap=usual_gap(spec.placed, spec.nominal))
+        return edged.solve([spec.nominal], gaps)
     for flank in spec.both:
         if effect in flank.wrong:
             raise flank.wrong[effect]
-    known, i, more = without.known, spec.loads.index(spec.nominal), spec.with_effect(effect)
-    changed = as_specified(more, flanks)
-    if (changed.pair, changed.coupling) != (flanks.pair, flanks.coupling):
-        flanks, known = changed, changed.compliance(spec.nominal)
-    elif changed.hertz != flanks.hertz:
+    known, more = over.found.known, spec.with_effect(effect)
+    finer = replace(flanks, positions=over.found.lines.roll.size)
+    changed = as_specified(more, finer)
+    if (changed.pair, changed.coupling) != (finer.pair, finer.coupling):
+        finer, known = changed, changed.compliance(spec.nominal)
+    elif changed.hertz != finer.hertz:
         known = replace(known, fixed_half_width=None)
     if effect in GAPS:
         gaps = open_gaps(more)
-    found = flanks.solve([spec.nominal], gaps, known)
-    return (
-        float(found.mean_transmission_error[0] - without.mean_transmission_error[i]),
-        float(found.face_load_factor[0] - without.face_load_factor[i]),
-    )
+    return finer.solve([spec.nominal], gaps, known)

@@ -113,8 +113,13 @@ class ToothStrain:
     @property
     def reach_of_placement(self) -> tuple[float, float]:
         """How far below and above the dynamic peak, in size, that of another place is."""
+        return reach_of_places(self.peak_of_places, self.peak)
+
+    @property
+    def peak_of_places(self) -> Array:
+        """Dynamic peak at every displacement, shape (G,)."""
         sign = np.sign(self.peak)
-        return reach_of_places(sign * (sign * self.displaced).max(axis=0), self.peak)
+        return np.asarray(sign * (sign * self.displaced).max(axis=0))
 
 
 def tooth_strain(

@@ -6,8 +6,12 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
+from fegear.case.built.neglected_effects import including, remark
+from fegear.case.effects import EffectsPart
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -24,9 +28,11 @@ from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, 
 from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
     DASHED,
+    DOTTED,
     LEFT_OUT,
     MEASURED,
     RESIDUAL,
+    TIMES_SCALE,
     better_described,
     compared,
     comparison_table,
@@ -42,7 +48,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from fegear.case.reading import Scene
-    from fegear.contact.gauge_strain import GaugeHistory
+    from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.gauge_strain import GaugeHistory, StrainWith
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
@@ -50,6 +57,8 @@ if TYPE_CHECKING:
 
 #: Seconds of both fillets over the path.
 _SECONDS = 0.4
+#: Change of the peak by an effect that is off above which it is said beside it.
+_SAID = 0.01
 #: Of 3D gears, for each load: both fillets of both solutions.
 _SECONDS_WIDE = 0.5
 
@@ -73,6 +82,12 @@ class GaugeInputs:
     finer : str
         Remedy where its estimated error exceeds the tolerance; of 3D gears.
     tolerance : float
+    effects : EffectsPart
+        All of the case, for remedies.
+    halves : int
+        2 of a double helical pair, whose teeth are one half.
+    neglected : bool
+        Whether it is looked at what effects that are off would change.
     """
 
     gauge: Gauge
@@ -83,6 +98,9 @@ class GaugeInputs:
     name: str = field(compare=False)
     finer: str = field(compare=False, default="")
     tolerance: float = field(compare=False, default=1.0)
+    effects: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
+    halves: int = 1
+    neglected: bool = False
 
 
 def _inputs(scene: Scene, name: str) -> GaugeInputs:
@@ -94,7 +112,11 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     finer = sharper
     if wide and scene.width_of(gauge.pair) != "slices":
         finer = f"increase load_distribution.positions ({scene.case.load_distribution.positions})"
-    return GaugeInputs(gauge, speed, scene.estimates, wide, sharper, name, finer, scene.case.accuracy.tolerance)
+    return GaugeInputs(
+        gauge, speed, scene.estimates, wide, sharper, name, finer, scene.case.accuracy.tolerance, scene.case.effects,
+        scene.case.pair[gauge.pair].halves,
+        scene.sizes_neglected or (scene.estimates and gauge.measured is not None),  # no verdict without it
+    )  # fmt: skip
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -104,40 +126,70 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
-    place, history, clearance = (_on_face if asked.wide else _in_plane)(asked, upstream)
+    followed = (_on_face if asked.wide else _in_plane)(asked, upstream)
+    history = followed.history
     at = teeth.loads.index(teeth.nominal)
     strain, opposite = history.strain[:, at], history.strain_opposite[:, at]
     found = compared(gauge, history.angle, strain)
     better = better_described(gauge, found, history.angle, strain, opposite)
+    more = {effect: one for effect, one in followed.more.items() if abs(one.change) > asked.tolerance}
+    neglected = {effect: one.change for effect, one in more.items()}
+    torques = _torques(history, teeth.loads, at, asked.halves)
     return GaugeData(
-        teeth.loads, at, history, place.place, clearance, place.clipped, gauge.load_tolerance, asked.speed,
-        found, Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, _torques(history, teeth.loads, at)),
+        teeth.loads, at, history, followed.place.place, followed.clearance, followed.place.clipped,
+        gauge.load_tolerance, asked.speed, found,
+        Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, torques),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
-        over_torque(gauge, found, history, teeth.loads, at),
+        over_torque(gauge, found, history, teeth.loads, at), neglected, including(neglected, asked.effects),
+        _gains(gauge, found, more),
     )  # fmt: skip
 
 
-def _torques(history: GaugeHistory, loads: Sequence[float], at: int) -> dict[str, float]:
+def _gains(gauge: Gauge, found: FittedCurve | None, more: dict[str, StrainWith]) -> dict[str, float]:
+    """Relative change of measured / computed strain with each further effect; empty without a trace."""
+    if found is None or not found.gain:
+        return {}
+    fits = {effect: compared(gauge, one.angle, one.strain) for effect, one in more.items()}
+    return {effect: one.gain / found.gain - 1.0 for effect, one in fits.items() if one is not None}
+
+
+def _torques(history: GaugeHistory, loads: Sequence[float], at: int, halves: int) -> dict[str, float]:
     """Peak under each other load of the pair over that under the nominal one, by its torque on the driver."""
     peaks = [float(history.strain[history.peak_position(i), i]) for i in range(len(loads))]
-    lever = history.pair.driver.base_radius
+    lever = history.pair.driver.base_radius * halves
     return {f"{figures(loads[i] * lever, 5)} N m": peak / peaks[at] for i, peak in enumerate(peaks) if i != at}
 
 
-def _in_plane(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
-    from fegear.contact.plane.gauge_history import gauge_history
+@dataclass(frozen=True)
+class _Followed:
+    """A gauge on its way through the mesh: place, strain, clearance [modules], strain with more effects."""
+
+    place: PlacedGauge
+    history: GaugeHistory
+    clearance: float
+    more: dict[str, StrainWith]
+
+
+def _in_plane(asked: GaugeInputs, upstream: Upstream) -> _Followed:
+    from fegear.contact.plane.gauge_history import gauge_history, gauge_neglects
 
     gauge, solved = asked.gauge, solution_of(upstream, asked.gauge.gear)
     teeth, place = loaded_pair(upstream, gauge.pair), placed_gauge(gauge, solved)
+    grids, opposite = gauges_on(gauge, place, solved)
     history = gauge_history(
-        teeth.engagement, teeth.shifted, teeth.loads, teeth.nominal, gauge.member, *gauges_on(gauge, place, solved),
+        teeth.engagement, teeth.shifted, teeth.loads, teeth.nominal, gauge.member, grids, opposite,
         place.displacement, gauge.tooth, estimates=asked.estimates,
     )  # fmt: skip
-    return place, history, place.clearance(history.pair, gauge.member, gauge.side, solved.fine.flank)
+    more = {}
+    if asked.neglected:
+        alone = grids.only(int(np.argmin(np.abs(place.displacement))))
+        more = gauge_neglects(teeth.spec, teeth.engagement, gauge.member, alone, opposite, gauge.tooth)
+    clearance = place.clearance(history.pair, gauge.member, gauge.side, solved.fine.flank)
+    return _Followed(place, history, clearance, more)
 
 
-def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, GaugeHistory, float]:
-    from fegear.contact.wide.gauge_on_face import wide_gauge_history
+def _on_face(asked: GaugeInputs, upstream: Upstream) -> _Followed:
+    from fegear.contact.wide.gauge_on_face import wide_gauge_history, wide_gauge_neglects
 
     gauge, solved = asked.gauge, solid_solution_of(upstream, asked.gauge.gear)
     teeth = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
@@ -145,7 +197,11 @@ def _on_face(asked: GaugeInputs, upstream: Upstream) -> tuple[PlacedGauge, Gauge
     history = wide_gauge_history(
         teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved
     )
-    return place, history, place.clearance(teeth.pair, gauge.member, gauge.side, solved.fine.flank)
+    more = {}
+    if asked.neglected:
+        more = wide_gauge_neglects(teeth, gauge.member, gauge.side, gauge.grid, place.middle, gauge.z, solved)
+    clearance = place.clearance(teeth.pair, gauge.member, gauge.side, solved.fine.flank)
+    return _Followed(place, history, clearance, more)
 
 
 def _peaks(seen: Seen) -> list[str]:
@@ -159,7 +215,22 @@ def _peaks(seen: Seen) -> list[str]:
         )
     )
     start = seen.said(f"Gauge {{name}} ({_where(seen.asked, data.place)}) at {{load:said}}")
-    return [f"{start}: peak strain {strain}, peak stress {stress}."]
+    less = [
+        f"{percent(abs(change))} {'less' if change < 0.0 else 'more'} with {effect}"
+        for effect, change in data.neglected.items()
+        if abs(change) > _SAID
+    ]
+    return [f"{start}: peak strain {strain}, peak stress {stress}{''.join(f', {one}' for one in less)}."]
+
+
+def _neglected(seen: Seen) -> str:
+    """What an effect that is off would change of the peak strain, and the remedy."""
+    effect, change = seen.one
+    data: GaugeData = seen.data
+    size = f"{figures(change * float(data.peak_strain[data.at]) * 1e6, signed=True)} µm/m"
+    asked: GaugeInputs = seen.asked
+    said = f"the peak strain by {size} ({percent(abs(change))} of it)"
+    return remark(f"Gauge {seen.name}", asked.effects, asked.tolerance, effect, [said])
 
 
 #: Of a history, in the order of its columns.
@@ -235,15 +306,17 @@ _SHEET = Sheet(
         Chart(
             "gauge_{name}", "Strain of gauge {name}",
             "Gauge {name}: mean strain under the grid over the rotation of the gear, its tooth in contact at the pitch "
-            "point at zero; dashed: grid displaced by the placement tolerance.{d.drawn_as}",
+            "point at zero; grey: grid displaced by the placement tolerance, dashed towards the root, dotted towards "
+            "the tip.{d.drawn_as}",
             (
                 Over(
                     "angle",
                     (
                         MEASURED, LEFT_OUT,
                         Line("strain", "computed", error="history.strain_error", look={"markers": False}),
+                        *TIMES_SCALE,
                         Line("strain_towards_root", "grid towards the root", "grey", look=DASHED),
-                        Line("strain_towards_tip", "grid towards the tip", "grey", look=DASHED),
+                        Line("strain_towards_tip", "grid towards the tip", "grey", look=DOTTED),
                         Line("strain_opposite", "opposite fillet", "series:2", look={"width": 1.2}),
                     ),
                     "strain",
@@ -288,6 +361,7 @@ _SHEET = Sheet(
     remarks=(
         Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}: {d.linearity}.", when="linearity"),
+        Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark(
             lambda seen: f"Gauge {seen.name}: peak strain has an estimated error of {percent(_part(seen))} (tolerance "
             f"{percent(seen.asked.tolerance)}); {seen.asked.finer}.",
@@ -296,6 +370,8 @@ _SHEET = Sheet(
         Remark("Gauge {name}: {d.over_torque.off_nominal}.", when="over_torque.off_nominal"),
         Remark("Gauge {name}: {d.over_torque.left_out}.", when="over_torque.left_out"),
         Remark("Gauge {name}: {d.drifts}.", when="drifts"),
+        Remark("Gauge {name}: {d.runout}.", when="runout"),
+        Remark("Gauge {name}: {d.unsteady}.", when="unsteady"),
         Remark("Gauge {name}: {d.without}.", when="without"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, reach_of_places
 from fegear.results.pair.trace_levels import OverTorque
-from fegear.results.pair.trace_verdict import BesideTrace, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Otherwise, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
@@ -71,6 +71,13 @@ class GaugeData(BesideTrace):
         The setting that makes the computed strain more accurate.
     over_torque : OverTorque or None
         The trace at every torque that its file has; None where it does not say the torque.
+    neglected : mapping of str to float
+        Relative change of the peak at the nominal load by each effect that is off and changes it by more than the
+        tolerance.
+    including : str
+        What switches these on.
+    gains : mapping of str to float
+        Relative change of measured / computed strain with each of them.
     """
 
     loads: Sequence[float]
@@ -87,6 +94,9 @@ class GaugeData(BesideTrace):
     estimated: bool = True
     sharper: str = ""
     over_torque: OverTorque | None = None
+    neglected: Mapping[str, float] = field(default_factory=dict)
+    including: str = ""
+    gains: Mapping[str, float] = field(default_factory=dict)
 
     @property
     @shows("s", "time from the first position")
@@ -191,6 +201,10 @@ class GaugeData(BesideTrace):
             return ""
         peak, error = float(self.peak_strain[self.at]), self.peak_error
         return verdict(
-            self.compared, peak, self.reach_of_placement, 0.0 if error is None else float(error[self.at]),
-            self.load_tolerance, self.otherwise, brief=brief, sharper=self.sharper,
+            self.compared,
+            ComputedPeak(
+                peak, 0.0 if error is None else float(error[self.at]), self.history.displacement,
+                self.history.peak_of_places(self.at), self.load_tolerance, self.gains, self.sharper, self.including,
+            ),
+            self.otherwise, brief=brief,
         )  # fmt: skip

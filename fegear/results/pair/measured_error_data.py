@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fegear.base.arrays import Array
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
-from fegear.contact.measured_error import FittedError, MeasuredError
+from fegear.contact.measured_error import FittedError, MeasuredError, OrderLine
 from fegear.contact.trace_alternatives import Alternative, Change
 from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
 
@@ -190,16 +190,63 @@ class TraceBeside:
         return float(spectrum.amplitude[np.searchsorted(spectrum.order, largest - 1e-9)])
 
     @property
-    def largest_cause(self) -> str:
-        """What the largest order usually comes from, in brackets, where it is once per revolution of either gear."""
-        largest = self.largest_order or 0.0
-        if abs(largest - 1.0) < 1e-6:
-            return " (eccentricity)"
-        return " (eccentricity of the mating gear)" if largest and largest == self.found.mate_order else ""
+    def runouts(self) -> tuple[OrderLine | None, OrderLine | None]:
+        """Once per revolution of the shaft of the angle, and of the mating gear; None where the trace is too short."""
+        found = self.found
+        return found.spectrum.line(1.0), found.spectrum.line(found.mate_order) if found.mate_order else None
+
+    @property
+    @shows("um", "amplitude once per revolution of the shaft of the angle (runout of gear, shaft or encoder)")
+    def runout(self) -> float | None:
+        """[m]."""
+        return None if (line := self.runouts[0]) is None else line.amplitude
+
+    @property
+    @shows("deg", "rotation of the shaft of the angle at which the part once per revolution has its maximum")
+    def runout_angle(self) -> float | None:
+        """[rad]."""
+        return None if (line := self.runouts[0]) is None else line.phase
+
+    @property
+    @shows("um", "amplitude once per revolution of the mating gear (runout of gear, shaft or encoder)")
+    def mate_runout(self) -> float | None:
+        """[m]."""
+        return None if (line := self.runouts[1]) is None else line.amplitude
+
+    @property
+    @shows("deg", "rotation of the mating gear, from the zero of the angle, at the maximum once per revolution of it")
+    def mate_runout_angle(self) -> float | None:
+        """[rad]."""
+        return None if (line := self.runouts[1]) is None else line.phase
+
+    @property
+    def by_runout(self) -> bool:
+        """Whether the largest order besides the mesh is once per revolution of either gear."""
+        orders = [line.order for line in self.runouts if line is not None]
+        return any(abs((self.largest_order or 0.0) - order) < 1e-6 for order in orders)
+
+    def runout_said(self, own: str, mate: str) -> str:
+        """What there is once per revolution of both gears, a sentence without a subject; empty for a short trace."""
+        said = [
+            f"{figures(line.amplitude * 1e6)} µm of the {name} (maximum at {math.degrees(line.phase):.0f}°)"
+            for line, name in zip(self.runouts, (own, mate), strict=True)
+            if line is not None
+        ]
+        if not said:
+            return ""
+        return f"once per revolution {' and '.join(said)}: runout of gear, shaft or encoder, not part of the comparison"
 
     @property
     def verdict(self) -> str:
         """Measured against computed, a clause without a subject; empty in drafts."""
+        return self._verdict(brief=False)
+
+    @property
+    def judged(self) -> str:
+        """The same without what its limit is made of."""
+        return self._verdict(brief=True)
+
+    def _verdict(self, *, brief: bool) -> str:
         if not self.estimated:
             return ""
         fitted, computed = self.fitted, self.computed_peak_to_peak
@@ -218,17 +265,15 @@ class TraceBeside:
         }  # fmt: skip
         together = math.hypot(*parts.values())
         off = fitted.gain - 1.0
-        within = abs(off) <= together
-        said = (
-            f"fitted over the whole curve, the measured transmission error is {percent(abs(off))} "
-            f"{'above' if off >= 0.0 else 'below'} the computed one"
-        )
+        within, by = abs(off) <= together, f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
+        said = f"measured transmission error, fitted over the whole curve, is {by} the computed one"
         if within and parts["computation"] > _JUDGES:  # so wide a band would pass nearly everything
             return (
                 f"{said}; this cannot be judged: the computed one is known to ±{percent(parts['computation'])} only; "
                 'set width = "solid" or reduce accuracy.tolerance'
             )
-        limit = ", ".join(f"{name} {percent(part)}" for name, part in parts.items())
+        made_of = ", ".join(f"{name} {percent(part)}" for name, part in parts.items())
+        limit = f"limit {percent(together)}" + ("" if brief else f": {made_of}")
         if fitted.likeness < _ALIKE:  # a gain of another shape proves nothing
             said = (
                 f"the curves differ in shape (correlation {fitted.likeness:.3f}, limit {_ALIKE:g}): check relief, "
@@ -240,9 +285,15 @@ class TraceBeside:
                 f"fitted over the whole curve, the measured transmission error is {figures(fitted.gain)} times the "
                 f"computed one{reason}"
             )
+        elif within:
+            said = f"measured transmission error agrees with the computed one: {by} it ({limit})"
         else:
-            said += f", {'within' if within else 'beyond'} ±{percent(together)} ({limit})"
-            said += "" if within else "; check torque, relief and the unit of the trace"
+            said = (
+                f"measured transmission error does not agree with the computed one: {by} it ({limit}); check torque, "
+                "relief and the unit of the trace"
+            )
+        if brief or not fitted.fits:
+            return said
         return f"{said}; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
 
 

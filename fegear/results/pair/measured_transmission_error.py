@@ -24,7 +24,7 @@ from fegear.results.pair.measured_error_data import (
     TraceBeside,
     orders_of_mate,
 )
-from fegear.results.pair.placed_gauge import comparison_values
+from fegear.results.pair.placed_gauge import TIMES, comparison_values
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -76,6 +76,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
     found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
     pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
     relative = None if found.shift is None or not nominal else found.shift.peak_to_peak / nominal
+    lever = pair.driver.base_radius * asked.halves
     both = [abs(gear.teeth) for gear in (pair.driver, pair.driven)]
     teeth = both if asked.member == "driver" else both[::-1]
     traces = []
@@ -84,8 +85,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         measured = _measured(trace, *teeth)
         fitted = beside_computed(measured, found.x, found.te[:, at], pair.base_pitch, asked.fit)
         others = {
-            "" if i == at else f"{figures(load * pair.driver.base_radius, 5)} N m": found.te[:, i]
-            for i, load in enumerate(found.loads)
+            "" if i == at else f"{figures(load * lever, 5)} N m": found.te[:, i] for i, load in enumerate(found.loads)
         }
         better = better_described(measured, fitted, found.x, others, pair.base_pitch, asked.fit)
         of_mate = teeth[1] if orders_of_mate(measured, teeth[1]) else 0
@@ -95,7 +95,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         traces.append(
             TraceBeside(
                 measured, fitted, amplitude, None if relative is None else relative * size,
-                trace.load * pair.driver.base_radius, trace.load, size, asked.load_tolerance,
+                trace.load * lever, trace.load, size, asked.load_tolerance,
                 trace.reading, asked.estimates, otherwise,
             )
         )  # fmt: skip
@@ -110,6 +110,14 @@ def _mesh_orders(seen: Seen) -> list[Mark]:
     return [Mark("x", float(k * teeth), "mesh" if k == 1 else f"{k}") for k in range(1, count + 1)]
 
 
+def _runouts(seen: Seen) -> list[str]:
+    """What there is once per revolution of either gear at the largest torque."""
+    data: MeasuredErrorData = seen.data
+    names = ("driver", "driven gear") if data.shaft == "driver" else ("driven gear", "driver")
+    said = data.last.runout_said(*names)
+    return [f"Encoders {seen.name}: {said}."] if said else []
+
+
 _TORQUE = Cell("torque")
 _SHEET = Sheet(
     tables=(
@@ -117,7 +125,8 @@ _SHEET = Sheet(
             "measured_te_summary_{name}", "Measured and computed transmission error of {name} for every torque",
             (
                 "torque", "load", "measured_peak_to_peak", "computed_peak_to_peak", "ratio", "spread", "pitches",
-                "turns", "largest_order", "largest_amplitude", "fitted.offset", "fitted.scale", "fitted.shift",
+                "turns", "largest_order", "largest_amplitude", "runout", "runout_angle", "mate_runout",
+                "mate_runout_angle", "fitted.offset", "fitted.scale", "fitted.shift",
                 "fitted.gain", "fitted.gain_error", "fitted.rms", "fitted.correlation",
             ),
             of="traces",
@@ -135,7 +144,7 @@ _SHEET = Sheet(
         ),
         Rows(
             "measured_te_orders_{name}", "Order spectrum of the measured transmission error of {name}",
-            (_TORQUE, "found.spectrum.order", "found.spectrum.amplitude"), stacked="traces",
+            (_TORQUE, "found.spectrum.order", "found.spectrum.amplitude", "found.spectrum.phase"), stacked="traces",
         ),
     ),
     values=(
@@ -146,25 +155,31 @@ _SHEET = Sheet(
         Number("spread", of="last", name="spread_between_teeth"),
         Number("largest_order", exact, of="last", name="largest_other_order"),
         Number("largest_amplitude", of="last", name="largest_other_amplitude"),
+        *(Number(one, of="last") for one in ("runout", "runout_angle", "mate_runout", "mate_runout_angle")),
         *comparison_values(at="last.fitted"),
     ),
     figures=(
         Chart(
             "measured_te_{name}", "Measured transmission error of {name}",
-            "{name}: measured transmission error (mean of all teeth, less slow parts, fitted offset, scale and shift) "
-            "and the computed one over one tooth pitch of the shaft, and the residual.",
+            "{name}: measured transmission error (mean of all teeth, less slow parts and fitted offset, by the fitted "
+            "shift) and the computed one over one tooth pitch of the shaft; thin line: the computed one times the "
+            "fitted scale; below: what that leaves of the measured one.",
             (
                 Over(
                     "fitted.angle",
                     (
-                        Line("fitted.measured", "measured", "series:1", kind="points", look=_DOTS),
+                        Line("fitted.as_measured", "measured", "series:1", kind="points", look=_DOTS),
                         Line("fitted.computed", "computed", look={"markers": False}),
+                        Line(
+                            "fitted.fitted", "computed times the fitted scale {one.fitted.scale:.3f}", "series:3",
+                            look=TIMES, when=lambda seen: "scale" in seen.one.fitted.fit,
+                        ),
                     ),
-                    "fitted.measured",
+                    "fitted.as_measured",
                 ),
                 Over(
-                    "fitted.angle", (Line("fitted.residual", "measured less computed", "series:1", kind="points",
-                                          look=_DOTS),),
+                    "fitted.angle",
+                    (Line("fitted.left_by_fit", "measured less fitted", "series:1", kind="points", look=_DOTS),),
                     marks=lambda _seen: (Mark("y", 0.0),),
                 ),
             ),
@@ -201,11 +216,14 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
+        lambda seen: [f"Encoders {seen.name}: {seen.data.last.judged}."] if seen.data.last.judged else [],
         "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
         "noise), computed {v[computed_peak_to_peak]}.",
-        lambda seen: [f"Encoders {seen.name}: {seen.data.last.verdict}."] if seen.data.last.verdict else [],
-        "Encoders {name}: largest order besides the mesh harmonics: {v[largest_other_order]}{d.last.largest_cause}, "
-        "amplitude {v[largest_other_amplitude]}.",
+        _runouts,
+        lambda seen: [] if seen.data.last.by_runout or seen.data.last.largest_order is None else [seen.said(
+            "Encoders {name}: largest order besides the mesh harmonics: {v[largest_other_order]}, amplitude "
+            "{v[largest_other_amplitude]}."
+        )],
         figure="measured_te_{name}",
     ),
     remarks=(

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, place_gauge
-from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve
+from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve, turns_along
+from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.trace_alternatives import alternatives
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
@@ -21,9 +22,12 @@ from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet
 from fegear.results.pair.gauge_data import GaugePlace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.base.arrays import Array
     from fegear.contact.fitted_curve import Fitted, FittedCurve
     from fegear.contact.trace_alternatives import Alternative
+    from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
     from fegear.fem.plane.trace import LoadedFlank
@@ -33,8 +37,10 @@ if TYPE_CHECKING:
 
 #: Places to either side of the grid's at which the peak is computed.
 _PLACES = 10
-#: Looks of displaced grids and of samples.
-DASHED = {"dash": "dash", "width": 1.0}
+#: Looks of displaced grids, towards the root and towards the tip, and of samples.
+DASHED, DOTTED = {"dash": "dash", "width": 1.0}, {"dash": "dot", "width": 1.6}
+#: Of a computed curve times a fitted scale.
+TIMES = {"dash": "solid", "width": 1.2, "markers": False}
 _DOTS = {"size": 5.0, "symbol": "circle"}
 
 
@@ -134,7 +140,12 @@ def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
     if measured is None:
         return None
     try:
-        return fit_curve(measured.angle, measured.strain, angle, strain, measured.fit)
+        found = fit_curve(measured.angle, measured.strain, angle, strain, measured.fit)
+        wave = once_per_turn(measured.angle, measured.strain, turns_along(measured.angle), found.shift, angle)
+        if wave is not None and measured.runout:
+            less = measured.strain - wave.at(measured.angle)
+            found = fit_curve(measured.angle, less, angle, strain, measured.fit)
+        return replace(found, wave=wave, wave_less=measured.runout)
     except NothingToCompareError:
         ends = np.rad2deg(angle[[0, -1]])
         raise InputError(
@@ -191,14 +202,35 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
             when=lambda seen: (found := seen.find(at)) is not None and getattr(found, quantity) > 0,
         )  # fmt: skip
 
-    others = ("gain", "gain_error", "rms", "correlation")
+    others = ("gain", "gain_error")
     return (
         *map(fitted, FITTED),
         *(Number(one, of=at, name=name(one)) for one in others),
+        # over a fitted scale near zero a residual is without limit
+        Number("rms", of=at, name=name("rms"), when=lambda seen: getattr(seen.find(at), "fits", False)),
+        Number("correlation", of=at, name=name("correlation")),
         Number("samples", exact, of=at, name=name("samples")),
+        *(
+            Number(one, of=at, name=prefix + declared, when=_has_runout(at))
+            for one, declared in (
+                ("runout", "measured_runout"),
+                ("runout_error", "measured_runout_standard_error"),
+                ("runout_angle", "measured_runout_angle"),
+            )
+        ),
         counted("spikes"),
         counted("saturated"),
     )
+
+
+def _has_runout(at: str) -> Callable[[Seen], bool]:
+    """Whether a trace has a part once per turn that is certain, or less which it is compared."""
+
+    def certain(seen: Seen) -> bool:
+        found: FittedCurve | None = seen.find(at)
+        return found is not None and (found.wave_less or found.unfitted_runout is not None)
+
+    return certain
 
 
 def comparison_table(name: str, title: str) -> Rows:
@@ -206,14 +238,21 @@ def comparison_table(name: str, title: str) -> Rows:
     return Rows(name, title, ("angle", "measured", "computed", "residual"), of="compared")
 
 
-#: Samples of a comparison, which stands thinned at `drawn`, over the computed curve, those that are left out, and a
-#: panel of their residuals.
+#: Samples of a comparison, which stands thinned at `drawn`, as measured (less offset and drift), those that are
+#: left out, the computed curve times a fitted scale, and a panel of what that leaves: a scale that is wrong shows.
 LEFT_OUT = Line(
-    "left_out", "left out", "series:3", x="left_out_angle", of="drawn", kind="points",
+    "left_out_as_measured", "left out", "series:4", x="left_out_angle", of="drawn", kind="points",
     look={"size": 6.0, "symbol": "x"}, when=lambda seen: bool(seen.data.without),
 )  # fmt: skip
-MEASURED = Line("measured", "measured", "series:1", of="drawn", kind="points", look=_DOTS)
+MEASURED = Line("as_measured", "measured", "series:1", of="drawn", kind="points", look=_DOTS)
+TIMES_SCALE = (
+    Line(
+        "fitted", lambda seen: f"computed times the fitted scale {seen.data.compared.scale:.3f}", "series:3",
+        x="drawn_angle", of="drawn", look=TIMES,
+        when=lambda seen: seen.data.compared is not None and "scale" in seen.data.compared.fit,
+    ),
+)  # fmt: skip
 RESIDUAL = Over(
-    "angle", (Line("residual", "measured less computed", "series:1", kind="points", look=_DOTS),), of="drawn",
+    "angle", (Line("left_by_fit", "measured less fitted", "series:1", kind="points", look=_DOTS),), of="drawn",
     marks=lambda _seen: (Mark("y", 0.0),), when="compared",
 )  # fmt: skip

@@ -16,10 +16,12 @@ from fegear.base.arrays import Array
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.measured_strain import turns_of
-from fegear.contact.fitted_curve import DRIFT_TURNS, NothingToCompareError, fit_curve
+from fegear.contact.fitted_curve import DRIFT_TURNS, NothingToCompareError, fit_curve, turns_along
+from fegear.contact.once_per_turn import once_per_turn
 
 if TYPE_CHECKING:
     from fegear.case.built.gauges import Gauge
+    from fegear.case.built.measured_strain import StrainLevel
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.gauge_strain import GaugeHistory
 
@@ -223,7 +225,7 @@ def over_torque(gauge: Gauge, found: FittedCurve | None, history: GaugeHistory, 
         fit = [one for one in measured.fit if one != "shift" and (one != "drift" or turns >= DRIFT_TURNS)]
         try:
             fitted = found if i == nominal else fit_curve(
-                level.angle - found.shift, level.strain, history.angle, strain, fit
+                level.angle - found.shift, _less_runout(level, found, measured.runout), history.angle, strain, fit
             )  # fmt: skip
         except NothingToCompareError:
             fitted = None
@@ -235,3 +237,11 @@ def over_torque(gauge: Gauge, found: FittedCurve | None, history: GaugeHistory, 
         peak = float(strain[history.peak_position(i)])
         levels.append(TraceLevel(fitted, level.level, level.torque, turns, peak))
     return OverTorque(levels, at, gauge.load_tolerance, tuple(partial))
+
+
+def _less_runout(level: StrainLevel, found: FittedCurve, less: bool) -> Array:
+    """Strain of a level less what it has itself once per turn, where that is asked for."""
+    if not less:
+        return level.strain
+    wave = once_per_turn(level.angle, level.strain, turns_along(level.angle), found.shift, np.sort(found.angle))
+    return level.strain if wave is None else level.strain - wave.at(level.angle)

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fegear.base.arrays import Array
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.contact.fitted_curve import FittedCurve
+from fegear.contact.gauge_strain import reach_of_places
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
 from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
 
@@ -21,6 +23,10 @@ _DRAWN = 2000
 _ALIKE = 0.98
 #: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
 _JUDGES = 0.1
+#: Change by effects that the computation does not have above which it judges nothing, over the rest of the limit.
+_COUNTS = 0.5
+#: Difference of the gains of turns from which on the torque was not steady: of the gain, and in noise of a single one.
+_STEPPED, _OF_NOISE = 0.15, 8.0
 #: Ratios of measured to computed strain with a reason.
 _FACTORS = {
     0.25: "a quarter bridge evaluated as a full bridge",
@@ -42,6 +48,8 @@ class Limits:
         By the place, how far below and above the computed one.
     load, model, scatter : float
         By load and gauge factor, by the computation, by the scatter of the measurement.
+    neglected : float
+        By effects that the computation does not have.
     """
 
     lower: float
@@ -49,6 +57,7 @@ class Limits:
     load: float
     model: float
     scatter: float
+    neglected: float = 0.0
 
     def placement(self, off: float) -> float:
         """By the place, on the side of a difference."""
@@ -56,12 +65,69 @@ class Limits:
 
     def together(self, off: float) -> float:
         """Root of the sum of squares on the side of a difference."""
-        return math.hypot(self.placement(off), self.load, self.model, self.scatter)
+        return math.hypot(self.placement(off), self.load, self.model, self.scatter, self.neglected)
 
-    def said(self, off: float) -> str:
-        """The limit on the side of a difference, with both signs where it is the same on the other."""
-        one, other = percent(self.together(off)), percent(self.together(-off))
-        return f"{'±' if one == other else '+' if off >= 0.0 else '-'}{one}"
+    def parts(self, off: float) -> str:
+        """What the limit is made of on the side of a difference."""
+        named = {
+            "placement": self.placement(off), "load and gauge factor": self.load, "computation": self.model,
+            "neglected effects": self.neglected, "scatter": self.scatter,
+        }  # fmt: skip
+        said = {name: part for name, part in named.items() if part or name != "neglected effects"}
+        return ", ".join(f"{name} {percent(part)}" for name, part in said.items())
+
+
+@dataclass(frozen=True)
+class ComputedPeak:
+    """The computed peak that a measured strain is judged by, and what is not known of it.
+
+    Parameters
+    ----------
+    strain, error : float
+        Computed, and its estimated error.
+    displacement, places : ndarray, shape (G,)
+        Of grids within the placement tolerance, towards the tip [m], and the peak there; zero is among them.
+    load_tolerance : float
+        Relative uncertainty of load and gauge factor.
+    neglected : mapping of str to float
+        Relative change of measured / computed strain with each effect that the computation does not have.
+    sharper, including : str
+        Remedies where the computed strain is too rough to judge the measured one, and of effects that are missing.
+    """
+
+    strain: float
+    error: float = 0.0
+    displacement: Array = field(default_factory=lambda: np.zeros(1))
+    places: Array = field(default_factory=lambda: np.zeros(0))
+    load_tolerance: float = 0.0
+    neglected: Mapping[str, float] = field(default_factory=dict)
+    sharper: str = ""
+    including: str = ""
+
+    def limits(self, scatter: float) -> Limits:
+        """How far a measured strain with a scatter (two standard errors, relative) may differ."""
+        size = abs(self.strain)
+        lower, upper = reach_of_places(self.places, self.strain) if self.places.size else (0.0, 0.0)
+        known = Limits(lower / size, upper / size, self.load_tolerance, self.error / size, scatter)
+        return replace(known, neglected=abs(self.missing))
+
+    @property
+    def missing(self) -> float:
+        """Relative change of measured / computed strain with all effects that the computation does not have."""
+        return sum(self.neglected.values())
+
+    def place_of(self, gain: float) -> float | None:
+        """The smallest displacement at which the peak is so many times the computed one [m]; None: not within reach."""
+        if self.places.size < 2:
+            return None
+        off = self.places / self.strain - gain
+        at = np.flatnonzero(off[:-1] * off[1:] <= 0.0)
+        if not at.size:
+            return None
+        step = off[at + 1] - off[at]
+        share = np.where(step == 0.0, 0.0, -off[at] / np.where(step == 0.0, 1.0, step))
+        found = self.displacement[at] + share * (self.displacement[at + 1] - self.displacement[at])
+        return float(found[np.abs(found).argmin()])
 
 
 @dataclass(frozen=True)
@@ -149,6 +215,16 @@ class BesideTrace:
         return drift_named(self.compared)
 
     @property
+    def runout(self) -> str:
+        """What the measured strain has once per turn; empty where that is little."""
+        return runout_named(self.compared)
+
+    @property
+    def unsteady(self) -> str:
+        """That measured strain differs from turn to turn as a torque does that is stepped; empty where it does not."""
+        return unsteady_named(self.compared)
+
+    @property
     def without(self) -> str:
         """Samples that are left out; empty for none."""
         return left_out(self.compared)
@@ -176,8 +252,7 @@ def thinned(found: FittedCurve) -> FittedCurve:
 
 
 def verdict(
-    found: FittedCurve, peak: float, by_placement: tuple[float, float], error: float, load_tolerance: float,
-    otherwise: Otherwise | None = None, *, brief: bool = False, sharper: str = "",
+    found: FittedCurve, peak: ComputedPeak, otherwise: Otherwise | None = None, *, brief: bool = False
 ) -> str:  # fmt: skip
     """Measured against computed strain, in one or two sentences without a subject.
 
@@ -187,72 +262,97 @@ def verdict(
     Parameters
     ----------
     found : FittedCurve
-    peak : float
-        Computed.
-    by_placement : tuple of float
-        How far below and above it the peak is at places within the tolerance.
-    error : float
-        Its estimated one.
-    load_tolerance : float
-        Relative uncertainty of load and gauge factor.
+    peak : ComputedPeak
     otherwise : Otherwise, optional
         What else may explain the trace.
     brief : bool
         Without the parts of the limit and the residual.
-    sharper : str
-        Remedy where the computed strain is too rough to judge the measured one.
     """
-    size, otherwise = abs(peak), otherwise or Otherwise()
-    lower, upper = (side / size for side in by_placement)
-    limits = Limits(lower, upper, load_tolerance, error / size, _CERTAIN * found.gain_scatter)
-    off = found.gain - 1.0
+    size, otherwise = abs(peak.strain), otherwise or Otherwise()
+    limits, off = peak.limits(_CERTAIN * found.gain_scatter), found.gain - 1.0
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
     if better := otherwise.said(found, size):
         as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"
         return better + as_given
     if found.gain <= 0.0:
         return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
-    parts = (
-        f"placement {percent(limits.placement(off))}, load and gauge factor {percent(limits.load)}, computation "
-        f"{percent(limits.model)}, scatter {percent(limits.scatter)}"
-    )
+    with_them = found.gain * (1.0 + peak.missing) - 1.0
+    known = replace(limits, neglected=0.0)
+    if missing := limits.neglected > _COUNTS * known.together(off):  # too much to be an uncertainty: judged either way
+        limits = known
     together = limits.together(off)
-    within = abs(off) <= together
-    by = f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
-    judged = f"measured strain is {by} the computed one"
+    within, by = abs(off) <= together, _by(off)
+    either = missing and (within or abs(with_them) <= known.together(with_them) or off * with_them < 0.0)
     if within and limits.model > _JUDGES:  # so wide a band would pass nearly everything
-        return f"{judged}; this cannot be judged: the computed strain is known to ±{percent(limits.model)} only" + (
-            f"; {sharper}" if sharper else ""
+        return (
+            f"measured strain is {by} the computed one; this cannot be judged: the computed strain is known to "
+            f"±{percent(limits.model)} only{f'; {peak.sharper}' if peak.sharper else ''}"
         )
-    limit = "" if brief else f" ({parts})"
+    limit = f"limit {percent(together)}" + ("" if brief else f": {limits.parts(off)}")
+    effects = " and ".join(peak.neglected)
     if found.likeness < _ALIKE:  # a gain of another shape proves nothing
+        or_fit = "" if "shift" in found.fit else ", or fit shift"
         judged = (
-            f"{differ}: check fillet, tooth "
-            f"and position of the grid{'' if 'shift' in found.fit else ', or fit shift'}; {judged}{limit}"
+            f"{differ}: check fillet, tooth and position of the grid{or_fit}; measured strain is {by} the computed one "
+            f"({limit})"
         )
     elif reason := otherwise.of_ratio(found.gain, together):
-        judged = f"measured strain is {figures(found.gain)} times the computed one, beyond {limits.said(off)}"
-        judged += f"{limit}{reason}"
+        judged = f"measured strain is {figures(found.gain)} times the computed one ({limit}){reason}"
+    elif either:
+        judged = (
+            f"measured strain is {by} the one computed without {effects} and {_by(with_them)} that with "
+            f"{'it' if len(peak.neglected) == 1 else 'them'}: this cannot be judged; {peak.including}"
+        )
+    elif within:
+        judged = f"measured strain agrees with the computed one: {by} it ({limit}){_explained(peak, limits, off)}"
     else:
-        judged += f", {'within' if within else 'beyond'} {limits.said(off)}{limit}"
-        judged += "" if within else "; check load, gauge factor and position of the grid"
+        also = f", {_by(with_them)} it with {effects}" if missing else ""
+        judged = (
+            f"measured strain does not agree with the computed one: {by} it ({limit}){also}{_to_check(limits, off)}"
+        )
     if brief:  # what is said without its notes has to name what falsifies it
         drift = found.unfitted_drift
         judged += f"; {saturation}" if (saturation := _saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
-        return judged + drifts
+        steps = "; the torque was not steady from turn to turn" if unsteady_named(found) else ""
+        return judged + drifts + steps
+    if not found.fits:
+        return judged
     return f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
 
 
+def _by(off: float) -> str:
+    return f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
+
+
+def _explained(peak: ComputedPeak, limits: Limits, off: float) -> str:
+    """What would make a difference within the limit; empty where it is scatter and error of the computation."""
+    if abs(off) <= math.hypot(limits.model, limits.scatter):
+        return ""
+    ways = []
+    if (place := peak.place_of(1.0 + off)) is not None and place != 0.0:
+        ways.append(f"a grid {abs(place) * 1e3:.2g} mm nearer to the {'tip' if place > 0.0 else 'root'}")
+    ways.append(f"a torque or gauge factor {percent(abs(off))} {'higher' if off >= 0.0 else 'lower'}")
+    return f"; {' or '.join(ways)} would explain it"
+
+
+def _to_check(limits: Limits, off: float) -> str:
+    """What to look at first where a difference is beyond the limit."""
+    needed = f"load and gauge factor ({percent(abs(off))} {'higher' if off >= 0.0 else 'lower'} would explain it)"
+    if not limits.placement(off):
+        return f"; check {needed}"
+    return f"; check {needed}, then whether the grid is within placement_tolerance"
+
+
 def drawn_as(found: FittedCurve | None) -> str:
-    """How figures draw a fitted trace, a sentence after others; empty where it is drawn as measured."""
+    """How figures draw a trace, a sentence after others; empty without one."""
     if found is None:
         return ""
     less = " and ".join(one for one in ("offset", "drift") if one in found.fit)
-    done = [f"less the fitted {less}"] if less else []
-    done += [f"divided by the fitted scale {found.scale:.3f}"] if "scale" in found.fit else []
-    said = f" The measured strain is drawn {' and '.join(done)}." if done else ""
-    return said + (
+    said = " Points: strain as measured" + (f", less the fitted {less}" if less else "")
+    if "scale" in found.fit:
+        said += f"; thin line: the computed curve times the fitted scale, {found.scale:.3f}"
+    return f"{said}." + (
         " Crosses: samples left out of the comparison, far ones nearer than they are." if found.left_out.size else ""
     )
 
@@ -282,4 +382,29 @@ def drift_named(found: FittedCurve | None) -> str:
         f"the measured strain drifts by {with_rough_error(drift * 1e6, found.trend_error * 1e6)} µm/m per turn "
         f"({figures(drift * found.turns * 1e6)} µm/m over {figures(found.turns)} turns), which falsifies offset and "
         'residual; add "drift" and "offset" to fit'
+    )
+
+
+def runout_named(found: FittedCurve | None) -> str:
+    """What a trace has once per turn, a sentence without a subject; empty where that is little."""
+    if found is None or (wave := found.wave) is None or not (found.wave_less or found.unfitted_runout):
+        return ""
+    size, place = with_rough_error(wave.amplitude * 1e6, wave.error * 1e6), math.degrees(found.runout_angle or 0.0)
+    said = f"once per turn the measured strain has {size} µm/m with its maximum at a rotation of {place:.0f}°"
+    if found.wave_less:
+        return f"{said}, subtracted"
+    return f'{said} (bending of the shaft, runout, slip ring), not subtracted; add "runout" and "offset" to fit'
+
+
+def unsteady_named(found: FittedCurve | None) -> str:
+    """That a gain differs from turn to turn by more than noise, a sentence without a subject; empty where not."""
+    if found is None or not (gains := found.turn_gains).size:
+        return ""
+    low, high = float(gains.min()), float(gains.max())
+    one = found.gain_noise * math.sqrt(gains.size)
+    if found.gain <= 0.0 or high - low <= max(_STEPPED * abs(found.gain), _OF_NOISE * one):
+        return ""
+    return (
+        f"measured / computed strain is {low:.2f} to {high:.2f} from turn to turn: the torque was not steady; add its "
+        "column (torque_column), or give one file per torque"
     )

@@ -26,6 +26,7 @@ from fegear.results.pair.placed_gauge import (
     LEFT_OUT,
     MEASURED,
     RESIDUAL,
+    TIMES_SCALE,
     better_described,
     compared,
     comparison_table,
@@ -34,7 +35,7 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
-from fegear.results.pair.trace_verdict import BesideTrace, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Otherwise, verdict
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
@@ -129,8 +130,12 @@ class DynamicStrain(BesideTrace):
         if self.compared is None or (self.sharper and found.peak_error is None):
             return ""
         return verdict(
-            self.compared, found.peak, found.reach_of_placement, found.peak_error or 0.0, self.load_tolerance,
-            self.otherwise, brief=brief, sharper=self.sharper,
+            self.compared,
+            ComputedPeak(
+                found.peak, found.peak_error or 0.0, found.displacement, found.peak_of_places, self.load_tolerance,
+                sharper=self.sharper,
+            ),
+            self.otherwise, brief=brief,
         )  # fmt: skip
 
 
@@ -251,6 +256,7 @@ _SHEET = Sheet(
                         Line("own", "static and own increment", look={"markers": False}),
                         Line("total", "with other meshes", "with other meshes", look={"width": 1.2}, when="others"),
                         Line("static", "quasi-static", "static"),
+                        *TIMES_SCALE,
                     ),
                     "total",
                     marks=lambda _seen: (Mark("y", 0.0),),
@@ -271,6 +277,8 @@ _SHEET = Sheet(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
         Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="verdict"),
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
+        Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
+        Remark("Gauge {name}, in motion: {d.unsteady}.", when="unsteady"),
         Remark("Gauge {name}, in motion: {d.without}.", when="without"),
     ),
     sharper_by="",
