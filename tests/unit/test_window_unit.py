@@ -47,7 +47,7 @@ from fegear.window import job_queue as inbox_module
 from fegear.window.access import Doorkeeper, Keys
 from fegear.window.bench import Bench
 from fegear.window.computing import PATIENCE, SAME, Computing, Sent, whole
-from fegear.window.designs import anew_of, draft_of, preview_told, with_previews
+from fegear.window.designs import anew_of, draft_of, preview_told, previewed, with_previews
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
 from fegear.window.form import fields, fields_told, form, shortened, tables_to_add
@@ -1189,6 +1189,42 @@ def test_while_a_tooth_moves_its_gear_comes_from_an_atlas(tmp_path):
     assert preview_told(with_previews(scene, ())) == ""
 
 
+@pytest.mark.dear
+def test_while_a_tooth_moves_a_gear_that_no_atlas_has_is_solved_on_a_coarse_mesh(tmp_path):
+    text = TEXT.replace("weber-banaschek", "fe")
+    high = text.replace("teeth = 28", "teeth = 28\nprofile_shift = 0.9")
+    two = high.replace('driven = "a"', 'driven = "b"') + '[gear.b]\nteeth = 31\nmodule = "3 mm"\nface_width = "20 mm"\n'
+
+    def moved(text, before=frozenset()):
+        scene = scene_of(Asked(text, "c", str(tmp_path), moving=True))
+        return previewed(scene, lambda scene: make_plan(scene, STAGES), SolutionCache(), before)[0]
+
+    def said(text):
+        scene = moved(text)
+        return scene.drafts, preview_told(scene)
+
+    assert said(text) == ({}, "Preview: gear a interpolated from an atlas")
+    assert said(high) == ({"a": 0.05}, "Preview with tolerance 0.05")
+    assert said(two) == ({"a": 0.05}, "Preview: gear b interpolated from an atlas, others with tolerance 0.05")
+    assert moved(two, frozenset({"b"})).drafts == {"a": 0.05}  # the gears of the move before are not all
+    assert said(f"{high}[accuracy]\ntolerance = 0.08\n")[0] == {"a": 0.08}
+    assert said(f"{high}[accuracy]\nflank_edge_length = 0.08\n") == ({}, "")  # solved with those settings
+
+    def numbers(scene):
+        results = run_plan(scene, make_plan(scene, STAGES, [Task("root-stress-history", "I")]), cache=SolutionCache())
+        wanted = ("I.te_peak_to_peak", "I.driver.largest_root_tension")
+        return np.array([results.values[name].si for name in wanted if name in results.values])
+
+    text = high.replace('["load-sharing"]', '["transmission-error"]')
+    for teeth in (28, 11):
+        rough = moved(text.replace("teeth = 28", f"teeth = {teeth}"))
+        assert list(rough.drafts) == ["a"]
+        values, exact = numbers(rough), numbers(replace(rough, drafts={}))
+        assert values.size == 2
+        assert np.abs(values / exact - 1.0).max() < 1e-2
+        assert (values != exact).all()
+
+
 def test_a_gear_outside_the_atlases_is_answered_by_a_draft_first(tmp_path):
     text = TEXT.replace("weber-banaschek", "fe").replace("[pair.I]", "rack = { tip_radius = 0.2 }\n[pair.I]")
     draft = partial(drafted, tmp_path)
@@ -1245,7 +1281,7 @@ def test_the_draft_of_a_gear_is_its_solution_on_a_coarser_mesh(tmp_path):
     assert drafted.coarse is None
     assert drafted.settings.root_edge_length > whole.settings.root_edge_length
     assert drafted.fine.unknowns < whole.fine.unknowns
-    assert cache.shapes.computed == 2
+    assert cache.shapes.computed == 1  # the draft's goes to no disk
     undrafted = solved(scene, plan, SolutionCache())
     assert np.array_equal(whole.fine.compliance[1], undrafted.fine.compliance[1])
     assert dict(whole.rounds[0].errors) == dict(undrafted.rounds[0].errors)

@@ -147,7 +147,7 @@ def solve_influence_functions(
     try:
         if asked.draft:
             first = replace(settings_at(first_level(gear.tooth, asked.tolerance)), solver=asked.solver)
-            return solve_gear(gear, first, reach=reach, estimate_error=False, cache=cache)
+            return solve_gear(gear, first, reach=reach, estimate_error=False, cache=cache, lasting=False)
         if asked.settings is None:
             return solve_to_tolerance(
                 gear, asked.tolerance, reach=reach, solver=asked.solver, progress=progress, cache=cache

@@ -61,12 +61,14 @@ def influence_of_shape(
     *,
     two_orders: bool = False,
     support: RimSupport | None = None,
+    lasting: bool = True,
 ) -> Influence:
-    """Solve one gear shape (lengths in modules), or recall it from a cache."""
+    """Solve one gear shape (lengths in modules), or recall it from a cache; where it lasts, also from the disk's."""
     known = SolutionCache() if cache is None else cache
-    return known.call_kept(
-        shape_codec(tooth), _solve_shape, tooth, bore_radius, poisson_ratio, plane, settings, reach, two_orders, support
-    ).value
+    shape = tooth, bore_radius, poisson_ratio, plane, settings, reach, two_orders, support
+    if not lasting:
+        return known.call(_solve_shape, *shape).value
+    return known.call_kept(shape_codec(tooth), _solve_shape, *shape).value
 
 
 def _solve_shape(
@@ -103,6 +105,7 @@ def solve_gear(
     mesh: SectorMesh | None = None,
     progress: Progress | None = None,
     cache: SolutionCache | None = None,
+    lasting: bool = True,
 ) -> GearInfluence:
     """Solve a gear for its influence functions.
 
@@ -124,6 +127,8 @@ def solve_gear(
         Called with the name of each stage as it starts.
     cache : SolutionCache, optional
         Where solved shapes are recalled from and kept.
+    lasting : bool
+        Whether they are also kept on the disk of the cache.
 
     Returns
     -------
@@ -155,7 +160,7 @@ def solve_gear(
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
         fine = influence_of_shape(
-            *shape, settings, reach, cache, two_orders=estimate_error, support=gear.support_in_modules
+            *shape, settings, reach, cache, two_orders=estimate_error, support=gear.support_in_modules, lasting=lasting
         )
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     estimate: Estimate | None = None
