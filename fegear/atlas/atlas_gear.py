@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.atlas.tables import over_contacts, pressed, shares_of_fillet
+from fegear.atlas.tables import over_contacts, shares_of_fillet, under_pressure
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.plane.fe_compliance import NOMINAL_HALF_WIDTH, chebyshev_over, own_lengths, roll_length
 from fegear.contact.plane.spline import Spline, spline
@@ -134,12 +134,23 @@ class AtlasGear(ReadOnlyArrays):
 
     def fillet_stress(self, k: int, side: Side, radius: ArrayLike) -> Array:
         """Tangential stress along a fillet of tooth k per unit line load on tooth 0, shape (points, P) [1/m]."""
-        (low, high), length = self._ends, self._length(radius)
-        if (k, side) == (0, "tension"):
-            weights = pressed(self.gear, self._ends, length)
-        else:
-            weights = over_contacts((length - low) / (high - low))
+        weights = self._weights(np.atleast_1d(np.asarray(radius, dtype=float)), pressed=(k, side) == (0, "tension"))
         return np.ascontiguousarray((weights @ self.layout.stress(self.row, (k, side))).T) / self.gear.module
+
+    def _weights(self, radius: Array, *, pressed: bool) -> Array:
+        """Weights of the kept contacts for those at radii, (P, 27); all teeth are asked about at the same ones."""
+        place = radius.tobytes(), pressed
+        if place not in self._last:
+            (low, high), length = self._ends, self._length(radius)
+            while len(self._last) >= _KEPT:
+                del self._last[next(iter(self._last))]
+            shares = (length - low) / (high - low)
+            self._last[place] = under_pressure(self.gear, self._ends, length) if pressed else over_contacts(shares)
+        return self._last[place]
+
+    @cached_property
+    def _last(self) -> dict[tuple[bytes, bool], Array]:
+        return {}
 
     def fillet_curve(self, side: Side) -> FilletCurve:
         """Where the largest stress of a fillet is looked for, radii and places [m]."""
@@ -173,4 +184,6 @@ class AtlasGear(ReadOnlyArrays):
         return {key: self.errors[one] for key, one in {**of, **_ROOT}.items()}
 
 
+#: Of so many sets of contacts the weights are kept.
+_KEPT = 4
 _ROOT = {"root_tension": "tension 0", "root_compression": "compression 0"}

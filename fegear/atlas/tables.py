@@ -5,7 +5,7 @@ both fillets of the loaded tooth and its neighbours. Places are shares of the fl
 length, so that they mean the same on every gear; where the flank begins and how long the fillet is stand at the end.
 The tip's wedge is a closed form of each gear and is not among them, nor is that contacts beside the flank's start are
 narrower: tension of the loaded tooth is that under a force, which is smooth over the flank and from gear to gear, and
-that under a pressure follows from three forces (`pressed`).
+that under a pressure follows from three forces (`under_pressure`).
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ def over_contacts(share: Array) -> Array:
     return weights
 
 
-def pressed(gear: Gear, ends: tuple[float, float], length: Array) -> Array:
+def under_pressure(gear: Gear, ends: tuple[float, float], length: Array) -> Array:
     """Weights of forces at the kept contacts for contacts under pressure, (P, 27).
 
     As wide as usual, and narrower beside the ends of the flank, as `Influence.fillet_loads` has them.

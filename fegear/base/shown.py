@@ -105,6 +105,7 @@ def shows(unit: str = "", meaning: str = "", *, name: str = "", label: str = "",
 
 #: What was looked up before: a run asks for the same few hundred again and again.
 _KNOWN: dict[tuple[type, str], Shown] = {}
+_UNDECLARED: set[tuple[type, str]] = set()
 _COLUMNS: dict[tuple[type, str], tuple[str, ...]] = {}
 
 
@@ -118,6 +119,8 @@ def declared(owner: type, attribute: str) -> Shown:
     """
     if (known := _KNOWN.get((owner, attribute))) is not None:
         return known
+    if (owner, attribute) in _UNDECLARED:
+        raise TypeError(f"{owner.__name__}.{attribute} is not declared with shown() or shows()")
     found = getattr(owner, "__dataclass_fields__", {}).get(attribute)
     mark: Shown | None = found.metadata.get(_KEY) if found is not None else None
     if mark is None:
@@ -128,6 +131,7 @@ def declared(owner: type, attribute: str) -> Shown:
             member = member.func
         mark = getattr(member, _KEY, None)
     if not isinstance(mark, Shown):
+        _UNDECLARED.add((owner, attribute))
         raise TypeError(f"{owner.__name__}.{attribute} is not declared with shown() or shows()")
     _KNOWN[owner, attribute] = mark = mark if mark.name else replace(mark, name=attribute)
     return mark

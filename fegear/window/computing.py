@@ -222,9 +222,10 @@ def whole(content: _Content, before: _Content | None) -> _Content:
 
 
 def with_gears(content: _Content, before: _Content | None) -> _Content:
-    """What changes by hand, with the gears in mesh where they were not sent again."""
+    """What changes by hand, with the gears in mesh, or all else, where they were not sent again."""
     known = (before or {}).get("pairs", {})
     pairs = {
-        name: {**one, "mesh": one["mesh"] or known.get(name, {}).get("mesh")} for name, one in content["pairs"].items()
+        name: {**known.get(name, {}), **one, "mesh": one["mesh"] or known.get(name, {}).get("mesh")}
+        for name, one in content["pairs"].items()
     }
     return {**content, "pairs": pairs}

@@ -102,8 +102,8 @@ _COARSER = 3.2
 _FINEST, _COARSEST = 1e-3, 6e-3
 
 
-#: Tolerance of gears that no atlas has, while a value moves: 25 ms a gear, half of what a tenth of it takes. Transmission
-#: error and root stress of ten such gears were off by 0.42 % at most.
+#: Tolerance of gears that no atlas has, while a value moves: 25 ms a gear, half of what a tenth of it takes.
+#: Transmission error and root stress of ten such gears were off by 0.42 % at most.
 _MOVED = 5e-2
 
 
@@ -165,8 +165,8 @@ def previewed(
 ) -> tuple[Scene, Plan]:
     """A case with gears from an atlas in place of those to be solved, and its plan, while a value moves.
 
-    Mostly these are the gears that had previews `before`: a plan with them proves it, and is the only one. Gears that no
-    atlas has are solved on coarse meshes without an estimate of their errors.
+    Mostly these are the gears that had previews `before`: a plan with them proves it, and is the only one. Gears that
+    no atlas has are solved on coarse meshes without an estimate of their errors.
     """
     from fegear.results.gear.solved_gear import ATLAS
 

@@ -288,7 +288,7 @@ const fegearGlance = (() => {
     },
     hands(content) {
       const before = Object.keys(pairs).length;
-      pairs = Object.fromEntries(Object.entries(content).map(([name, one]) => [name, { ...one, mesh: one.mesh ?? pairs[name]?.mesh }]));
+      pairs = Object.fromEntries(Object.entries(content).map(([name, one]) => [name, { ...pairs[name], ...one, mesh: one.mesh ?? pairs[name]?.mesh }]));
       if (kind === "pair" && !(pair in pairs)) pair = Object.keys(pairs)[0] ?? null;
       if (before !== Object.keys(pairs).length || !document.body.dataset.pairs) apply();
       document.body.dataset.pairs = Object.keys(pairs).length;

@@ -180,6 +180,7 @@ const fegearHands = (() => {
       }
       const kept = shown.get(pair);
       kept.mesh.set(content.mesh);
+      if (!content.reliefs) continue; // gears alone, while a value moves
       kept.load.set(content.load);
       const { tools } = kept, offered = content.load ? `${!!content.designs} ${content.reliefs.length}` : "";
       if (kept.offered !== offered) tools.replaceChildren(...(!content.designs && content.load ? [

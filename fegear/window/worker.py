@@ -7,31 +7,31 @@ import gc
 import tempfile
 import time
 import traceback
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import FegearError, InputError
-from fegear.base.notes import class_of, counted, open_and_folded
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
 from fegear.results.pair.loaded_teeth import teeth_of
+from fegear.window.ahead import compute_ahead, next_text
 from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
-from fegear.window.designs import design_asked, designed, draft_of, preview_told, previewed
+from fegear.window.designs import design_asked, designed, draft_of, preview_told
 from fegear.window.drag_handles import hands_of
-from fegear.window.glance import crack_tasks, field_tasks, glance_tasks, keys_of, numbers_of, plan_with
+from fegear.window.glance import keys_of, numbers_of
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Inbox, Job, Newer, Said, Stop, Unwanted
-from fegear.window.on_gears import on_the_gears, wanted_on_gears
-from fegear.window.order import HarrisMaps, in_order, load_now_of
+from fegear.window.notes import notes_by_task, notes_of
+from fegear.window.on_gears import gears_in_mesh, on_the_gears
+from fegear.window.order import HarrisMaps, load_now_of
 from fegear.window.time_left import TimeLeft
+from fegear.window.wanted import scene_of, wanted_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from multiprocessing.connection import Connection
 
-    from fegear.base.notes import Note
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Outcome
     from fegear.engine.plan import Plan
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 _STROKE = 1.5
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.2
+#: The next place of a value is computed ahead where the present one took no more CPU time than this [s].
+_SOON = 0.15
 #: Pictures that a page cannot draw wait so long for another move: drawing one, half a second, is not interrupted [s].
 _AT_REST = 1.0
 #: After so many answers to a value being moved, of some 2 MB each, what is kept is bounded again: it takes 30 ms.
@@ -69,7 +71,7 @@ class Worker:
     def __init__(self, connection: Connection, folder: Path) -> None:
         self._inbox, self._folder = Inbox(connection), folder
         self._seconds: dict[str, float] = {}
-        self._number, self._begun, self._wait_before = 0, 0.0, 0
+        self._number, self._begun, self._wait_before, self._spent = 0, 0.0, 0, 0.0
         self._asked: Asked | None = None
         self._later: list[tuple[str, Callable[[], None]]] = []
         self._left = TimeLeft(())
@@ -86,6 +88,7 @@ class Worker:
         self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
         self._previews: frozenset[str] = frozenset()
+        self._text, self._next = "", None
         self._maps = HarrisMaps()
         self._untidy = 0
 
@@ -109,6 +112,7 @@ class Worker:
         """Do one job."""
         self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
         self._asked, self._later = (job.asked if isinstance(job, Compute) else None), []
+        self._next, self._spent = None, time.process_time()
         moving = self._asked is not None and self._asked.moving
         self._left = TimeLeft(())
         self._reports = isinstance(job, Compute | Export | Design) and not moving  # who moves a value sees the results
@@ -199,18 +203,8 @@ class Worker:
         from fegear.engine.plan_in_words import forecast_seconds
         from fegear.engine.run import run_plan
 
-        scene = scene_of(asked)
-        more, at_once_told = wanted_on_gears(scene, asked.shows)
-        more += crack_tasks(scene) if asked.pictures is not None else []
-        beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
-        inside = field_tasks(scene) if asked.field else []
-        planned = partial(plan_with, beside=[*beside, *inside], more=more)
-        if asked.moving and told:
-            scene, plan = previewed(scene, planned, self._cache, self._previews)
-            self._previews = scene.previews
-        else:
-            plan = planned(scene)
-        more = [*more, *inside]
+        wanted = wanted_of(asked, self._cache if asked.moving and told else None, self._previews)
+        scene, plan = wanted.scene, wanted.plan
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
@@ -219,19 +213,20 @@ class Worker:
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
-            # What is switched on there follows a value that moves; stress inside, whose gears are solved, does not.
-            on_gears = dict.fromkeys((str(one) for one in more if not (asked.moving and one in inside)), 0.0)
-            plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears}, beside)
+            plan, at_once = wanted.in_order(asked, self._seconds)
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             self._later.append(("hands", lambda: self._tell_hands(scene)))
             if not asked.moving:
                 self._tell_later()
             elif scene.pairs != self._drawn:  # gears follow at once; what else is in the hand the page moves itself
-                self._tell_later("hands")
-            for content in () if asked.moving else at_once_told:
+                self._tell_gears(scene)
+                self._next = next_text(self._text, asked.text)
+            self._previews = scene.previews if asked.moving else self._previews
+            self._text = asked.text
+            for content in () if asked.moving else wanted.told:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
-            self._draft(asked, scene, plan, planned)
+            self._draft(asked, scene, plan, wanted.planned)
         self._left = TimeLeft(own_speed().scaled(plan, forecast_seconds(scene, plan)) if self._reports else ())
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
@@ -245,9 +240,22 @@ class Worker:
             self._tell_later("load_now")
         if self._untidy + 1 >= _STROKES:  # now, while nobody waits
             self._tidy(moving=True)
-        self._inbox.wait(_STILL)
+        self._inbox.look()
+        spent = self._compute_ahead() if time.process_time() - self._spent < _SOON else 0.0
+        self._inbox.wait(max(0.0, _STILL - spent))
         self._inbox.look()
         self._tell_later()
+
+    def _compute_ahead(self) -> float:
+        """Compute the place where a gear that is changed step by step will be next; gives way as soon as it moves."""
+        if self._asked is None or self._next is None:
+            return 0.0
+        asked, begun = self._asked._replace(text=self._next), time.monotonic()
+        self._next = None
+        self._untidy += 1
+        with contextlib.suppress(Exception):  # nobody has asked for it: who does is told
+            compute_ahead(asked, self._cache, self._previews, self._seconds)
+        return time.monotonic() - begun
 
     def _tell_later(self, *kinds: str) -> None:
         """Tell what comes behind the answers while a value moves, or some of it: the page moves what is in the hand."""
@@ -256,9 +264,18 @@ class Worker:
         for _, tell in now:
             tell()
 
+    def _tell_gears(self, scene: Scene) -> None:
+        """Tell how gears in mesh that the page knows look now; reliefs, which go with them, follow at rest."""
+        if scene.pairs.keys() != self._meshes.keys():
+            self._tell_later("hands")
+        else:
+            self._tell_pairs(scene, {name: {"mesh": gears_in_mesh(scene, name)} for name in scene.pairs})
+
     def _tell_hands(self, scene: Scene) -> None:
         """Tell what is changed by hand."""
-        pairs = hands_of(scene)
+        self._tell_pairs(scene, hands_of(scene))
+
+    def _tell_pairs(self, scene: Scene, pairs: dict[str, Any]) -> None:
         meshes = {name: one["mesh"] for name, one in pairs.items()}
         self._drawn = scene.pairs
         for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
@@ -292,7 +309,7 @@ class Worker:
         tolerance = results.scene.case.accuracy.tolerance
         self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
         self._say(
-            "done", remarks=list(results.remarks), notes=_notes(results), told=_told(results),
+            "done", remarks=list(results.remarks), notes=notes_of(results), told=notes_by_task(results),
             seconds=time.perf_counter() - started, timings=seconds, tolerance=tolerance, moving=asked.moving,
             answer=list(results.answer.sentences),
         )  # fmt: skip
@@ -432,40 +449,6 @@ class Worker:
 def _is_stop(to: Newer) -> bool:
     """What is asked for beside the case is finished before another case, and given up for none."""
     return isinstance(to, Stop)
-
-
-def _told(results: Results) -> list[tuple[str, str, str, str]]:
-    """Notes with the task that makes each, the gear or pair that the task is about, and their class."""
-    return [
-        (str(task), task.subject, str(remark), class_of(remark).name.lower())
-        for task, outcome in results.outcomes.items()
-        for remark in outcome.remarks
-    ]
-
-
-def _notes(results: Results) -> dict[str, Any]:
-    """Notes that stand open and those that are folded: class, its words and the note; and how many of which class."""
-    shown, folded = open_and_folded(results.notes(information=False))
-
-    def row(note: Note) -> tuple[str, str, str]:
-        return note.kind.name.lower(), note.kind.words, str(note)
-
-    return {"open": [*map(row, shown)], "folded": [*map(row, folded)], "counted": counted(folded) if folded else ""}
-
-
-def scene_of(asked: Asked) -> Scene:
-    """The scene of a case that is asked for, with its tolerance loosened or tightened where the page says so."""
-    from dataclasses import replace
-
-    from fegear.case.reading import build_scene, parse_document
-
-    document = parse_document(asked.text, f'"{asked.name}.toml"')
-    scene = build_scene(document, asked.name, Path(asked.folder), within=asked.within)
-    if asked.loosened != 1.0:
-        tolerance = min(max(scene.case.accuracy.tolerance * asked.loosened, 1e-6), 0.5)
-        accuracy = {**dict(document.get("accuracy", {})), "tolerance": tolerance}
-        scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder), within=asked.within)
-    return replace(scene, text=asked.text, estimates=not asked.moving)
 
 
 def _give_back() -> None:

@@ -13,7 +13,8 @@ from fegear.engine.figure.items import Curve, Skin
 from fegear.engine.figure.panel import Panel
 from fegear.engine.stage import Task
 from fegear.engine.value import Value
-from fegear.window import glance, worker
+from fegear.window import glance, wanted, worker
+from fegear.window.ahead import next_text
 from fegear.window.computing import whole
 from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
 from fegear.window.job_queue import Asked, Compute, Export, Inbox, Stop, Unwanted
@@ -179,8 +180,9 @@ gear.b = { teeth = 33, module = "3 mm", face_width = "20 mm" }
 pair.I = { driver = "a", driven = "b", torque = "50 N*m" }
 accuracy.tolerance = 0.05
 """
-    plans, plan_with = [], worker.plan_with
-    monkeypatch.setattr(worker, "plan_with", lambda *given, **more: plans.append(1) or plan_with(*given, **more))
+    plans, plan_with = [], wanted.plan_with
+    monkeypatch.setattr(wanted, "plan_with", lambda *given, **more: plans.append(1) or plan_with(*given, **more))
+    monkeypatch.setattr(worker, "compute_ahead", lambda *_given: None)
 
     def moves_on(_seconds):
         raise Unwanted
@@ -208,6 +210,88 @@ accuracy.tolerance = 0.05
     assert seen["values"] is None
     kept = {"task": "t", "figures": [], "values": "before"}
     assert whole(seen | {"figures": []}, kept)["values"] == "before"
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "after"),
+    [
+        ("z = 21\nx = 0.3", "z = 22\nx = 0.3", "z = 23\nx = 0.3"), ("z = 13", "z = 11", "z = 9"),
+        ("x = 0.98", "x = 0.99", "x = 1.00"), ("x = 0.1", "x = 0", "x = -0.1"),
+        ("x = -.01 # m", "x = .01 # m", "x = 0.03 # m"),
+        ('m = "3 mm"', 'm = "3.01 mm"', 'm = "3.02 mm"'),
+        ("z = 21", "z = 21", None), ("a = 1\nb = 2", "a = 2\nb = 3", None), ('m = "3 mm"', 'm = "3 in"', None),
+        ("z = 21", "z = 21\nx = 1", None), ("", "z = 21", None),
+    ],
+)  # fmt: skip
+def test_a_number_that_moves_goes_on_by_the_same_step(before, now, after):
+    assert next_text(before, now) == after
+
+
+def test_the_next_place_of_a_gear_is_computed_ahead_and_recalled(working, tmp_path, monkeypatch):
+    text = """
+results = ["load-sharing"]
+gear.a = { teeth = 20, module = "3 mm", face_width = "20 mm" }
+gear.b = { teeth = 33, module = "3 mm", face_width = "20 mm" }
+pair.I = { driver = "a", driven = "b", torque = "50 N*m" }
+accuracy.tolerance = 0.05
+"""
+    ahead, compute_ahead, places = [], worker.compute_ahead, []
+
+    def watched(asked, *more):
+        ahead.append(asked.text)
+        places.append(len(working.said))
+        return compute_ahead(asked, *more)
+
+    def moves_on(_seconds):
+        raise Unwanted
+
+    monkeypatch.setattr(worker, "compute_ahead", watched)
+    working.inbox.wait = moves_on
+
+    def answered(of, number, case):
+        del working.said[:], ahead[:], places[:]
+        before = of._cache.solutions.computed
+        of.answer(Compute(number, Asked(case, "c", ".", moving=True, laid=1, pictures=("load",))))
+        (found,) = (one for _, _, one in working.said if one.get("task") == "load-sharing of I")
+        return [found[key] for key in ("numbers", "draft", "loads")], of._cache.solutions.computed - before
+
+    def teeth(count):
+        return text.replace("teeth = 20", f"teeth = {count}")
+
+    assert answered(working, 1, teeth(21))[1] > 0
+    assert ahead == []  # nobody knows where it goes
+    assert answered(working, 2, teeth(22))[1] > 0
+    assert ahead == [teeth(23)]
+    assert [what for _, what, _ in working.said[places[0] :]] == ["dropped"]  # behind the answer, and nobody is told
+    monkeypatch.setattr(worker, "compute_ahead", lambda *_given: ahead.append("next"))
+    found, computed = answered(working, 3, teeth(23))
+    assert computed == 0
+    assert found == answered(Worker(None, tmp_path / "afresh"), 4, teeth(23))[0]
+    # A load is not a gear, and what takes long is not begun.
+    answered(working, 5, teeth(23).replace("50 N", "60 N"))
+    assert ahead == []
+    monkeypatch.setattr(worker, "_SOON", 0.0)
+    answered(working, 6, teeth(24))
+    assert ahead == []
+
+
+def test_a_next_place_that_is_refused_is_not_told(working):
+    text = """
+results = ["geometry"]
+gear.a = { teeth = 10, module = "3 mm" }
+gear.b = { teeth = 33, module = "3 mm" }
+pair.I = { driver = "a", driven = "b" }
+"""
+
+    def answered(number, teeth):
+        del working.said[:]
+        case = text.replace("teeth = 10", f"teeth = {teeth}")
+        working.answer(Compute(number, Asked(case, "c", ".", moving=True, laid=1)))
+        return [what for _, what, _ in working.said]
+
+    assert "refused" not in answered(1, 10)
+    assert "refused" not in answered(2, 6)  # next 2
+    assert "refused" in answered(3, 2)
 
 
 def test_progress_is_told_to_who_waits_and_not_to_who_moves(working, monkeypatch):
