@@ -73,6 +73,7 @@ class Worker:
         self._seconds: dict[str, float] = {}
         self._number, self._begun, self._wait_before, self._spent = 0, 0.0, 0, 0.0
         self._asked: Asked | None = None
+        self._next: str | None = None
         self._later: list[tuple[str, Callable[[], None]]] = []
         self._left = TimeLeft(())
         self._reported, self._reports = 0.0, False
@@ -88,7 +89,7 @@ class Worker:
         self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
         self._previews: frozenset[str] = frozenset()
-        self._text, self._next = "", None
+        self._text = ""
         self._maps = HarrisMaps()
         self._untidy = 0
 

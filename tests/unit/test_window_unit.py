@@ -566,12 +566,14 @@ def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tm
     found = {"task": "x", "values": "", "figures": []}
     for number, what, content in (
         (2, "found", found), (2, "done", {}), (2, "refused", {"sentence": "", "key": ""}),  # of the case before
-        (5, "plan", {"tasks": ["x"]}), (5, "hands", {"pairs": {"I": {"mesh": {"a": 1}}}}), (5, "found", found),
+        (5, "plan", {"tasks": ["x"]}), (5, "hands", {"pairs": {"I": {"mesh": {"a": 1}, "reliefs": [2]}}}),
+        (5, "found", found),
         (5, "done", {"moving": True}), (7, "hands", {"pairs": {"I": {"mesh": None}}}), (7, "done", {"moving": False}),
     ):  # fmt: skip
         bench._hear(Said(number, what, content))
     assert told == ["plan", "hands", "found", "hands", "done"]
-    assert dict(bench.shown_now())["hands"]["pairs"] == {"I": {"mesh": {"a": 1}}}
+    (pair,) = dict(bench.shown_now())["hands"]["pairs"].values()
+    assert (pair["mesh"], pair["reliefs"]) == ({"a": 1}, [2])  # as they were told last
 
 
 def test_what_is_refused_beside_the_case_is_told_and_a_design_does_not_reach_the_next_case(tmp_path):
@@ -1216,8 +1218,8 @@ def test_while_a_tooth_moves_a_gear_that_no_atlas_has_is_solved_on_a_coarse_mesh
         return np.array([results.values[name].si for name in wanted if name in results.values])
 
     text = high.replace('["load-sharing"]', '["transmission-error"]')
-    for teeth in (28, 11):
-        rough = moved(text.replace("teeth = 28", f"teeth = {teeth}"))
+    for teeth, shift in ((28, 0.9), (11, 0.4)):
+        rough = moved(text.replace("teeth = 28", f"teeth = {teeth}").replace("0.9", str(shift)))
         assert list(rough.drafts) == ["a"]
         values, exact = numbers(rough), numbers(replace(rough, drafts={}))
         assert values.size == 2

@@ -164,12 +164,16 @@ accuracy.tolerance = 0.05
     assert ("meshed", "stress-inside of I") not in told
     (hands,) = (content for _, what, content in working.said if what == "hands")
     assert hands["pairs"]["I"]["mesh"] is not None
+    assert hands["pairs"]["I"].keys() == {"mesh"}  # reliefs go with the gears, at rest
     assert "an atlas" in next(content["draft"] for _, what, content in working.said if what == "found")
     told = answered(3, text.replace("teeth = 20", "teeth = 21").replace("50 N", "60 N"), True)
     assert "hands" not in [what for what, _ in told]  # only the load has moved: the page knows where it is
     working.inbox.wait = lambda _seconds: None
     told = answered(4, text, True)  # these teeth are known, and those of others are on the page
     assert ("meshed", "stress-inside of I") in told
+    first, whole = (content["pairs"]["I"] for _, what, content in working.said if what == "hands")
+    assert first.keys() == {"mesh"}
+    assert (whole["mesh"], len(whole["reliefs"])) == (None, 2)
 
 
 def test_the_gears_of_the_move_before_spare_a_plan_and_change_no_answer(working, tmp_path, monkeypatch):
