@@ -260,10 +260,11 @@ def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Se
 
 def _knows(e: Engagement, member: Member, source: RootStressInfluence, side: Side) -> bool:
     """Whether a source knows the stress of a fillet; formulas know that of the tension fillet alone."""
-    if source.fillet_curve(0, side) is not None:  # of finite elements, which need not be asked for a stress
+    roots = RootStress.of(e.compliance, member, side, source)
+    if roots.curve(0) is not None:  # finite elements need not be asked for a stress
         return True
     ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
-    return RootStress.of(e.compliance, member, side, source).row(0, 0, ends) is not None
+    return roots.row(0, 0, ends) is not None
 
 
 def tooth_stress(
