@@ -16,13 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import shown, shows
-from fegear.contact.fitted_line import (
-    FITTED as FITTED,  # noqa: PLC0414  (for readers of curves)
-)
-from fegear.contact.fitted_line import (
-    Fitted as Fitted,  # noqa: PLC0414  (for readers of curves)
-)
-from fegear.contact.fitted_line import FittedLine, linear, squares_left, standard_errors
+from fegear.contact.fitted_line import FITTED, Fitted, FittedLine, linear, squares_left, standard_errors
 from fegear.contact.trace_outliers import Beside, outliers, suspected
 from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
-    from fegear.contact.fitted_curve import Fitted
+    from fegear.contact.fitted_line import Fitted
     from fegear.contact.trace_alternatives import Alternative
 
 #: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.

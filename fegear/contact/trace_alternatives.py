@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
     from fegear.base.arrays import Array
-    from fegear.contact.fitted_curve import Fitted, FittedCurve
+    from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.fitted_line import Fitted
 
 #: What may be otherwise than described.
 Change = Literal["sign", "reverse", "curve", "shift"]

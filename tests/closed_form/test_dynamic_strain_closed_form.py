@@ -114,7 +114,7 @@ def test_a_trace_taken_in_motion_is_found_again(tmp_path):
     for name, wanted in (("offset", 30.0), ("scale", 0.98), ("shift", -50.0)):
         error = values[f"dynamic_measured_{name}_standard_error"]
         assert abs(values[f"dynamic_measured_{name}"] - wanted) < 3.5 * error
-    assert any(one.startswith("Gauge t, in motion: measured strain is") for one in outcome.remarks)
+    assert any(one.startswith("Gauge t, in motion: measured strain agrees with") for one in outcome.remarks)
     assert {table.name for table in outcome.tables} == {"dynamic_strain_t", "dynamic_measured_t"}
 
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import FITTED, NothingToCompareError, _standard_errors, fit_curve
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.fitted_line import FITTED, standard_errors
 from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet, Grid, grid_weights
 from fegear.fem.plane.root_stress import smooth_curve
 from fegear.fem.plane.settings import MeshSettings
@@ -247,12 +248,12 @@ def test_standard_errors_are_those_of_linear_regression_and_grow_where_residuals
         X = np.stack([columns[one] for one in asked], axis=1)
         variance = float(residual @ residual) / (count - len(asked)) * (1.0 + follows) / (1.0 - follows)
         wanted = np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * variance)
-        found = _standard_errors(curve, slope, scale, residual, asked)
+        found = standard_errors(curve, slope, scale, residual, asked)
         assert list(found) == list(asked)
         assert list(found.values()) == pytest.approx(wanted.tolist(), rel=1e-6)
     smooth = np.convolve(residual, np.ones(5) / 5.0, mode="same")
     smooth *= np.linalg.norm(residual) / np.linalg.norm(smooth)
-    wider = _standard_errors(curve, slope, scale, smooth, ("offset",))["offset"]
-    assert wider > 1.5 * _standard_errors(curve, slope, scale, residual, ("offset",))["offset"]
-    assert _standard_errors(curve, slope, scale, residual, ()) == {}
-    assert _standard_errors(curve, slope, scale, 0.0 * residual, ("offset",)) == {"offset": 0.0}
+    wider = standard_errors(curve, slope, scale, smooth, ("offset",))["offset"]
+    assert wider > 1.5 * standard_errors(curve, slope, scale, residual, ("offset",))["offset"]
+    assert standard_errors(curve, slope, scale, residual, ()) == {}
+    assert standard_errors(curve, slope, scale, 0.0 * residual, ("offset",)) == {"offset": 0.0}

@@ -16,7 +16,7 @@ from fegear.case.csv_file import read_columns
 if TYPE_CHECKING:
     from fegear.case.encoders import EncodersPart
     from fegear.case.reading import Scene
-    from fegear.contact.fitted_curve import Fitted
+    from fegear.contact.fitted_line import Fitted
     from fegear.geometry.pair import GearPair, Member
 
 #: Loads that differ by less, over one of them, are the same.

@@ -19,7 +19,7 @@ from fegear.contact.trace_outliers import suspected
 if TYPE_CHECKING:
     from fegear.case.gauge import MeasuredStrainPart
     from fegear.case.reading import Scene
-    from fegear.contact.fitted_curve import Fitted
+    from fegear.contact.fitted_line import Fitted
 
 #: Largest strain that a gauge in steel survives.
 _LARGEST_STRAIN = 0.05

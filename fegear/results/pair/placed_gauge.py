@@ -10,7 +10,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, place_gauge
-from fegear.contact.fitted_curve import FITTED, NothingToCompareError, fit_curve, turns_along
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve, turns_along
+from fegear.contact.fitted_line import FITTED
 from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.trace_alternatives import alternatives
 from fegear.engine.figure.items import Mark
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.base.arrays import Array
-    from fegear.contact.fitted_curve import Fitted, FittedCurve
+    from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.fitted_line import Fitted
     from fegear.contact.trace_alternatives import Alternative
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.gear import GearInfluence
