@@ -222,6 +222,8 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("pairs gear_pair gear_pairs stage stages stufe", ("pair.NAME",), "a table for each: [pair.I]"),
     ("shafts wellen", ("shaft.NAME",), "a table for each: [shaft.in]"),
     ("bearings lager", ("bearing.NAME",), "a table for each: [bearing.ball]"),
+    ("yield_point yield_stress streckgrenze dehngrenze r_p02 rp02 r_e", ("shaft.NAME.yield_strength",), ""),
+    ("tilt_limit permissible_misalignment schiefstellung kippwinkel", ("bearing.NAME.permissible_tilt",), ""),
     ("planets planetary_set planet_set planetengetriebe epicyclic", ("planetary.NAME",), "a table: [planetary.P]"),
     (("ravigneaux simpson wolfrom wolfrom_set compound_set compound_planetary coupled_sets plusgetriebe "
       "koppelgetriebe"), ("compound.NAME",), "tables of shafts, planets and meshes: [compound.R]"),
@@ -272,6 +274,8 @@ _OF_RESULTS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("tca tooth_contact_analysis", ("tooth-contact",), ""),
     ("natural_frequencies eigenfrequencies modal modes eigenfrequenzen critical_speeds", ("natural-modes",), ""),
     ("dynamics vibration dynamic_load dynamic_response k_v kv dynamic_transmission_error dte", ("dynamic-factor",), ""),
+    ("shaft_strength shaft_stress shaft_safety din_743 wellenfestigkeit", ("shaft-deflection",),
+     "nominal stress and yielding; notches and fatigue are not evaluated"),
     ("bearing_life bearings bearing_forces deflection shaft_deflections biegelinie lagerkraefte",
      ("shaft-deflection",), ""),
     ("tip_relief profile_modification microgeometry micro_geometry profilkorrektur", ("relief",),

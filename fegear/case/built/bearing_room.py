@@ -54,7 +54,7 @@ def said_of_room(scene: Scene) -> tuple[Note, ...]:
 
 
 def _bores(scene: Scene, shaft: str, part: ShaftInSpacePart) -> Iterator[Note]:
-    for n, place in enumerate(part.bearings):
+    for place in part.bearings:
         bearing = scene.case.bearing.get(place.bearing)
         printed = bearing.printed if bearing is not None else None
         if printed is None:
@@ -66,8 +66,8 @@ def _bores(scene: Scene, shaft: str, part: ShaftInSpacePart) -> Iterator[Note]:
         wrong = "is larger than" if printed.bore > outer else "is smaller than"
         of = f" ({bearing.designation})" if bearing is not None and bearing.designation else ""
         yield failing(
-            f"Bearing {place.bearing}{of}: bore {bore} {wrong} the diameter of shaft {shaft} there, {thick}; correct "
-            f"shaft.{shaft}.sections or shaft.{shaft}.bearings.{n}.at, or choose a bearing of bore {thick}",
+            f"Bearing {place.bearing}: bore {bore}{of} {wrong} the diameter of shaft {shaft} there, {thick}; correct "
+            f"shaft.{shaft}.sections or bearings, or choose a bearing of bore {thick}",
             min(printed.bore, outer) / max(printed.bore, outer),
         )
 

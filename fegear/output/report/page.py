@@ -165,7 +165,7 @@ def _symbols(text: str) -> list[tuple[str, str]]:
 
 def _known_symbols(text: str) -> list[tuple[str, str]]:
     """The same of sentences and heads, for symbols of the trade only: S_H, K_Hβ, C_β; names of gears stay."""
-    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*)", text)
+    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*|yield)", text)
     return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.notes import Note, NoteClass, neglecting
+from fegear.base.notes import NoteClass, class_of, neglecting, ordered
 from fegear.base.printed import figures
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.base.arrays import Array
+    from fegear.base.notes import Note
     from fegear.case.built.rated_pair import PairToRate
     from fegear.case.reading import Scene
     from fegear.case.shaft import BearingPart
@@ -211,9 +212,8 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
 
 
 def _failures(inputs: GearboxInputs) -> tuple[Note, ...]:
-    """What is said of shafts, gears and bearings that fails, the least margin first."""
-    found = (one for one in inputs.shafts.said if isinstance(one, Note) and one.kind is NoteClass.FAILS)
-    return tuple(sorted(found, key=lambda one: one.margin))
+    """What is said of shafts, gears and bearings that fails, the least margin first; the same of several as one."""
+    return ordered(one for one in inputs.shafts.said if class_of(one) is NoteClass.FAILS)
 
 
 def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work: Work) -> list[LevelLead | None]:
