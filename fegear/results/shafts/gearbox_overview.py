@@ -409,7 +409,7 @@ _SHEET = Sheet(
             of="meshes",
         ),
         Rows(
-            "gearbox_bearings", "Bearings of the gearbox, the shortest life first",
+            "gearbox_bearings", "Bearings of the gearbox, the weakest first",
             (
                 "bearing", "shaft", "radial", "axial",
                 *(_known(key, "bearings") for key in ("life", "duration", "margin", "tilt", "permissible")),
