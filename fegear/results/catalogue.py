@@ -82,6 +82,10 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("root-stress-study", "gear.root_stress_study.ROOT_STRESS_STUDY",
               "Root-stress formulas compared with FE for many gears", ("root-stress-study",),
               "where each root-stress formula over- or underestimates the FE result", internal=True, generated=True),
+        Entry("stiffness-study", "gear.stiffness_study.STIFFNESS_STUDY",
+              "Stiffness formulas compared with FE for many pairs", ("stiffness-study",),
+              "stiffness formulas (c' and c_gamma of ISO 6336, potential energy, ...) over FE for random pairs",
+              generated=True),
     ),
     "Gear pairs under load": (
         Entry("loaded-pair", "pair.loaded_pair.LOADED_PAIR", "Compliances of a loaded pair", effects=PLANE_EFFECTS,

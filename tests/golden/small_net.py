@@ -161,6 +161,13 @@ RUNS = {
     "sizing": ("small/sizing", {}),
     "spur_misaligned": ("spur_misaligned", {"accuracy.tolerance": 0.2}),
     "stiffness_over_face": ("small/stiffness_over_face", {}),
+    "stiffness_study": (
+        "root_stress_population",
+        {
+            "results": ["stiffness-study"],
+            "study": {"samples": 4, "seed": 1, "teeth": [18, 60], "profile_shift": [-0.2, 0.4]},
+        },
+    ),
     "surface_and_loss": ("surface_and_loss", COARSE),
     "surface_over_the_face": ("surface_and_loss", {"results": OVER_FACE, "gear.pinion.face_width": "4 mm", **ROUGH}),
     "thin_rim": ("thin_rim", COARSE),

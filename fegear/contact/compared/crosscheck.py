@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.shown import shown, shows
-from fegear.fem.plane.gear import GearInfluence
 from fegear.formulas import hertz
 from fegear.formulas.outcome import ComplianceSource, attempt
 from fegear.formulas.root_section import load_line
@@ -25,6 +25,10 @@ from fegear.formulas.sources import SOURCES, pair_compliance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+
+if TYPE_CHECKING:
+    from fegear.contact.plane.fe_compliance import SolvedTeeth
+    from fegear.contact.plane.pair_compliance import PairCompliance
 
 _REASON = "reason if the formula gives no value"
 
@@ -208,7 +212,7 @@ def refuse_wide_contacts(pair: GearPair, line_load: float, key: str) -> None:
 
 
 def pair_reference(
-    pair: GearPair, driver: GearInfluence, driven: GearInfluence, x: ArrayLike, line_load: float
+    pair: GearPair, driver: SolvedTeeth, driven: SolvedTeeth, x: ArrayLike, line_load: float
 ) -> PairReference:
     """Finite elements of one tooth pair under a Hertzian contact.
 
@@ -217,14 +221,14 @@ def pair_reference(
     Parameters
     ----------
     pair : GearPair
-    driver, driven : GearInfluence
+    driver, driven : SolvedTeeth
     x : array_like
         Contact positions [m].
     line_load : float
         w [N/m], > 0; it sets the contact's width.
     """
     at = np.atleast_1d(np.asarray(x, dtype=float))
-    members: Sequence[tuple[Member, GearInfluence]] = (("driver", driver), ("driven", driven))
+    members: Sequence[tuple[Member, SolvedTeeth]] = (("driver", driver), ("driven", driven))
     on = np.ones(at.shape, dtype=bool)
     for member, known in members:
         r, slack = pair.radius(at, member), 1e-9 * known.gear.module
@@ -240,7 +244,7 @@ def pair_reference(
     return PairReference(at, c[0], c[1], np.array(width))
 
 
-def mean_mesh_stiffness(pair: GearPair, driver: GearInfluence, driven: GearInfluence, line_load: float) -> float:
+def mean_mesh_stiffness(pair: GearPair, driver: SolvedTeeth, driven: SolvedTeeth, line_load: float) -> float:
     """Mean of the secant mesh stiffness over a base pitch, per face width [Pa]: what c_gamma_alpha stands for.
 
     Perfect involutes that touch on the path of contact only, teeth coupled through their gears.
@@ -248,7 +252,7 @@ def mean_mesh_stiffness(pair: GearPair, driver: GearInfluence, driven: GearInflu
     Parameters
     ----------
     pair : GearPair
-    driver, driven : GearInfluence
+    driver, driven : SolvedTeeth
     line_load : float
         Of all tooth pairs together, along the line of action [N/m].
 
@@ -257,12 +261,18 @@ def mean_mesh_stiffness(pair: GearPair, driver: GearInfluence, driven: GearInflu
     InputError
         If no tooth pair is on the path at some roll positions.
     """
-    from fegear.contact.plane.base_pitch import mean_secant_stiffness
-    from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.fe_compliance import finite_element_compliance
     from fegear.contact.plane.pair_compliance import PairCompliance
-    from fegear.contact.plane.transmission_error import transmission_error
 
     teeth = PairCompliance(pair, finite_element_compliance(driver), finite_element_compliance(driven))
-    found = transmission_error(Engagement(teeth), line_load * pair.face_width)
-    return mean_secant_stiffness(found) / pair.face_width
+    return mean_stiffness_of(teeth, line_load)
+
+
+def mean_stiffness_of(teeth: PairCompliance, line_load: float) -> float:
+    """The same of teeth whose compliance is known, by finite elements or a formula [Pa]."""
+    from fegear.contact.plane.base_pitch import mean_secant_stiffness
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.transmission_error import transmission_error
+
+    face_width = teeth.pair.face_width
+    return mean_secant_stiffness(transmission_error(Engagement(teeth), line_load * face_width)) / face_width

@@ -85,7 +85,9 @@ def drawn_gears(base: Gear, bounds: Mapping[str, tuple[float, float]], samples: 
     while len(found) < samples and tried < _DRAWS * samples + 256:
         for u in sequence.random(64):
             tried += 1
-            tooth = _tooth(t, {k: _between(box[k], float(v), log=k == "teeth") for k, v in zip(keys, u, strict=False)})
+            tooth = tooth_of(
+                t, {k: _between(box[k], float(v), log=k == "teeth") for k, v in zip(keys, u, strict=False)}
+            )
             if tooth is None:
                 continue
             bore = base.bore_radius / base.root_radius * tooth.root_radius * base.module
@@ -120,7 +122,7 @@ def _between(bounds: tuple[float, float], share: float, *, log: bool) -> float:
     return low * (high / low) ** share if log else low + share * (high - low)
 
 
-def _tooth(base: Tooth, drawn: Mapping[str, float]) -> Tooth | None:
+def tooth_of(base: Tooth, drawn: Mapping[str, float]) -> Tooth | None:
     """The tooth of a draw, or None where there is none."""
     try:
         rack = replace(

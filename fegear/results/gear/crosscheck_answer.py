@@ -25,7 +25,7 @@ ROOT_FORMULAS = {
 
 
 #: The same of compliance.
-_COMPLIANCES = {
+COMPLIANCES = {
     "potential-energy": "potential energy", "weber-banaschek": "Weber and Banaschek", "cornell": "Cornell",
 }  # fmt: skip
 
@@ -65,7 +65,7 @@ def _ranges(extremes: Mapping[str, Extremes], labels: Mapping[str, str]) -> str:
 
 def said_of_compliance(seen: Seen) -> list[str]:
     """One pair: the range of each formula over finite elements."""
-    ranges = _ranges(seen.one.compliance.extremes, _COMPLIANCES)
+    ranges = _ranges(seen.one.compliance.extremes, COMPLIANCES)
     said = f"Pair {seen.key}: compliance of one tooth pair by formula over finite elements: {ranges}."
     return [said] if ranges else []
 

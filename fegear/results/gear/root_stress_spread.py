@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from fegear.base.shown import shown
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
-from fegear.engine.sheet.seen import Seen
+from fegear.engine.sheet.seen import Seen, Text
 from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
 from fegear.results.gear.crosscheck_rows import HIGH
 
@@ -143,29 +143,38 @@ class Population:
         return f"{points} loads on {len(gears)} gears, uniformly distributed over {bounds_in_words(self.table)}"
 
 
-def _marks(seen: Seen) -> tuple[Zone | Mark, ...]:
-    off = fe_error(seen.data.table)
-    return Zone("x", 1.0 - off, 1.0 + off), Mark("x", 1.0), Mark("y", 50.0)
+def spread_chart(name: str, title: str, caption: Text, quantity: str, error: Callable[[Seen], float]) -> Chart:
+    """Cumulative distributions of formula over finite elements, of what has `SomeLoads` as ``loads``: a panel each.
+
+    Parameters
+    ----------
+    name, title : str
+    caption : text
+    quantity : str
+        Name of the axis of ratios.
+    error : callable
+        Relative error of the finite elements.
+    """
+
+    def marks(seen: Seen) -> tuple[Zone | Mark, ...]:
+        off = error(seen)
+        return Zone("x", 1.0 - off, 1.0 + off), Mark("x", 1.0), Mark("y", 50.0)
+
+    line = Line("share", x="ratio", each=Family("spreads", most=None), look={"dash": "steps", "markers": False})
+    panel = Over(
+        Axis(quantity, limits=_SHOWN), (line,),
+        Axis("fraction of points with a smaller ratio", "%", limits=(0.0, 100.0)), marks, title="{one.title}",
+        each="loads",
+    )  # fmt: skip
+    return Chart(name, title, caption, (panel,), columns=2)
 
 
-_FIGURE = Chart(
+_FIGURE = spread_chart(
     "root_stress_spread", "Distribution of the errors of the root-stress formulas",
     lambda seen: f"{seen.data.about} (share of the roll angle). Left of 1: stress underestimated (unsafe). The steeper "
     "the curve, the better a constant correction factor works. Grey, and narrower than the dotted line where it is not "
     f"seen: estimated error of the finite elements, {100.0 * fe_error(seen.data.table):.2g} % at 95 % of the points.",
-    (
-        Over(
-            Axis("root stress, formula / FE", limits=_SHOWN),
-            (
-                Line(
-                    "share", x="ratio", each=Family("spreads", most=None), look={"dash": "steps", "markers": False}
-                ),
-            ),
-            Axis("fraction of points with a smaller ratio", "%", limits=(0.0, 100.0)),
-            _marks, title="{one.title}", each="loads",
-        ),
-    ),
-    columns=2,
+    "root stress, formula / FE", lambda seen: fe_error(seen.data.table),
 )  # fmt: skip
 
 

@@ -60,14 +60,15 @@ def _gear(scene: Scene) -> str:
     return (study.gear if study else None) or next(iter(scene.spur_gears))
 
 
-def _study(scene: Scene) -> StudyPart:
+def _study(scene: Scene, result: str = "root-stress-study") -> StudyPart:
     if scene.case.study is None:
-        raise InputError("study", "(not given)", "is required for root-stress-study", "add a table [study]")
+        raise InputError("study", "(not given)", f"is required for {result}", "add a table [study]")
     return scene.case.study
 
 
-def _check(scene: Scene, _subject: str) -> None:
-    study = _study(scene)
+def check_study(scene: Scene, _subject: str, result: str = "root-stress-study") -> None:
+    """Refuse a case without one gear to vary, or with keys of it that a study does not use."""
+    study = _study(scene, result)
     if study.gear is None and len(scene.spur_gears) > 1:
         raise InputError(
             "study.gear", "(not given)", "must specify the gear to vary", f"one of {', '.join(scene.spur_gears)}"
@@ -95,7 +96,8 @@ class StudyInputs:
     settings: MeshSettings
 
 
-def _inputs(scene: Scene, _subject: str) -> StudyInputs:
+def study_inputs(scene: Scene, _subject: str) -> StudyInputs:
+    """As `Stage.inputs`."""
     return StudyInputs(scene.gears[_gear(scene)], _study(scene), mesh_settings(scene.case.accuracy))
 
 
@@ -408,10 +410,10 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 ROOT_STRESS_STUDY = Stage(
     subjects=lambda scene: ("",) if scene.spur_gears else (),
-    inputs=_inputs,
+    inputs=study_inputs,
     compute=_compute,
     present=_SHEET.present,
-    check=_check,
+    check=check_study,
     cites=citing(*ROOT_STRESS_FORMULAS, *RING),
     forecast=_forecast,
 )
