@@ -141,8 +141,7 @@ def compare_stiffness(pair: GearPair, solved: Callable[[Gear], SolvedTeeth], lin
     at = int(np.argmin(reference.total))
     x, width = reference.x[[at]], reference.half_width[[at]]
     errors = [
-        float(one.self_error(pair.radius(x, member), width)[0])
-        for one, member in zip(known, MEMBERS, strict=True)
+        float(one.self_error(pair.radius(x, member), width)[0]) for one, member in zip(known, MEMBERS, strict=True)
     ]
     compliance = float(reference.total[at])
     single, share = 1.0 / compliance, sum(errors) / compliance
