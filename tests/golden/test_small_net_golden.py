@@ -176,6 +176,17 @@ def check_loss(data, name, found):
     assert loss / transmitted == pytest.approx(mean * number_of(found, f"{pair}.loss_factor"), rel=1e-6)
 
 
+def check_stiffness_study(data, _name, _found):
+    known = data["reason"] == ""
+    assert (data["stiffness"][known] > 0.0).all()
+    np.testing.assert_allclose(data["ratio_to_fe"], data["stiffness"] / data["stiffness_fe"], rtol=1e-9)
+
+
+def check_stiffness_quantiles(data, _name, _found):
+    ordered = [data[key] for key in ("lowest", "percentile_5", "median", "percentile_95", "highest")]
+    assert (np.diff(ordered, axis=0) >= 0.0).all()
+
+
 def check_stiffness(data, _name, _found):
     assert (data["c_self"] > 0.0).all()
     assert (data["root_tension"] > 0.0).all()
@@ -495,6 +506,7 @@ OF_TABLES = {
     "bearing_forces": check_bearing_forces, "natural_modes": check_modes, "planet_modes": check_modes,
     "mesh_force_spectrum": check_spectrum, "rating_safety": check_safety, "rating_spectrum": check_levels,
     "geometry": check_geometry, "flank_surface": check_surface, "tooth_loss": check_loss, "stiffness": check_stiffness,
+    "stiffness_study": check_stiffness_study, "stiffness_study_quantiles": check_stiffness_quantiles,
     "planet_members": check_members, "planet_shares": check_planets, "load_over_face": check_over_face,
     "load_distribution_roll": check_over_roll,
     "gauge": check_gauge, "gauge_loads": check_gauge_loads, "gauge_places": None,

@@ -71,8 +71,8 @@ EXTERNAL = {
     "flank-design", "flank-fracture", "flank-generation",
     "mesh-stiffness-matrix", "mode-tracking", "odd-gear-other-flank", "odd-solid-solution", "pair-forced-response",
     "rack-geometry", "rack-solution", "solid-rack-solution",
-    "rack-stiffness", "rack-transmission-error", "sizing", "tooth-contact",
-    "transmissibility",
+    "rack-stiffness", "rack-transmission-error", "sizing", "stiffness-study",
+    "tooth-contact", "transmissibility",
 }  # fmt: skip
 
 
