@@ -144,6 +144,16 @@ def test_the_module_of_a_drafted_gearbox_follows_from_its_torque(say, tmp_path):
         assert (part.module or part.normal_module) == pytest.approx(module)
 
 
+def test_a_given_module_that_leaves_no_room_is_said(say):
+    given = ("--kind", "gearbox", "--teeth", "17", "17", "--torque", "49.4 N m", "--no-schema")
+    code, out, err = say("new", "x", *given, "--module", "2.5 mm")
+    assert code == 0
+    assert "intersect: radii 52 mm, axes of shafts input and output 45.23 mm apart" in out + err
+    code, out, err = say("new", "y", *given)  # without it the module is larger
+    assert code == 0
+    assert "intersect" not in out + err
+
+
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 3.0, 4.4])
 def test_a_ratio_that_hunting_teeth_miss_is_met_by_others(ratio):
     _, found, _ = with_teeth_of_ratio("pair", {"ratio": f"{ratio}"})
