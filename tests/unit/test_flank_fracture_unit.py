@@ -1,11 +1,14 @@
 """Result flank-fracture: what it reads, refuses, finds and says."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.case.reading import build_scene
+from fegear.results.rating.flank_fracture import _of_pair
 from fegear.workbench.run import run
 
 CASE = {"material": "case-hardened-steel", "hardness": "60 HRC", "core_hardness": "32 HRC", "case_depth": "0.8 mm"}
@@ -163,3 +166,11 @@ def test_a_pair_that_is_not_evaluated_takes_no_other_with_it(of_third, said):
     del document["pair"]["I"]
     with pytest.raises(InputError, match=said):
         run(document, progress=False)
+
+
+def test_the_quality_of_each_gear_is_that_of_its_material():
+    """Of a gear without one MQ; a formula that asks for it sees those of pinion and wheel in this order."""
+    document = case()
+    for name, strength in (("a", CASE | {"quality": "ME"}), ("b", CASE)):
+        document["gear"][name] = document["gear"][name] | {"strength": strength}
+    assert _of_pair(build_scene(document, "case", Path()), "I").qualities == ("ME", "MQ")
