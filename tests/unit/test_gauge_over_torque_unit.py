@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -96,6 +97,9 @@ def test_levels_are_told_apart_and_the_gain_is_found_at_each(history, tmp_path):
         assert one.turns == pytest.approx(3.0, abs=0.1)
     assert levels[-1].found is outcome.data.compared  # the verdict is that at the nominal torque
     assert abs(found["gain_change_over_torque"]) < 0.01
+    assert outcome.data.over_torque.left_out == ""
+    partly = replace(outcome.data.over_torque, partial=("8 N m", "40 N m"))
+    assert partly.left_out == "samples at 8 N m, 40 N m do not cover the engagement of the tooth; left out"
     (linear,) = (one for one in outcome.remarks if "over 3 torques" in one)
     assert ", linear: the largest change from the nominal torque is " in linear
     (said,) = (one for one in outcome.remarks if "file of the trace read with" in one)
