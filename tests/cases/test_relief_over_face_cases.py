@@ -196,15 +196,8 @@ def test_spur_teeth_with_a_width_are_designed_with_it():
         make_plan(scene_of(curves), STAGES)
 
 
-#: The search for ground tips of helical pairs ends in another valley there: it leaves 0.846 um, evolution 0.796. That
-#: valley is one of many: of 6 seeds of an evolution of 1040 reliefs within the search 2 came to it (1.7 times the CPU
-#: time), of 5 samples of 256 evenly spread reliefs with 12 descents and 24 hops by a tenth 1 (2.2 times), of 3 seeds of
-#: 20 hops from ends of the grid none (1.7 times). In five other pairs evolution found nothing better, hops up to 0.7 %.
-BEATEN = pytest.mark.xfail(strict=True, reason="the search of the helical pair leaves 5.9 % more than evolution")
-
-
 @pytest.mark.long
-@pytest.mark.parametrize("kind", [pytest.param("helical", marks=BEATEN), "spur"])
+@pytest.mark.parametrize("kind", ["helical", "spur"])
 def test_own_evolution_of_random_pairs_finds_no_better_reliefs(kind):
     """Of 12 such pairs, 6 helical and 6 spur, by the searches of both results; see the page on relief design."""
     from scipy.optimize import differential_evolution

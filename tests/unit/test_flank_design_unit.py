@@ -264,6 +264,7 @@ def found(trials, exact):
         starts = [best(held).relief for held in held_by(family)]
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(valleys, "_DESCENTS", 6)
+            patch.setattr(families, "_FLOORS", 4)
             patch.setattr(valleys, "_ROUNDS", 1)
             return best_of_family(trials, family, GRID, exact[1].force, starts=starts)
 
@@ -339,8 +340,8 @@ def beside_evolution(trials, family, grid, force, generations, popsize=8):
 
 @pytest.mark.dear
 def test_a_short_evolution_finds_no_better_relief(trials, exact, monkeypatch):
-    monkeypatch.setattr(valleys, "_DESCENTS", 8)
-    monkeypatch.setattr(families, "_LEAST_EXACT", 24)
+    monkeypatch.setattr(valleys, "_DESCENTS", 4)
+    monkeypatch.setattr(families, "_FLOORS", 8)
     assert beside_evolution(trials, "profile", WIDE, exact[1].force, 2, popsize=4) >= 0.99
 
 

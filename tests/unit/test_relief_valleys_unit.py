@@ -84,16 +84,19 @@ def test_starts_lie_apart_the_best_first_and_only_some_lead_on(monkeypatch):
 
 
 def test_leaps_change_tips_along_and_across_their_valleys_and_each_other_number_to_either_side():
-    tips, others = leaps(relief(), BOX)
-    assert (len(tips), len(others)) == (16, 4)
-    assert all((one >= LOW).all() and (one <= HIGH).all() for one in (*tips, *others))
+    tips, traded, others = leaps(relief(), BOX)
+    assert (len(tips), len(traded), len(others)) == (16, 4, 4)
+    assert all((one >= LOW).all() and (one <= HIGH).all() for one in (*tips, *traded, *others))
+    assert [one[1] + one[3] for one in traded] == pytest.approx([9e-3] * 4)
+    assert [one[1] for one in traded] == pytest.approx([3.2e-3, 3.6e-3, 4.4e-3, 4.8e-3])
+    assert all((np.delete(one, [1, 3]) == np.delete(relief(), [1, 3])).all() for one in traded)
     assert not any(np.allclose(one[:4], relief()[:4]) for one in tips)
     larger = next(one for one in tips if one[0] > 10e-6 and one[1] < 4e-3 and one[2] == 20e-6)
     assert larger[:2] == pytest.approx([14e-6, 4e-3 * 1.4**-0.4])
     assert [one[4] for one in others if one[4] != 2e-6] == pytest.approx([0.8e-6, 3.2e-6])
     assert [one[8] for one in others if one[8] != 0.0] == pytest.approx([-1.2e-6, 1.2e-6])
     lead = np.where(np.arange(9) < 4, 0.0, LOW), np.where(np.arange(9) < 4, 0.0, HIGH)
-    assert [len(some) for some in leaps(np.zeros(9), lead)] == [0, 4]
+    assert [len(some) for some in leaps(np.zeros(9), lead)] == [0, 0, 4]
 
 
 def test_leaps_lead_from_a_descent_s_end_to_the_deepest_valley():
@@ -114,6 +117,18 @@ def test_the_best_come_first_and_no_more_than_three():
     assert len(found) == 3
     assert values == sorted(values)
     assert values[0] == pytest.approx(2e-6, rel=1e-5)
+
+
+def test_from_every_floor_goes_a_descent_however_near_to_another_it_is(monkeypatch):
+    begun = []
+    monkeypatch.setattr(valleys, "descend", lambda trials, at, value, *box: begun.append(at[0]) or (value, at))
+    monkeypatch.setattr(valleys, "_ROUNDS", 0)
+    limited = Trials(lambda numbers: 1.0 if numbers[0] < 12e-6 else 2.0)
+    floors = [relief(first=amount) for amount in (10e-6, 10.1e-6, 20e-6)]
+    found = deepest_valleys(Trials(), limited, [relief(first=10.05e-6)], BOX, 1.5, floors)
+    assert begun[:-1] == [10e-6, 10.1e-6, 10.05e-6]
+    assert len(found) == 3
+    assert deepest_valleys(Trials(), limited, [], BOX, 1.5, floors[2:]) == []
 
 
 def test_starts_and_leaps_that_do_not_keep_to_the_limit_lead_nowhere():

@@ -112,7 +112,8 @@ class LocalMatrix:
 
     def read(self, rows: Array, values: Array) -> Array:
         """Averages of values (B, M) at a Gauss point of each panel, shape (B, M - 1)."""
-        padded = np.pad(values, ((0, 0), (self._reach, self._reach)))
+        padded = np.zeros((self._problems, self._most + 2 * self._reach))
+        padded[:, self.inside] = values
         return np.asarray(sum(rows[:, :, k] * padded[:, self._at(k)] for k in range(rows.shape[2])))
 
     def add(self, rows: Array, slope: Array, load: Array) -> None:

@@ -73,11 +73,11 @@ class Contact(ReadOnlyArrays):
 
 
 def hat_averages(lines: ContactLines, values: Array) -> Array:
-    """Averages over each station's hat of what is straight between the stations, shape (P, M)."""
+    """Averages over each station's hat of what is straight between the stations, shape (..., P, M)."""
     h, support = lines.panel, lines.support
     found = np.zeros(values.shape)
-    found[:, :-1] += h * (values[:, :-1] / 3.0 + values[:, 1:] / 6.0)
-    found[:, 1:] += h * (values[:, 1:] / 3.0 + values[:, :-1] / 6.0)
+    found[..., :-1] += h * (values[..., :-1] / 3.0 + values[..., 1:] / 6.0)
+    found[..., 1:] += h * (values[..., 1:] / 3.0 + values[..., :-1] / 6.0)
     return np.asarray(np.divide(found, support, out=np.zeros_like(found), where=support > 0.0))
 
 

@@ -22,10 +22,14 @@ from fegear.design.flanks.grid import FAMILIES, GROUPS, Family, ReliefGrid
 from fegear.design.flanks.quick import QuickFlanks, quick_flanks
 from fegear.design.flanks.search import descend
 from fegear.design.flanks.trials import FlankTrials
+from fegear.design.flanks.valley_floors import valley_floors
 from fegear.design.flanks.valleys import deepest_valleys, keeps
 
 #: Candidates loaded exactly, at least and at most; those from which descents start; coarse panels over the face.
 _LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 60, 5
+
+#: Starts for tip reliefs only: floors of valleys and places of the grid, for which fewer are loaded exactly.
+_FLOORS, _ON_GRID, _LEAST_BY_FLOORS = 24, 8, 40
 
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05
@@ -144,7 +148,9 @@ def best_of_family(
     """
     few = scan or trials
     quick = quick_flanks(few.known, force, _PANELS, few.cells)
-    found = _screened(few, quick, family, grid, most_factor)
+    low, high = box = grid.limits(family)
+    by_floors = family == "profile" and bool(min(high[GROUPS["driver_tip"][0]], high[GROUPS["driven_tip"][0]]) > 0.0)
+    found = _screened(few, quick, family, grid, most_factor, _LEAST_BY_FLOORS if by_floors else _LEAST_EXACT)
     if not found.best:
         raise RangeError(
             "flank_design.largest_face_load_factor", f"{most_factor:.4g}",
@@ -153,11 +159,10 @@ def best_of_family(
             "increase the limit, or extend the grid to more crowning, end relief or slope",
         )  # fmt: skip
     left_on_grid, on_grid = found.best[0]
-    low, high = box = grid.limits(family)
-    places = [*(np.clip(start.numbers, low, high) for start in starts), *(at for _, at in found.best)]
-    if family == "profile" and (finer := grid.finer_tips()) is not grid:  # few lengths miss valleys
-        places += [at for _, at in _screened(few, quick, family, finer, most_factor).best]
-    valleys = deepest_valleys(few, trials, places, box, most_factor)
+    ahead = found.best[:_ON_GRID] if by_floors and most_factor == np.inf else found.best
+    places = [*(np.clip(start.numbers, low, high) for start in starts), *(at for _, at in ahead)]
+    floors = _floors(trials, box) if by_floors else []
+    valleys = deepest_valleys(few, trials, places, box, most_factor, floors)
     if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
         valleys = [(trials.value(trials.of_numbers(on_grid).peak_to_peak), on_grid)]
     at_ends = grid.at_ends(family, valleys[0][1])
@@ -176,6 +181,13 @@ def best_of_family(
         family, trials.relief(on_grid), reliefs[0], valleys[0][0], reliefs, grid, found.candidates, found.exact,
         left_on_grid, found.error, found.proven, at_ends,
     )  # fmt: skip
+
+
+def _floors(trials: FlankTrials, box: tuple[Array, Array]) -> list[Array]:
+    """Tip reliefs on the floors of valleys."""
+    plain = trials.of_gap(np.zeros(trials.known.lines.x.shape)).found[0].contact.force
+    at_loads = [quick_flanks(trials.known, plain[:, :, i], _PANELS, 1) for i in range(trials.loads.size)]
+    return valley_floors(at_loads, trials, box)[:_FLOORS]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,16 +216,16 @@ class _Screened:
 
 
 def _screened(
-    few: FlankTrials, quick: QuickFlanks, family: Family, grid: ReliefGrid, most_factor: float
+    few: FlankTrials, quick: QuickFlanks, family: Family, grid: ReliefGrid, most_factor: float, least: int
 ) -> _Screened:  # fmt: skip
-    """Try all combinations of a grid the quick way, and the best of them exactly."""
+    """Try all combinations of a grid the quick way, and the best of them exactly, so many at least."""
     numbers, rough, factor = quick_values(quick, few, family, grid)
     allowed = factor <= most_factor * _FACTOR_SLACK
     order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
     seen: list[tuple[float, int]] = []
     error, exact = 0.0, 0
     for i in order[:_MOST_EXACT].tolist():
-        if exact >= _LEAST_EXACT and seen and rough[i] - error > seen[0][0]:
+        if exact >= least and seen and rough[i] - error > seen[0][0]:
             break
         tried = few.of_numbers(numbers[i])
         exact += 1

@@ -30,8 +30,8 @@ GROUPS: Mapping[str, tuple[int, ...]] = {
 }  # fmt: skip
 
 
-#: Amounts that tell the valleys of tip reliefs apart, over the mean transmission error; so many lengths do.
-TIP_AMOUNTS, _TIP_LENGTHS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0), 7
+#: Amounts of tip reliefs that are tried, over the mean transmission error.
+TIP_AMOUNTS = (0.15, 0.4, 0.8, 1.5, 3.0, 6.0)
 
 #: Where a number is as good as at an end of the box, over the extent of the box.
 _AT_END = 1e-3
@@ -125,16 +125,6 @@ class ReliefGrid:
             if wide[1] - wide[0] > (1.0 + _AT_END) * span:
                 reach[name] = wide
         return self if reach == self.reach else replace(self, reach=reach)
-
-    def finer_tips(self) -> ReliefGrid:
-        """Tip reliefs only, over the same box, with more amounts and lengths where there are few."""
-        low, high = self.limits("profile")
-        count = len(set(self.tip_amounts)) * len(set(self.tip_lengths))
-        if count >= len(TIP_AMOUNTS) * _TIP_LENGTHS or not count:
-            return self
-        amounts = tuple(share / TIP_AMOUNTS[-1] * float(high[0]) for share in TIP_AMOUNTS)
-        lengths = np.unique(np.clip(np.geomspace(low[1], high[1], _TIP_LENGTHS), low[1], high[1]))
-        return ReliefGrid(amounts, tuple(lengths.tolist()), (), (), (), (), ())
 
     def combinations(self, family: Family) -> Index:
         """Every combination as one choice of each of the family's groups, shape (C, groups)."""

@@ -22,6 +22,9 @@ from fegear.contact.wide.load_sharing import (
     tangent_compliance,
 )
 
+#: All roll positions.
+_ALL = slice(None)
+
 #: Problems solved at a time, times the square of their size; steps after which one station changes at a time, in all.
 _BATCH, _MANY_AT_ONCE, _MOST_STEPS = 4_000_000, 12, 400
 
@@ -57,9 +60,9 @@ class QuickFlanks(ReadOnlyArrays):
 
     def gaps(self, gap: Array) -> Array:
         """Gaps at the fine stations, shape (..., P, M), averaged over the coarse hats, shape (..., P, m) [m]."""
-        flat = gap.reshape(-1, *gap.shape[-2:])
-        found = np.stack([np.einsum("pM,pMm->pm", hat_averages(self.lines, g), self.spread) for g in flat])
-        return np.asarray(found.reshape(*gap.shape[:-1], -1))
+        averaged = hat_averages(self.lines, gap.reshape(-1, *gap.shape[-2:]))
+        found = np.moveaxis(np.moveaxis(averaged, 0, 1) @ self.spread, 0, 1)
+        return np.ascontiguousarray(found).reshape(*gap.shape[:-1], -1)
 
     @cached_property
     def _all_on(self) -> tuple[Array, Array]:
@@ -89,39 +92,67 @@ class QuickFlanks(ReadOnlyArrays):
         step = max(1, _BATCH // (positions * size**2))
         for first in range(0, count, step):
             part = slice(first, first + step)
-            approach[part], force = self._contact(gap[part] + self.constant, load)
+            approach[part], force, _ = self.contact(gap[part], load)
             over = np.einsum("cpm,pfm->cf", force, self.over_face)
             factor[part] = over.max(axis=1) * over.shape[1] / load
         return approach, factor
 
-    def _contact(self, gap: Array, load: float) -> tuple[Array, Array]:
-        size = gap.shape[2]
-        inverse, unit = self._all_on
-        held = np.einsum("pij,cpj->cpi", inverse, np.where(self.present, gap, 0.0))
+    def contact(
+        self, gap: Array, load: float, at: slice = _ALL, near: Array | None = None
+    ) -> tuple[Array, Array, Array]:  # fmt: skip
+        """Load C candidates at some of the roll positions.
+
+        Parameters
+        ----------
+        gap : ndarray, shape (C, p, m)
+            From `gaps`, at these positions [m].
+        load : float
+            [N].
+        at : slice
+            Roll positions, all by default.
+        near : ndarray, shape (C, p, m), optional
+            Forces with about the same gaps, from which most contacts are found in one step [N].
+
+        Returns
+        -------
+        approach : ndarray, shape (C, p)
+            [m].
+        force : ndarray, shape (C, p, m)
+            [N].
+        growth : ndarray, shape (C, p, m)
+            Of the approach by the gap at each station.
+        """
+        gap, size = gap + self.constant[at], gap.shape[2]
+        present, compliance = self.present[at], self.matrix[at]
+        inverse, unit = (one[at] for one in self._all_on)
+        held = np.einsum("pij,cpj->cpi", inverse, np.where(present, gap, 0.0))
         z = (load + held.sum(axis=2)) / unit.sum(axis=1)
         force = z[:, :, None] * unit - held
+        growth = np.broadcast_to(unit / unit.sum(axis=1, keepdims=True), force.shape).copy()
         left = np.argwhere((force < 0.0).any(axis=2))
         c, p = left.T
         force = np.maximum(force, 0.0)
-        active = force[c, p] > 0.0
+        active = (force if near is None else near)[c, p] > 0.0
         place = np.arange(c.size)
         for steps in range(_MOST_STEPS):
             if not place.size:
-                return z, force
+                return z, force, growth
             on = active[place]
-            matrix, e = self.matrix[p[place]], np.where(self.present[p[place]], gap[c[place], p[place]], 0.0)
+            matrix, e = compliance[p[place]], np.where(present[p[place]], gap[c[place], p[place]], 0.0)
             system = np.where(on[:, :, None] & on[:, None, :], matrix, 0.0)
             system[:, range(size), range(size)] += ~on
             y = np.linalg.solve(system, np.stack([on.astype(float), on * e], axis=2))
-            zeta = (load + y[:, :, 1].sum(axis=1)) / y[:, :, 0].sum(axis=1)
+            rate = y[:, :, 0].sum(axis=1)
+            zeta = (load + y[:, :, 1].sum(axis=1)) / rate
             new = zeta[:, None] * y[:, :, 0] - y[:, :, 1]
             distance = np.einsum("bij,bj->bi", matrix, new) + e - zeta[:, None]
             leaves = on & (new <= 0.0)
-            enters = self.present[p[place]] & ~on & (distance < -1e-12 * np.abs(zeta)[:, None])
+            enters = present[p[place]] & ~on & (distance < -1e-12 * np.abs(zeta)[:, None])
             changes = leaves | enters
             done = ~changes.any(axis=1)
-            at = place[done]
-            z[c[at], p[at]], force[c[at], p[at]] = zeta[done], new[done]
+            solved = place[done]
+            z[c[solved], p[solved]], force[c[solved], p[solved]] = zeta[done], new[done]
+            growth[c[solved], p[solved]] = (y[:, :, 0] / rate[:, None])[done]
             if steps > _MANY_AT_ONCE:
                 only = np.zeros_like(changes)
                 only[np.arange(place.size), changes.argmax(axis=1)] = True

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _LEAPERS, _FOLLOWED, _ROUNDS, _GAIN = 3, 2, 6, 2e-3
 #: By what a leap multiplies amounts, and the power of that by which the lengths that go with them shrink.
 _LEAPS, _SHRINKS = (0.7, 1.0, 1.4), 0.4
+#: Parts of the shorter length by which one tip relief becomes longer and the other shorter in a leap.
+_TRADED = (-0.2, -0.1, 0.1, 0.2)
 #: By what parts of the box a leap changes each other number.
 _ASIDE = (-0.15, 0.15)
 #: Promised gains, over the value, that end descents: they tell valleys apart, the best is led on.
@@ -55,28 +57,32 @@ def _far_apart(starts: Iterable[tuple[float, Array]], box: tuple[Array, Array]) 
             yield value, at
 
 
-def leaps(numbers: Array, box: tuple[Array, Array]) -> tuple[list[Array], list[Array]]:
-    """Reliefs beside one: tips larger or smaller, with their lengths or without; each other number to either side."""
+def leaps(numbers: Array, box: tuple[Array, Array]) -> tuple[list[Array], list[Array], list[Array]]:
+    """Reliefs beside one: tips larger or smaller, one longer as the other is shorter; each other number either way."""
     low, high = box
     free = high > low
-    tips, others = [], []
+    tips, traded, others = [], [], []
     if free[:_TIPS].any():
         for first, second, shrinks in product(_LEAPS, _LEAPS, (0.0, _SHRINKS)):
             if first != 1.0 or second != 1.0:
                 one = numbers.copy()
                 one[:_TIPS] *= first, first**-shrinks, second, second**-shrinks
                 tips.append(np.clip(one, low, high))
+        for part in _TRADED:
+            one = numbers.copy()
+            one[1:_TIPS:2] += np.array([part, -part]) * numbers[1:_TIPS:2].min()
+            traded.append(np.clip(one, low, high))
     for k in np.flatnonzero(free):
         for part in _ASIDE if k >= _TIPS else ():
             one = numbers.copy()
             one[k] += part * (high[k] - low[k])
             others.append(np.clip(one, low, high))
-    return tips, others
+    return tips, traded, others
 
 
 def deepest_valleys(
     few: FlankTrials, more: FlankTrials, starts: Iterable[Array], box: tuple[Array, Array],
-    most_factor: float = np.inf,
+    most_factor: float = np.inf, floors: Iterable[Array] = (),
 ) -> list[tuple[float, Array]]:  # fmt: skip
     """Descend from every start, and leap on from the best of what is reached.
 
@@ -90,6 +96,8 @@ def deepest_valleys(
         Least and largest numbers.
     most_factor : float
         Largest K_Hbeta that is allowed, at all loads and misalignments.
+    floors : iterable of ndarray, shape (9,)
+        Further starts, each in a valley of its own: from all of them goes a descent.
 
     Returns
     -------
@@ -108,9 +116,10 @@ def deepest_valleys(
         return few.value(few.of_numbers(at).peak_to_peak)
 
     known = sorted((one for one in map(begun, starts) if one is not None), key=_left)
-    if not known:
+    apart = [*(one for one in map(begun, floors) if one is not None), *_far_apart(known, box)]
+    if not apart:
         return []
-    reached = sorted(map(led, _far_apart(known, box)), key=_left)[:_LEAPERS]
+    reached = sorted(map(led, apart), key=_left)[:_LEAPERS]
     for _ in range(_ROUNDS):
         before = reached[0][0]
         for k, (value, at) in enumerate(reached):
