@@ -14,6 +14,7 @@ from fegear.geometry.gear import Gear, Material
 from fegear.geometry.generated_fillet import NO_UNDERCUT
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.shift_of_thickness import ToothNumbers
+from fegear.geometry.undercut import undercut_meeting
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
@@ -140,6 +141,16 @@ class Family:
     def lowest_roll_length(self, teeth: Array, shift: Array) -> Array:
         """Roll length where the flank of a gear without undercut begins [modules], (N,)."""
         return np.asarray(np.maximum(shift - self.least_shift_of(teeth), 0.0) / math.sin(self.pressure_angle))
+
+    def start_of_flank(self, places: Array) -> Array:
+        """Roll length where the flank begins [modules], (N,) of places (4, N); where the trochoid cuts it, undercut."""
+        found, below = self.lowest_roll_length(places[0], places[1]), self.undercut(places)
+        if below.any():
+            pitch, alpha = 0.5 * places[0, below], self.pressure_angle
+            base, height = pitch * math.cos(alpha), places[1, below] - self._rack.tip_centre_depth
+            tangent = math.tan(alpha) + (height - self.rounding * math.sin(alpha)) / (base * math.sin(alpha))
+            found[below] = base * undercut_meeting(-tangent, self.rounding / pitch, alpha)[1]
+        return found
 
     def turning(self, places: Array) -> Array:
         """Deflection of all teeth by how the body turns as a ring up to the root circle, per unit load and 1/E, (N,).

@@ -165,14 +165,12 @@ def known_pairs(
         own.append(layout.own(found.rows) / modulus[:, None])
         beside.append(np.stack([layout.neighbour(found.rows, k) for k in range(1, atlas.reach + 1)], axis=1)
                       / modulus[:, None, None, None])  # fmt: skip
-        ends = layout.ends(found.rows) if root_stress else atlas.ends(places)
-        lowest.append(m * np.where(family.undercut(places), ends[:, 0],
-                                   family.lowest_roll_length(places[0], places[1])))  # fmt: skip
+        lowest.append(m * family.start_of_flank(places))
         errors.append(found.errors)
-        length.append(ends[:, 1])
         nearest.append(np.where(family.undercut(places), POINT, 0.0))
         if root_stress:
             stress.append(layout.stresses(found.rows))
+            length.append(layout.ends(found.rows)[:, 1])
     base = 0.5 * pairs.teeth * m * cosine
     slope = log_slope(family.poisson_ratio, family.plane) / pairs.young_modulus
     flanks = ManyFlanks(

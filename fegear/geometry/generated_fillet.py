@@ -22,6 +22,7 @@ from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Curve, Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
 from fegear.geometry.rack import BasicRack, transverse_angle
+from fegear.geometry.undercut import undercut_meeting
 
 #: Profile shift by which a rack may lie below the undercut line and cut nothing: round-off of units and conversions.
 NO_UNDERCUT = 1e-9
@@ -200,6 +201,9 @@ def meeting(trochoid: Trochoid, flank: RackFlankLine, tangent_roll: float) -> tu
     """
     if tangent_roll >= 0.0:
         return trochoid.end, tangent_roll
+    if trochoid.cos_helix == 1.0:
+        before, at = undercut_meeting([-tangent_roll], trochoid.rounding / trochoid.pitch_radius, flank.pressure_angle)
+        return trochoid.end - float(before[0]), float(at[0])
     from scipy.optimize import brentq  # late: a gear without undercut does without, and it takes a third of a second
 
     def radius(beta: float) -> float:

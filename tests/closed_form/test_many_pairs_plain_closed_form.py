@@ -15,7 +15,16 @@ import pytest
 from fegear.atlas import many_pairs as atlas_many
 from fegear.atlas.many_pairs import ManySpurPairs, known_pairs
 from fegear.atlas.shipped import shipped_atlas
-from fegear.contact.many import kernel, many_load_sharing, many_roots, over_fillets, over_mesh
+from fegear.contact.many import (
+    changes,
+    corners,
+    followed_peaks,
+    kernel,
+    many_load_sharing,
+    many_roots,
+    over_fillets,
+    over_mesh,
+)
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement
@@ -49,13 +58,14 @@ class Unwritten:
 @pytest.fixture(autouse=True)
 def plain(monkeypatch):
     """None of them compiled, whether another test of this process has compiled them or not."""
-    for module in (kernel, over_mesh, over_fillets):
+    for module in (corners, kernel, changes, over_mesh, over_fillets, followed_peaks):
         for name, function in list(vars(module).items()):
             if callable(function):
                 monkeypatch.setattr(module, name, getattr(function, "py_func", function))
-        monkeypatch.setattr(module, "np", Unwritten())
-    own = {name: function for module in (over_mesh, over_fillets) for name, function in vars(module).items()
-           if inspect.isfunction(function)}  # fmt: skip
+        if hasattr(module, "np"):
+            monkeypatch.setattr(module, "np", Unwritten())
+    own = {name: function for module in (over_mesh, over_fillets, followed_peaks)
+           for name, function in vars(module).items() if inspect.isfunction(function)}  # fmt: skip
     for module in (many_load_sharing, many_roots):
         monkeypatch.setattr(module, "compiled", lambda: own)
 
@@ -122,7 +132,7 @@ def test_positions_are_those_of_each_pair(pairs, many, corners, reliefs):
 
 def test_errors_over_the_mesh_are_those_of_each_pair(pairs, many):
     known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS)
-    found = many_load_sharing.transmission_errors(known.engagements, LOADS[1:], waves=1, samples=8, order=3)
+    found = many_load_sharing.transmission_errors(known.engagements, LOADS[1:], waves=1, samples=16, order=3)
     for i, pair in enumerate(pairs):
         exact = transmission_error(_engagement(pair, True, RELIEFS, i), LOADS[1], 8)
         assert found.mean[i, 0] == pytest.approx(exact.mean, rel=8e-4)
@@ -143,6 +153,23 @@ def test_largest_root_stresses_are_those_of_a_pair(pairs, many):
         assert found.tension[m, 0, 0] == pytest.approx(tension, rel=1e-5)
         assert found.compression[m, 0, 0] == pytest.approx(compression, rel=1e-5)
         assert abs(found.tension_range[m, 0, 0] - float(each.tension_range[0])) < 1e-5 * tension
+    assert np.isnan(found.tension[:, 1]).all()
+
+
+@pytest.mark.dear
+def test_followed_root_stresses_are_those_of_a_pair_to_round_off(pairs, many):
+    known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS, root_stress=True)
+    fillets = replace(known.fillets, length=known.fillets.length * np.array([1.0, np.nan]))
+    found = many_roots.root_stresses(known.engagements, fillets, LOADS[1:], samples=4, followed=True)
+    one = _engagement(pairs[0], True, RELIEFS, 0)
+    sources = {member: (one.compliance.source(member),) for member in ("driver", "driven")}
+    states = loaded_states(one, (), [LOADS[1]], with_peaks(one, LOADS[1], roll_positions(one, 4), sources))
+    for m, member in enumerate(("driver", "driven")):
+        each = tooth_stress(one, states, member, estimates=False)
+        tension, compression = float(each.largest_tension[0]), float(each.largest_compression[0])
+        assert found.tension[m, 0, 0] == pytest.approx(tension, rel=1e-12)
+        assert found.compression[m, 0, 0] == pytest.approx(compression, rel=1e-12)
+        assert abs(found.tension_range[m, 0, 0] - float(each.tension_range[0])) < 1e-12 * tension
     assert np.isnan(found.tension[:, 1]).all()
 
 

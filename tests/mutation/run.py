@@ -54,6 +54,9 @@ NO_TESTS = 5
 #: Functions that numba compiles leave no trace: those who call them do.
 CALLERS = {
     "fegear/dynamics/motion/kernel/": "fegear/dynamics/motion/motion.py",
+    "fegear/contact/many/corners.py": "fegear/contact/many/many_load_sharing.py",
+    "fegear/contact/many/changes.py": "fegear/contact/many/many_load_sharing.py",
+    "fegear/contact/many/followed_peaks.py": "fegear/contact/many/many_roots.py",
     "fegear/contact/many/kernel.py": "fegear/contact/many/many_load_sharing.py",
     "fegear/contact/many/over_mesh.py": "fegear/contact/many/many_load_sharing.py",
     "fegear/contact/many/over_fillets.py": "fegear/contact/many/many_roots.py",

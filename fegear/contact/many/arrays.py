@@ -36,7 +36,7 @@ class ManyFlanks(ReadOnlyArrays):
     beside : ndarray, shape (2, N, K, 14, 14)
         Chebyshev coefficients of c_k(p, q), k = 1 to K [m^2/N].
     lowest, highest, base_radius : ndarray, shape (2, N)
-        Roll lengths of the flank's ends; r_b [m].
+        Roll lengths of the flank's ends, rising toward the tip, negative of internal gears; r_b [m].
     log_slope : ndarray, shape (2, N)
         kappa [m^2/N].
     plane_modulus : ndarray, shape (2, N)
@@ -50,6 +50,11 @@ class ManyFlanks(ReadOnlyArrays):
     base_radius: Array
     log_slope: Array
     plane_modulus: Array
+
+    @property
+    def side(self) -> Array:
+        """1 of external gears, -1 of internal ones, shape (2, N)."""
+        return np.where(self.highest < 0.0, -1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,14 +104,15 @@ class ManyEngagements(ReadOnlyArrays):
     face_width: Array
     reliefs: ManyReliefs | None = None
     corner_contact: bool = True
-    #: What the kernel reads of each pair, shape (N, 29): see `fegear.contact.many.kernel`.
+    #: What the kernel reads of each pair, shape (N, 32): see `fegear.contact.many.corners`.
     numbers: Array = field(init=False)
 
     def __post_init__(self) -> None:
         """Put together what the kernel reads of each pair."""
         f = self.flanks
-        angle = np.arccos(np.minimum(f.base_radius.sum(axis=0) / self.centre_distance, 1.0))
-        at_pitch = f.base_radius * np.tan(angle)
+        side = f.side
+        angle = np.arccos(np.minimum(np.abs((side * f.base_radius).sum(axis=0)) / self.centre_distance, 1.0))
+        at_pitch = side * f.base_radius * np.tan(angle)
         tip = np.hypot(f.base_radius, f.highest)
         # The tip's corner has a right angle and the flank's own pressure angle.
         soft = 0.5 * np.pi * _wedge_slope(0.5 * np.pi + np.arccos(f.base_radius / tip)) - 1.0
@@ -126,7 +132,7 @@ class ManyEngagements(ReadOnlyArrays):
             tip[0], tip[1], by_tip[0] <= 1e-9 * pitch, by_tip[1] <= 1e-9 * pitch, f.lowest[0], f.highest[0],
             f.lowest[1], f.highest[1], modulus, f.log_slope[0], f.log_slope[1], soft[0], soft[1],
             self.face_width, self.module,
-            relief[0, 0], relief[1, 0], relief[2, 0], relief[0, 1], relief[1, 1], relief[2, 1],
+            relief[0, 0], relief[1, 0], relief[2, 0], relief[0, 1], relief[1, 1], relief[2, 1], *side, angle,
         ], axis=1)  # fmt: skip
         object.__setattr__(self, "numbers", np.ascontiguousarray(numbers, dtype=float))
 
@@ -143,14 +149,14 @@ def engagements_of(engagements: Sequence[Engagement]) -> ManyEngagements:
     Raises
     ------
     InputError
-        If one of them is internal, its tips are rounded, or its compliance is that of a formula.
+        If the tips of one of them are rounded, or its compliance is that of a formula.
     """
     sources = [(one.compliance.driver, one.compliance.driven) for one in engagements]
     known = [source for both in sources for source in both if isinstance(source, FiniteElementCompliance)]
     gears = [(one.pair.driver, one.pair.driven) for one in engagements]
     rounded = any(gear.tooth.tip_rounding for both in gears for gear in both)
-    if len(known) < 2 * len(sources) or rounded or any(one.pair.internal for one in engagements):
-        raise InputError("pairs", "one of them", "must be external, of solved gears with sharp tips")
+    if len(known) < 2 * len(sources) or rounded:
+        raise InputError("pairs", "one of them", "must be of solved gears with sharp tips")
 
     def each(of: Callable[[FiniteElementCompliance], object]) -> Array:
         return np.array([[of(both[i]) for both in sources] for i in (0, 1)], dtype=float)  # type: ignore[arg-type]  # all are finite elements: looked at above

@@ -1,6 +1,6 @@
 """Load sharing of one pair after the other, as machine code (numba): plain Python on arrays and numbers.
 
-What is computed is that of `contact.plane`: contacts on the path and at tip corners beyond it (`meshing`, `corner`),
+What is computed is that of `contact.plane`: contacts on the path and at tip corners beyond it (`meshing`, `corners`),
 compliances (`pair_compliance`), the contact's law at corners (`edge_law`), active sets with Newton's method
 (`load_sharing`). One load is the reference of all compliances, so that shares of it are what is solved for.
 """
@@ -14,11 +14,40 @@ import math
 
 import numpy as np
 
-#: What a pair's numbers are, in their order.
-(
-    AT1, AT2, PITCH, START, END, RB1, RB2, DISTANCE, TIP1, TIP2, EARLY, LATE, LOW1, HIGH1, LOW2, HIGH2, MODULUS, KAPPA1,
-    KAPPA2, SOFT1, SOFT2, FACE, MODULE, AMOUNT1, BEGIN1, POWER1, AMOUNT2, BEGIN2, POWER2,
-) = range(29)  # fmt: skip
+from fegear.contact.many.corners import (
+    AMOUNT1,
+    AMOUNT2,
+    AT1,
+    AT2,
+    BEGIN1,
+    BEGIN2,
+    EARLY,
+    END,
+    FACE,
+    HIGH1,
+    HIGH2,
+    KAPPA1,
+    KAPPA2,
+    LATE,
+    LIMIT,
+    LOW1,
+    LOW2,
+    MODULE,
+    MODULUS,
+    PITCH,
+    POWER1,
+    POWER2,
+    RB1,
+    RB2,
+    SIDE1,
+    SIDE2,
+    SOFT1,
+    SOFT2,
+    START,
+    corner_at,
+    corner_of,
+)
+
 #: Pairs in reach at most, and numbers of one: present, both roll lengths, diagonal, gap, tilt, gamma, room.
 MOST, NUMBERS = 7, 8
 HERE, LENGTH1, LENGTH2, DIAGONAL, GAP, TILT, WEDGE, ROOM = range(NUMBERS)
@@ -89,98 +118,6 @@ def beside_at(coefficients, p, q):
     return total
 
 
-def triangle_angle(s, a, own, other):
-    """Angle at a gear's centre; as `corner._triangle_angle`."""
-    across = math.sqrt(max((s - a) * (s - own), 0.0))
-    return 2.0 * math.atan2(across, math.sqrt(max(s * (s - other), 0.0)))
-
-
-def difference(of_cosines, total):
-    """Difference of two angles by that of their cosines and by their sum; as `corner._difference`."""
-    sine = math.sin(0.5 * total)
-    return 2.0 * math.asin(min(max(-of_cosines / (2.0 * sine), -1.0), 1.0)) if sine > 0.0 else 0.0
-
-
-def turned(place, start, way, a, r, base):
-    """By how much the tip's and the flank's gear have turned with the corner at a roll length of the flank, and slopes.
-
-    As `corner._turned`; with the roll length where the way begins, and both angles there.
-    """
-    rho, first = math.hypot(base, place), math.hypot(base, start)
-    s = 0.5 * (a + r + rho)
-    at_tip, at_flank, t = triangle_angle(s, a, r, rho), triangle_angle(s, a, rho, r), place / base
-    farther = (place - start) * (place + start)
-    of_tip = difference(-farther / (2.0 * a * r), at_tip + way[0])
-    bent = 1.0 - (a - r) * (a + r) / (rho * first)
-    of_flank = difference(farther / (rho + first) / (2.0 * a) * bent, at_flank + way[1])
-    step = (place - start) / base
-    of_flank -= step - math.atan(step / (1.0 + place * start / (base * base)))
-    along = place / rho
-    tip_grows = rho * along / (a * r * math.sin(at_tip))
-    flank_grows = -0.5 * (1.0 - (a * a - r * r) / (rho * rho)) / a * along / math.sin(at_flank)
-    return of_tip, of_flank, tip_grows, flank_grows - t * t / (1.0 + t * t) / base
-
-
-def corner_way(start, top, a, r, base_tip, base, out):
-    """What is the same for all places of a corner's way: both angles where it begins, and how far it reaches."""
-    rho = math.hypot(base, start)
-    s = 0.5 * (a + r + rho)
-    out[0], out[1], out[2] = triangle_angle(s, a, r, rho), triangle_angle(s, a, rho, r), 0.0
-    if top > start:
-        end = turned(top, start, out, a, r, base)
-        out[2] = 0.5 * (base_tip * end[0] + base * end[1])
-
-
-def corner_limit(deepest, way, start, top, a, r, base_tip, base):
-    """How far beyond the path a corner may touch that deflections bring nearer by so much at most, for certain."""
-    reach = way[2]
-    low, high = 0.0, reach
-    if reach > 0.0 and corner_at(reach, way, start, top, a, r, base_tip, base)[0] > deepest:
-        for _ in range(6):
-            middle = 0.5 * (low + high)
-            if corner_at(middle, way, start, top, a, r, base_tip, base)[0] > deepest:
-                high = middle
-            else:
-                low = middle
-    return high
-
-
-def corner_at(beyond, way, start, top, a, r, base_tip, base):
-    """Gap, roll length on the mate's flank and tilt of a tip corner so far beyond the path; as `corner.locate`.
-
-    An infinite gap where it has left the flank.
-    """
-    reach = way[2]
-    if reach <= 0.0 or beyond > reach * (1.0 + 1e-12):
-        return math.inf, top, 0.0
-    low, high = start, top
-    place = start + (top - start) * beyond / reach
-    gap = 0.0
-    for _ in range(60):
-        now = turned(place, start, way, a, r, base)
-        u_t, u_f = base_tip * now[0], base * now[1]
-        u, gap = 0.5 * (u_t + u_f), u_t - u_f
-        if u < beyond:
-            low = place
-        else:
-            high = place
-        slope = 0.5 * (base_tip * now[2] + base * now[3])
-        new = place + (beyond - u) / slope
-        step = abs(new - place)
-        if not low <= new <= high:
-            if step <= 1e-12 * base:
-                break
-            new = 0.5 * (low + high)
-        gap += (base_tip * now[2] - base * now[3]) * (new - place)
-        place = new
-        if step <= 1e-9 * base:
-            break
-    rho = math.hypot(base, place)
-    inside = min(max((rho * rho + r * r - a * a) / (2.0 * rho * r), -1.0), 1.0)
-    tilt = max(math.pi - math.acos(inside) + math.asin(base_tip / r) - math.atan2(base, place), 0.0)
-    return max(gap, 2.3e-308), place, tilt
-
-
 def edge_law(t, gamma, room):
     """Psi and its slope at a corner; as `edge_law.edge_law`."""
     g = min(gamma, _SOFTEST)
@@ -233,20 +170,16 @@ def contacts(n, own, ways, corners, load, numbers, first, x, state):
         if n[START] - slack <= at <= n[END] + slack:
             gap = 0.0
             if corners:
-                edge = max(-max((n[HIGH2] ** 2 - length2**2) / (2.0 * n[RB2]), 0.0),
-                           -max((n[HIGH1] ** 2 - length1**2) / (2.0 * n[RB1]), 0.0))  # fmt: skip
+                edge = max(-max(n[SIDE2] * (n[HIGH2] ** 2 - length2**2) / (2.0 * n[RB2]), 0.0),
+                           -max(n[SIDE1] * (n[HIGH1] ** 2 - length1**2) / (2.0 * n[RB1]), 0.0))  # fmt: skip
         elif corners:
             before, after = n[START] - at, at - n[END]
             tilt = 0.0
-            if 0.0 < before < min(n[PITCH], ways[0, 3]) and n[EARLY] > 0.0:
-                gap, length1, tilt = corner_at(
-                    before, ways[0], n[AT1] + n[START], n[HIGH1], n[DISTANCE], n[TIP2], n[RB2], n[RB1]
-                )
+            if 0.0 < before < min(n[PITCH], ways[0, LIMIT]) and n[EARLY] > 0.0:
+                gap, length1, tilt = corner_at(before, ways[0], corner_of(n, False))
                 curvature = 1.0 / length1 + 1.0 / n[HIGH2]
-            elif 0.0 < after < min(n[PITCH], ways[1, 3]) and n[LATE] > 0.0:
-                gap, length2, tilt = corner_at(
-                    after, ways[1], n[AT2] - n[END], n[HIGH2], n[DISTANCE], n[TIP1], n[RB1], n[RB2]
-                )
+            elif 0.0 < after < min(n[PITCH], ways[1, LIMIT]) and n[LATE] > 0.0:
+                gap, length2, tilt = corner_at(after, ways[1], corner_of(n, True))
                 curvature = 1.0 / length2 + 1.0 / n[HIGH1]
             edge = tilt / curvature
         one[HERE] = 1.0 if gap < math.inf else 0.0

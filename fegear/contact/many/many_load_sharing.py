@@ -12,7 +12,7 @@ import numpy as np
 
 from fegear.base.errors import MissingLibraryError
 from fegear.base.extras import install
-from fegear.contact.many import kernel, over_fillets, over_mesh
+from fegear.contact.many import changes, corners, followed_peaks, kernel, over_fillets, over_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -117,7 +117,7 @@ def placed(engagements: ManyEngagements, load: ArrayLike, at: ArrayLike) -> tupl
     """Load of each pair [N], shape (N,), and its roll positions [m], (N, P), of places in its base pitch (P,)."""
     n = engagements.numbers
     each = np.ascontiguousarray(np.broadcast_to(np.asarray(load, dtype=float), n.shape[:1]))
-    return each, n[:, kernel.START, None] + n[:, kernel.PITCH, None] * np.asarray(at, dtype=float)
+    return each, n[:, corners.START, None] + n[:, corners.PITCH, None] * np.asarray(at, dtype=float)
 
 
 def tables_of(engagements: ManyEngagements) -> tuple[Array, Array, Array, Array]:
@@ -141,9 +141,9 @@ def compiled() -> dict[str, Callable[..., Any]]:
         from fegear.contact.machine_code import machine_code
     except ImportError:
         raise MissingLibraryError(f"{install('motion')}.") from None
-    modules = (kernel, over_mesh, over_fillets)
+    modules = (corners, kernel, changes, over_mesh, over_fillets, followed_peaks)
     digest = hashlib.sha256(b"".join(Path(str(one.__file__)).read_bytes() for one in modules)).hexdigest()
-    long = (over_mesh.transmission_errors, over_fillets.root_stresses)
+    long = (over_mesh.transmission_errors, over_fillets.root_stresses, followed_peaks.followed_stresses)
     made: dict[object, Callable[..., Any]] = {
         function: machine_code(function, digest, _LONG if function in long else "")
         for module in modules
@@ -157,5 +157,6 @@ def compiled() -> dict[str, Callable[..., Any]]:
         "transmission_errors": over_mesh.transmission_errors,
         "shared_at": over_mesh.shared_at,
         "root_stresses": over_fillets.root_stresses,
+        "followed_stresses": followed_peaks.followed_stresses,
         "root_stress_at": over_fillets.root_stress_at,
     }

@@ -80,7 +80,7 @@ class ManyStressHistories(NamedTuple):
 
 
 def root_stresses(
-    engagements: ManyEngagements, fillets: ManyFillets, loads: ArrayLike, *, samples: int = 24
+    engagements: ManyEngagements, fillets: ManyFillets, loads: ArrayLike, *, samples: int = 24, followed: bool = False
 ) -> ManyRootStress:
     """Largest root stresses of each pair under each load, over the mesh.
 
@@ -93,6 +93,9 @@ def root_stresses(
         Along the line of action [N].
     samples : int
         Positions over a base pitch; where contact comes or goes, and the peaks between them, are added.
+    followed : bool
+        Whether positions and peaks are those of each pair alone, as of `contact.plane.tooth_stress` (64 samples there):
+        the same numbers, in some ten times the time.
 
     Raises
     ------
@@ -102,7 +105,7 @@ def root_stresses(
     count, given = engagements.module.size, np.asarray(loads, dtype=float)
     each = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[-1])))
     out = np.empty((count, each.shape[1], 2, 3))
-    compiled()["root_stresses"](
+    compiled()["followed_stresses" if followed else "root_stresses"](
         engagements.numbers, *tables_of(engagements), engagements.corner_contact, each, samples, *_along(fillets), out
     )
     return ManyRootStress(*(np.moveaxis(out[..., i], 2, 0) for i in range(3)))

@@ -14,23 +14,10 @@ import math
 
 import numpy as np
 
-from fegear.contact.many.kernel import (
-    END,
-    FACE,
-    HIGH1,
-    HIGH2,
-    LENGTH1,
-    LENGTH2,
-    LOW1,
-    LOW2,
-    MODULE,
-    MOST,
-    PITCH,
-    RB1,
-    RB2,
-    START,
-)
-from fegear.contact.many.over_mesh import begun, limited, pair_numbers, pieces, room_for, solved, tabulated
+from fegear.contact.many.changes import solved
+from fegear.contact.many.corners import END, FACE, HIGH1, HIGH2, LOW1, LOW2, MODULE, PITCH, RB1, RB2, START
+from fegear.contact.many.kernel import LENGTH1, LENGTH2, MOST
+from fegear.contact.many.over_mesh import begun, limited, pair_numbers, pieces, room_for, tabulated
 from fegear.fem.plane.root_stress import FORCES_OF_PRESSURE
 
 #: As of `fem.plane.root_stress` and `contact_width` [modules].

@@ -13,55 +13,40 @@ import math
 
 import numpy as np
 
-from fegear.contact.many.kernel import (
+from fegear.contact.many.changes import SIDE, changes, inserted, solved
+from fegear.contact.many.corners import (
     AMOUNT1,
     AMOUNT2,
     AT1,
     AT2,
     BEGIN1,
     BEGIN2,
-    DIAGONAL,
-    DISTANCE,
     EARLY,
     END,
     FACE,
-    GAP,
-    HERE,
     HIGH1,
     HIGH2,
     KAPPA1,
     KAPPA2,
     LATE,
+    LIMIT,
     LOW1,
     LOW2,
     MODULE,
     MODULUS,
-    MOST,
-    NUMBERS,
     PITCH,
     RB1,
     RB2,
-    ROOM,
+    REACH,
     START,
-    TILT,
-    TIP1,
-    TIP2,
-    WEDGE,
-    contacts,
     corner_limit,
+    corner_of,
     corner_way,
-    couple,
-    edge_law,
-    own_lengths,
-    share,
-    slopes,
 )
+from fegear.contact.many.kernel import MOST, NUMBERS, own_lengths, slopes
 
-#: Of the load, below which a pair bears none; how near places are one, and how far beside them both sides are looked
-#: at, in base pitches; as of `contact.plane.transmission_error`, `engagement` and `fourier`.
-_NO_SHARE, _APART, _SIDE = 1e-9, 1e-12, 1e-9
-#: To which part of a base pitch changes of contact are found, in so many steps at most.
-_FOUND, _MOST_STEPS = 1e-9, 40
+#: How near places are one, in base pitches; as of `contact.plane.engagement`.
+_APART = 1e-12
 #: Pieces of a base pitch at most, points on all of them.
 _PIECES, _POINTS = 40, 4000
 _UNEVEN = 8.0
@@ -73,57 +58,10 @@ def pair_numbers(n, ways, corners):
     ahead = math.ceil(ratio * (1.0 - 1e-12)) - 1
     if not corners:
         return 0, ahead + 1
-    early, late = ways[0, 2], ways[1, 2]
+    early, late = ways[0, REACH], ways[1, REACH]
     low = -max(1, min(math.ceil(early / n[PITCH]), 2))
     high = max(ahead, math.ceil(ratio + min(late / n[PITCH], 1.0)) - 1)
     return low, min(high - low + 1, MOST)
-
-
-def solved(n, own, ways, beside1, beside2, corners, load, numbers, first, x, state, c, v, work):
-    """Load sharing at a roll position: transmission error [m], and whether it was found."""
-    contacts(n, own, ways, corners, load, numbers, first, x, state)
-    couple(n, beside1, beside2, numbers, state, c)
-    half = 0.5 * (n[KAPPA1] + n[KAPPA2]) / n[FACE]
-    z, nearest, good = share(half, load, numbers, state, c, v, work)
-    return nearest + z * load, good
-
-
-def nearness(n, load, numbers, error, state, c, v, out):
-    """How firmly each pair is in contact; as `transmission_error._nearness`."""
-    half = 0.5 * (n[KAPPA1] + n[KAPPA2]) / n[FACE]
-    most = 0.0
-    for i in range(numbers):
-        out[i] = -math.inf
-        if state[i, HERE] > 0.0:
-            own = 0.0
-            for j in range(numbers):
-                if j != i and v[j] > 1e-19:
-                    own += c[i, j] * v[j] * load
-            if v[i] > 1e-19:
-                grown = math.log(v[i])
-                if state[i, TILT] > -math.inf:
-                    root = math.sqrt(v[i])
-                    grown -= 2.0 * edge_law(state[i, TILT] / root, state[i, WEDGE], state[i, ROOM] / root)[0]
-                own += (state[i, DIAGONAL] - half * grown) * v[i] * load
-                most = max(most, own)
-                out[i] = v[i] - _NO_SHARE
-            else:
-                out[i] = -1.0 - max(own + state[i, GAP] - error, 0.0)  # marked; brought over the deflection below
-    for i in range(numbers):
-        if -math.inf < out[i] <= -1.0:
-            out[i] = (out[i] + 1.0) / most
-
-
-def inserted(places, count, x):
-    """Put a place among ascending ones."""
-    if count >= places.size:
-        return count
-    i = count
-    while i > 0 and places[i - 1] > x:
-        places[i] = places[i - 1]
-        i -= 1
-    places[i] = x
-    return count + 1
 
 
 def reduced(n, x):
@@ -185,9 +123,9 @@ def tabulated(n, own1, own2, x, y_slopes, ways, work):
     """Roll lengths and slopes of both gears' c_0, and the ways of both corners, in place."""
     ways[:] = 0.0
     if n[EARLY] > 0.0:
-        corner_way(n[AT1] + n[START], n[HIGH1], n[DISTANCE], n[TIP2], n[RB2], n[RB1], ways[0])
+        corner_way(n, False, ways[0])
     if n[LATE] > 0.0:
-        corner_way(n[AT2] - n[END], n[HIGH2], n[DISTANCE], n[TIP1], n[RB1], n[RB2], ways[1])
+        corner_way(n, True, ways[1])
     own_lengths(n[RB1], n[MODULE], n[LOW1], n[HIGH1], x[0])
     own_lengths(n[RB2], n[MODULE], n[LOW2], n[HIGH2], x[1])
     slopes(x[0], own1, y_slopes[0], work[0], work[1])
@@ -202,59 +140,9 @@ def limited(n, own, load, ways):
     compliance = highest1 + highest2 + (n[KAPPA1] + n[KAPPA2]) * wider
     deepest = load / n[FACE] * compliance + abs(n[AMOUNT1]) + abs(n[AMOUNT2])
     if n[EARLY] > 0.0:
-        start = n[AT1] + n[START]
-        ways[0, 3] = corner_limit(deepest, ways[0], start, n[HIGH1], n[DISTANCE], n[TIP2], n[RB2], n[RB1])
+        ways[0, LIMIT] = corner_limit(deepest, ways[0], corner_of(n, False))
     if n[LATE] > 0.0:
-        start = n[AT2] - n[END]
-        ways[1, 3] = corner_limit(deepest, ways[1], start, n[HIGH2], n[DISTANCE], n[TIP1], n[RB1], n[RB2])
-
-
-def changes(  # noqa: C901  (one search: what it shares is its local variables)
-    n, own, ways, beside1, beside2, corners, load, numbers, first, samples, edges, count, state, c, v, work, found
-):
-    """Places where a pair comes into contact or leaves it, between given ones; how many [m]."""
-    known = 0
-    aside = _SIDE * n[PITCH]
-    last, now, middle = np.empty(MOST), np.empty(MOST), np.empty(MOST)
-    for i in range(count):
-        a, b = edges[i], edges[i + 1] if i + 1 < count else n[START] + n[PITCH]
-        if not b - a > 4.0 * aside:
-            continue
-        cells = max(4, round(samples * (b - a) / n[PITCH])) + 1
-        before = 0.0
-        for k in range(cells + 1):
-            at = a + aside + (b - a - 2.0 * aside) * k / cells
-            error, _ = solved(n, own, ways, beside1, beside2, corners, load, numbers, first, at, state, c, v, work)
-            nearness(n, load, numbers, error, state, c, v, now)
-            if k > 0:
-                for j in range(numbers):
-                    if (last[j] > 0.0) == (now[j] > 0.0):
-                        continue
-                    low, high, low_f, high_f, side = before, at, last[j], now[j], 0
-                    for _ in range(_MOST_STEPS):
-                        if high - low <= _FOUND * n[PITCH]:
-                            break
-                        share_of = low_f / (low_f - high_f) if -math.inf < min(low_f, high_f) else 0.5
-                        mid = low + min(max(share_of, 0.02), 0.98) * (high - low)
-                        error, _ = solved(
-                            n, own, ways, beside1, beside2, corners, load, numbers, first, mid, state, c, v, work
-                        )
-                        nearness(n, load, numbers, error, state, c, v, middle)
-                        if (middle[j] > 0.0) == (last[j] > 0.0):
-                            low, low_f = mid, middle[j]
-                            if side < 0:
-                                high_f *= 0.5
-                            side = -1
-                        else:
-                            high, high_f = mid, middle[j]
-                            if side > 0:
-                                low_f *= 0.5
-                            side = 1
-                    known = inserted(found, known, 0.5 * (low + high))
-            before = at
-            for j in range(numbers):
-                last[j] = now[j]
-    return known
+        ways[1, LIMIT] = corner_limit(deepest, ways[1], corner_of(n, True))
 
 
 def pieces(
@@ -284,7 +172,7 @@ def transmission_errors(
 
     Parameters
     ----------
-    numbers_of : ndarray, shape (N, 29)
+    numbers_of : ndarray, shape (N, 32)
     own1, own2, beside1, beside2 : ndarray
         Of `ManyFlanks`, by gear.
     corners : bool
@@ -322,7 +210,7 @@ def transmission_errors(
             for i in range(count):
                 a, b = every[i], every[i + 1] if i + 1 < count else n[START] + n[PITCH]
                 parts = max(1, math.ceil(1.5 * waves * (b - a) / n[PITCH] / (0.16 * order)))
-                aside = min(_SIDE * n[PITCH] / (b - a), 0.5)
+                aside = min(SIDE * n[PITCH] / (b - a), 0.5)
                 for k in range(-1, parts * order + 1):
                     if k < 0 or k == parts * order:
                         at, weight = (aside if k < 0 else 1.0 - aside), 0.0

@@ -13,8 +13,8 @@ u_T - u_F; the position is taken midway, u = (u_T + u_F)/2, so that a pair and i
 an offset curve: the same formulas hold for its centre and the offset involute, which is an involute of the same base
 circle.
 
-In an internal pair the path may end beyond the pitch point: rho then falls before it rises, and it is the angle of the
-corner from the centre line that both positions follow from. The ring's roll lengths are negative, and so is its inv.
+In an internal pair the path may end beyond the pitch point: rho then falls before it rises, and it is the angle by
+which the corner has turned that both positions follow from. The ring's roll lengths are negative, and so is its inv.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from fegear.base.arrays import Array
 from fegear.base.tally import tallied
 from fegear.contact.plane.spline import Spline, spline
 from fegear.geometry.gear import Gear
-from fegear.geometry.involute import polar_angle
 from fegear.geometry.pair import GearPair, Member
 
 
@@ -101,15 +100,12 @@ class CornerContact:
 
     @cached_property
     def _span(self) -> tuple[float, float]:
-        """First and last place on the corner's way, as `_place` takes them."""
+        """First and last place on the corner's way, as `_turned` takes them."""
         return self._lengths
 
-    def _place(self, at: Array) -> tuple[Array, Array, Array]:
-        """Turns of the tip's and the flank's gear [rad], and the (offset) flank's roll length [m], which `at` is."""
-        a, r, rbf = self.pair.centre_distance, self._corner_radius, self.pair.gear(self.flank_of).base_radius
-        rho = np.hypot(rbf, at)
-        s = 0.5 * (a + r + rho)
-        return _triangle_angle(s, a, r, rho), _triangle_angle(s, a, rho, r) - polar_angle(at / rbf), at
+    def _length(self, at: Array) -> Array:
+        """Roll length of the (offset) flank at a place [m], which the place is."""
+        return at
 
     def _turned(self, at: Array) -> tuple[Array, Array]:
         """By how much the tip's and the flank's gear have turned since the path's end [rad].
@@ -126,8 +122,13 @@ class CornerContact:
         of_tip = _difference(-farther / (2.0 * a * r), tips)
         bent = 1.0 - (a - r) * (a + r) / (rho * first)
         of_flank = _difference(farther / (rho + first) / (2.0 * a) * bent, flanks)
-        step = (at - start) / rb
-        return of_tip, of_flank - (step - np.arctan(step / (1.0 + at * start / (rb * rb))))
+        return of_tip, of_flank - self._rolled_back(at)
+
+    def _rolled_back(self, length: Array) -> Array:
+        """Difference of the polar angles of the (offset) flank at a roll length [m] and where the path ends [rad]."""
+        start, rb = self._lengths[0], self.pair.gear(self.flank_of).base_radius
+        step = (length - start) / rb
+        return np.asarray(step - np.arctan(step / (1.0 + length * start / (rb * rb))))
 
     def _rolled(self, at: Array) -> tuple[Array, Array]:
         """Both gears' rolled lengths u_T, u_F at a place on the corner's way."""
@@ -177,7 +178,7 @@ class CornerContact:
             place = np.clip(place + wanted - table(0.5 * (u_t + u_f)), *self._span)
         u_t, u_f = self._rolled(place)
         gap = np.where(u > self.reach * (1.0 + 1e-12), np.inf, np.maximum(u_t - u_f, 0.0))
-        return gap, self._place(place)[2] - self.rounding, self._tilt(place)
+        return gap, self._length(place) - self.rounding, self._tilt(place)
 
     def _tilt(self, at: Array) -> Array:
         """Angle between the tangents from the corner to the two base circles [rad]."""
@@ -192,44 +193,51 @@ class CornerContact:
 
 
 class InternalCornerContact(CornerContact):
-    """The same in an internal pair, followed by the angle of the corner from the centre line.
+    """The same in an internal pair, followed by the angle that the corner has turned by since the path's end.
 
     The path may end beyond the pitch point: the radius of the contact then falls before it rises. Where the pinion's
     centre lies between that of the ring and the contact, angles are counted from the centre line that runs on.
     """
 
     @cached_property
-    def _span(self) -> tuple[float, float]:
-        pair, gear, r = self.pair, self.pair.gear(self.tip_of), self._corner_radius
+    def _first(self) -> float:
+        """Angle of the corner from the centre line at the path's end [rad]."""
+        pair, gear = self.pair, self.pair.gear(self.tip_of)
         length = float(pair.flank_curvature_radius(self._end, self.tip_of)) - self.rounding
-        first = math.atan(length / gear.base_radius) - gear.tooth.side * pair.working_pressure_angle
-        top = np.hypot(pair.gear(self.flank_of).base_radius, self._lengths[1])
-        last = float(_triangle_angle(0.5 * (pair.centre_distance + r + top), pair.centre_distance, r, top))
-        return first, max(last if gear.tooth.internal else math.pi - last, first)
-
-    def _place(self, at: Array) -> tuple[Array, Array, Array]:
-        """Turns of the tip's and the flank's gear [rad], and the (offset) flank's roll length [m]; `at` is an angle."""
-        pair, r, flank = self.pair, self._corner_radius, self.pair.gear(self.flank_of)
-        along = r * np.cos(at) - flank.tooth.side * pair.centre_distance
-        across = r * np.sin(at)
-        rho, rb = np.hypot(along, across), flank.base_radius
-        length = flank.tooth.side * np.sqrt(np.maximum((rho - rb) * (rho + rb), 0.0))
-        return at, np.arctan2(across, along) - polar_angle(length / rb), length
+        return math.atan(length / gear.base_radius) - gear.tooth.side * pair.working_pressure_angle
 
     @cached_property
-    def _start(self) -> tuple[Array, Array, Array]:
-        """Where the path ends."""
-        return self._place(np.asarray(self._span[0]))
+    def _span(self) -> tuple[float, float]:
+        pair, r = self.pair, self._corner_radius
+        top = np.hypot(pair.gear(self.flank_of).base_radius, self._lengths[1])
+        last = float(_triangle_angle(0.5 * (pair.centre_distance + r + top), pair.centre_distance, r, top))
+        return 0.0, max((last if pair.gear(self.tip_of).tooth.internal else math.pi - last) - self._first, 0.0)
+
+    @property
+    def _lever(self) -> float:
+        """r a, the sign that of the mate's flank [m^2]."""
+        return self.pair.gear(self.flank_of).tooth.side * self._corner_radius * self.pair.centre_distance
+
+    def _length(self, at: Array) -> Array:
+        """By the law of cosines, rho^2 - rho_0^2 = -2 r a (cos(A) - cos(A_0)) [m]."""
+        farther = 4.0 * self._lever * np.sin(0.5 * at) * np.sin(self._first + 0.5 * at)
+        side = self.pair.gear(self.flank_of).tooth.side
+        return np.asarray(side * np.sqrt(np.maximum(self._lengths[0] ** 2 + farther, 0.0)))
 
     def _turned(self, at: Array) -> tuple[Array, Array]:
-        (start_t, start_f, _), (now_t, now_f, _) = self._start, self._place(at)
-        return now_t - start_t, now_f - start_f
+        """By the lines from the mate's centre to the corner, then and now: their cross and their scalar product."""
+        r, first, lever = self._corner_radius, self._first, self._lever
+        away = lever / r
+        along, across = r * math.cos(first) - away, r * math.sin(first)
+        cross = r * r * np.sin(at) - 2.0 * lever * np.sin(0.5 * at) * np.cos(first + 0.5 * at)
+        scalar = along * (r * np.cos(first + at) - away) + across * r * np.sin(first + at)
+        return at, np.arctan2(cross, scalar) - self._rolled_back(self._length(at))
 
     def _tilt(self, at: Array) -> Array:
         """By how far both normals have turned since the path's end: the flank's along its involute, too [rad]."""
-        u_t, u_f = self._rolled(at)
-        rb_t, rb_f = (self.pair.gear(member).base_radius for member in (self.tip_of, self.flank_of))
-        return np.abs(u_t / rb_t - (u_f + self._place(at)[2] - self._lengths[0]) / rb_f)
+        of_tip, of_flank = self._turned(at)
+        rb = self.pair.gear(self.flank_of).base_radius
+        return np.abs(of_tip - of_flank - (self._length(at) - self._lengths[0]) / rb)
 
 
 def corner_contact(pair: GearPair, tip_of: Member) -> CornerContact:

@@ -16,7 +16,7 @@ import numpy as np
 from fegear.atlas.many_pairs import known_pairs, spur_pairs
 from fegear.atlas.shipped import SHIPPED, family_of, shipped_atlas
 from fegear.atlas.thin_slices import sliced_errors
-from fegear.contact.many import kernel
+from fegear.contact.many import corners
 from fegear.contact.many.arrays import ManyReliefs
 from fegear.contact.many.many_load_sharing import transmission_errors
 from fegear.contact.many.many_roots import root_stresses
@@ -259,11 +259,11 @@ def _golden(of: Callable[[Array], Array], low: Array, high: Array) -> Array:
 
 def _lengths(engagements: ManyEngagements) -> tuple[Array, Array]:
     """Of short and long reliefs of both gears along the line of action, from the ends of their flanks [m]."""
-    start, end, pitch = (engagements.numbers[:, k] for k in (kernel.START, kernel.END, kernel.PITCH))
+    start, end, pitch = (engagements.numbers[:, k] for k in (corners.START, corners.END, corners.PITCH))
     whole = np.maximum(np.floor((end - start) / pitch), 1.0) * pitch
     middle = 0.5 * (start + end)
     tips = engagements.flanks.highest
-    at_pitch = np.stack([engagements.numbers[:, kernel.AT1], engagements.numbers[:, kernel.AT2]])
+    at_pitch = np.stack([engagements.numbers[:, corners.AT1], engagements.numbers[:, corners.AT2]])
     flank = tips - engagements.flanks.lowest
     short, long = (
         np.clip(tips - at_pitch + np.stack(place), _SHORTEST * flank, _LONGEST * flank)
