@@ -1,4 +1,4 @@
-"""Where undercut flanks begin: where trochoid and involute meet by their own points, a slight undercut to its digits."""
+"""Undercut flanks begin where trochoid and involute meet by their own points, slight undercut to its last digits."""
 
 from __future__ import annotations
 

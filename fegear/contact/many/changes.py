@@ -111,8 +111,10 @@ def dips(values, x, k, beside, other):
     other : bool
         Whether that is the cell's second end.
     """
-    at = values[k + 1] if other else values[k]
-    return any(turns(values, x, k, j) and abs(beside[j]) < abs(at[j]) for j in range(at.size))
+    at, found = values[k + 1] if other else values[k], False
+    for j in range(at.size):
+        found = found or (turns(values, x, k, j) and abs(beside[j]) < abs(at[j]))
+    return found
 
 
 def narrowed_to(

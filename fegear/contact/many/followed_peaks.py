@@ -157,8 +157,8 @@ def followed_stresses(  # noqa: C901  (one search: what it shares is its local v
                             low, middle, high, value = where[best - 1], where[best], where[best + 1], reached[best]
                         last[0, f], last[1, f] = middle, value
                     # the peak itself is one of the positions of all four curves
-                    peak = last[0, first_of_tied(last[0], last[1], followed)]
-                    place[count + 2 * member + side] = peak
+                    best = int(first_of_tied(last[0], last[1], followed))
+                    place[count + 2 * member + side] = last[0, best]
             for i in range(count, count + 4):
                 solved(n, own, ways, beside1[p], beside2[p], corners, load, numbers, first, place[i], state, c, v, work)
                 stressed(
