@@ -16,7 +16,7 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.cluster import on_cluster
-from fegear.engine.processes import Job, Reply, cores, here, on_cores, opened
+from fegear.engine.processes import Job, Reply, cores, here, on_cores, opened, tidy
 from fegear.engine.progress import Progress
 
 Todo = Mapping[int, object]
@@ -157,7 +157,9 @@ def _replies(
     if not todo:
         return
     if executor.here:
-        yield from ((i, here(function, point, cache if shares_cache else None)) for i, point in todo.items())
+        for i, point in todo.items():
+            yield i, here(function, point, cache if shares_cache else None)
+            tidy()
     elif executor.scheduler is not None:
         # Folders of this machine mean nothing on others: workers of a cluster keep solutions where they keep theirs.
         yield from on_cluster(Job(function, shares_cache, cache.disk is not None, None), todo, executor.scheduler)

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from fegear.base.code_version import code_version, made_by, unlike
 from fegear.base.errors import FegearError, MissingLibraryError
+from fegear.base.memory import give_back, resident
 from fegear.base.one_thread import one_thread
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import SolutionCache, cache_on_disk
@@ -38,6 +39,10 @@ if TYPE_CHECKING:
 _alone = threading.Lock()
 #: What a worker process has solved so far, by the folder where it keeps it; a worker lives for many points.
 _caches: dict[str, SolutionCache] = {}
+#: By how much a process may grow before it is tidied, and what solutions not used since the last time may take [bytes].
+_GROWN, _KEPT = 256 << 20, 512 << 20
+#: What a process had left when it was tidied last [bytes].
+_left = {"memory": 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +123,7 @@ class Job:
             cache = self._cache()
             before = cache.shapes.state
             reply = here(self.function, point, cache if self.shares_cache else None)
+            tidy(cache)
             return replace(reply, shapes=cache.shapes.since(before).state)
 
     def _cache(self) -> SolutionCache:
@@ -127,6 +133,23 @@ class Job:
                 cache_on_disk(Path(self.folder) if self.folder else None) if self.on_disk else SolutionCache()
             )
         return _caches[name]
+
+
+def tidy(cache: SolutionCache | None = None) -> None:
+    """Bound the memory of a process that computes point after point: solutions that are free, in pieces, would add up.
+
+    Parameters
+    ----------
+    cache : SolutionCache, optional
+        Solutions in it that were not used since the last time go, too, those unused for longest first.
+    """
+    now = resident()
+    if now is None or now < _left["memory"] + _GROWN:
+        return
+    if cache is not None:
+        cache.shrink(_KEPT)
+    give_back()
+    _left["memory"] = resident() or now
 
 
 def opened(payload: bytes) -> object:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import FegearError, InputError
+from fegear.base.memory import give_back
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
@@ -149,7 +150,7 @@ class Worker:
         if self._untidy >= _STROKES:
             self._untidy = 0
             if self._cache.shrink(_MOST):
-                _give_back()
+                give_back()
 
     def _do(self, job: Job) -> None:
         """In here, and nowhere else, a computation that is unwanted is given up."""
@@ -450,15 +451,6 @@ class Worker:
 def _is_stop(to: Newer) -> bool:
     """What is asked for beside the case is finished before another case, and given up for none."""
     return isinstance(to, Stop)
-
-
-def _give_back() -> None:
-    """Hand freed memory back to the system; the C library keeps it otherwise, in pieces."""
-    import ctypes
-
-    gc.collect()
-    with contextlib.suppress(OSError, AttributeError, TypeError):  # only glibc has it
-        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _load() -> None:

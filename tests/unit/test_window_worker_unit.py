@@ -110,7 +110,7 @@ def test_faults_are_said_in_a_sentence_and_what_may_be_half_done_is_forgotten(wo
 def test_what_is_kept_is_bounded_at_rest_and_after_every_24th_answer_that_moves(working, monkeypatch):
     shrunk, given = [], []
     monkeypatch.setattr(working, "_cache", SimpleNamespace(shrink=lambda most: shrunk.append(most) or True))
-    monkeypatch.setattr(worker, "_give_back", lambda: given.append(1))
+    monkeypatch.setattr(worker, "give_back", lambda: given.append(1))
     for _ in range(23):
         working._tidy(moving=True)
     assert shrunk == []
