@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
 
+#: Roll angle up to which an undercut is as slight as in the limit [rad].
+_SLIGHT = 1e-10
 #: Up to which angle [rad] differences of the third order are series, and how many terms they have.
 _SERIES, _TERMS = 0.25, 15
 _STEPS = 200
@@ -46,7 +48,8 @@ def undercut_meeting(slight: ArrayLike, rounding: ArrayLike, pressure_angle: flo
 
     Notes
     -----
-    Where the trochoid comes out nowhere on the flank, its own end: e = 0 and t = s.
+    Where the trochoid comes out nowhere on the flank, its own end: e = 0 and t = s. In the limit of a slight undercut
+    t = x s with 2 x^3 + 3 x^2 = 1: half of it.
     """
     s, k = np.broadcast_arrays(np.asarray(slight, dtype=float), np.asarray(rounding, dtype=float))
     sine, cosine = np.sin(pressure_angle), np.cos(pressure_angle)
@@ -72,7 +75,8 @@ def undercut_meeting(slight: ArrayLike, rounding: ArrayLike, pressure_angle: flo
     end = np.where(beside(whole)[1] < 0.0, _between(lambda e: beside(e)[1], whole), whole)
     meets = outside(end) < 0.0
     at = np.where(meets, _between(outside, end), 0.0)
-    return at, np.asarray(np.sqrt(np.maximum(beside(at)[1], 0.0)) / cosine)
+    roll = np.sqrt(np.maximum(beside(at)[1], 0.0)) / cosine
+    return np.where(s < _SLIGHT, 0.0, at), np.where(s < _SLIGHT, 0.5 * s, roll)
 
 
 def _between(function: Callable[[Array], Array], end: Array) -> Array:

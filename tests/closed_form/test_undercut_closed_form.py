@@ -70,3 +70,6 @@ def test_one_gear_has_the_digits_of_many():
     np.testing.assert_allclose(roll, np.concatenate([one[1] for one in each]), rtol=1e-14)
     # a slight one begins at half the roll angle by which the rack cuts past the base circle: 2 x^3 + 3 x^2 = 1
     np.testing.assert_allclose(roll[:5] / slight[:5], 0.5, rtol=1e-6)
+    line = undercut_meeting([3e-17, 1e-11], 0.06, 0.35)
+    np.testing.assert_allclose(line[1], [1.5e-17, 5e-12], rtol=1e-9)
+    assert line[0].tolist() == [0.0, 0.0]
