@@ -6,7 +6,7 @@ A real pointer takes the point of the driver's tip relief and moves it ten times
 its width) in sight of the small pictures; the arrows of the pinion's tooth number and profile shift likewise, one step
 a move. Every move counts when the pictures that answer it, drawn from that very case or a later one, have been painted:
 of a number those of transmission error, load sharing and root stress. Half of the profile shifts lie outside the atlas.
-The next number of a row is computed ahead; with `--steps` a move is two or three steps, which nobody foresees.
+The next numbers of a row are computed ahead; with `--steps` a move is two or three steps, which is foreseen in part.
 
 Printed for each case: median, 95th percentile and largest of the milliseconds, the median of the first and second half
 (a delay that grows shows there), and the processor milliseconds for one move of the page's server, the computing

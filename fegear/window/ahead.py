@@ -1,4 +1,4 @@
-"""Where a value that moves will probably be next: its answers are computed while nobody waits, and recalled then."""
+"""Where a number that moves will probably be next: its answers are computed while nobody waits, and recalled then."""
 
 from __future__ import annotations
 
@@ -19,20 +19,23 @@ if TYPE_CHECKING:
 _NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))")
 
 
-def next_text(before: str, now: str) -> str | None:
-    """The text in which the one number that has changed goes on by as much again; None where that is not all.
+def next_texts(before: str, now: str) -> tuple[str, ...]:
+    """Texts in which the one number that has changed goes on: as far again, then a last digit more and less.
 
-    A number has as many decimals as it had in either text, so that it is the one that a step of the same length gives.
+    None where more has changed than a number.
     """
     first, last = _NUMBER.split(before), _NUMBER.split(now)
     if len(first) != len(last):
-        return None
+        return ()
     changed = [i for i, (one, other) in enumerate(zip(first, last, strict=True)) if one != other]
     if len(changed) != 1 or changed[0] % 2 == 0:  # words stand between the numbers
-        return None
+        return ()
     (at,) = changed
-    last[at] = str(2 * Decimal(last[at]) - Decimal(first[at]))
-    return "".join(last)
+    value = Decimal(last[at])
+    step = value - Decimal(first[at])
+    digit = Decimal(1).scaleb(int(step.as_tuple().exponent)).copy_sign(step)
+    steps = (one for one in (step, step + digit, step - digit) if one)
+    return tuple("".join((*last[:at], str(value + one), *last[at + 1 :])) for one in steps)
 
 
 def compute_ahead(asked: Asked, cache: SolutionCache, before: frozenset[str], seconds: Mapping[str, float]) -> None:

@@ -16,7 +16,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
 from fegear.results.pair.loaded_teeth import teeth_of
-from fegear.window.ahead import compute_ahead, next_text
+from fegear.window.ahead import compute_ahead, next_texts
 from fegear.window.assemblies import assemblies_of, on_the_assembly
 from fegear.window.computing import SAME, Sent
 from fegear.window.designs import design_asked, designed, draft_of, preview_told
@@ -74,7 +74,7 @@ class Worker:
         self._seconds: dict[str, float] = {}
         self._number, self._begun, self._wait_before, self._spent = 0, 0.0, 0, 0.0
         self._asked: Asked | None = None
-        self._next: str | None = None
+        self._next: tuple[str, ...] = ()
         self._later: list[tuple[str, Callable[[], None]]] = []
         self._left = TimeLeft(())
         self._reported, self._reports = 0.0, False
@@ -114,7 +114,7 @@ class Worker:
         """Do one job."""
         self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
         self._asked, self._later = (job.asked if isinstance(job, Compute) else None), []
-        self._next, self._spent = None, time.process_time()
+        self._next, self._spent = (), time.process_time()
         moving = self._asked is not None and self._asked.moving
         self._left = TimeLeft(())
         self._reports = isinstance(job, Compute | Export | Design) and not moving  # who moves a value sees the results
@@ -222,7 +222,7 @@ class Worker:
                 self._tell_later()
             elif scene.pairs != self._drawn:  # gears follow at once; what else is in the hand the page moves itself
                 self._tell_gears(scene)
-                self._next = next_text(self._text, asked.text)
+                self._next = next_texts(self._text, asked.text)
             self._previews = scene.previews if asked.moving else self._previews
             self._text = asked.text
             for content in () if asked.moving else wanted.told:
@@ -240,7 +240,7 @@ class Worker:
         self._wait_before = -1
         if self._asked is not None and self._asked.sight:  # the map beside the load stands among these
             self._tell_later("load_now")
-        if self._untidy + 1 >= _STROKES:  # now, while nobody waits
+        if self._untidy + len(self._next) + 1 >= _STROKES:  # now, while nobody waits
             self._tidy(moving=True)
         self._inbox.look()
         spent = self._compute_ahead() if time.process_time() - self._spent < _SOON else 0.0
@@ -249,14 +249,13 @@ class Worker:
         self._tell_later()
 
     def _compute_ahead(self) -> float:
-        """Compute the place where a gear that is changed step by step will be next; gives way as soon as it moves."""
-        if self._asked is None or self._next is None:
-            return 0.0
-        asked, begun = self._asked._replace(text=self._next), time.monotonic()
-        self._next = None
-        self._untidy += 1
-        with contextlib.suppress(Exception):  # nobody has asked for it: who does is told
-            compute_ahead(asked, self._cache, self._previews, self._seconds)
+        """Compute places where a gear that is changed step by step may be next; gives way as soon as it moves."""
+        begun, asked, places, self._next = time.monotonic(), self._asked, self._next, ()
+        for text in places if asked is not None else ():
+            self._inbox.look()
+            self._untidy += 1
+            with contextlib.suppress(Exception):  # nobody has asked for it: who does is told
+                compute_ahead(asked._replace(text=text), self._cache, self._previews, self._seconds)
         return time.monotonic() - begun
 
     def _tell_later(self, *kinds: str) -> None:

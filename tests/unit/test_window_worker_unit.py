@@ -14,7 +14,7 @@ from fegear.engine.figure.panel import Panel
 from fegear.engine.stage import Task
 from fegear.engine.value import Value
 from fegear.window import glance, wanted, worker
-from fegear.window.ahead import next_text
+from fegear.window.ahead import next_texts
 from fegear.window.computing import whole
 from fegear.window.glance import PICTURES, USUAL, USUAL_SET, USUAL_WIDE, keys_of, numbers_of
 from fegear.window.job_queue import Asked, Compute, Export, Inbox, Stop, Unwanted
@@ -219,16 +219,19 @@ accuracy.tolerance = 0.05
 @pytest.mark.parametrize(
     ("before", "now", "after"),
     [
-        ("z = 21\nx = 0.3", "z = 22\nx = 0.3", "z = 23\nx = 0.3"), ("z = 13", "z = 11", "z = 9"),
-        ("x = 0.98", "x = 0.99", "x = 1.00"), ("x = 0.1", "x = 0", "x = -0.1"),
-        ("x = -.01 # m", "x = .01 # m", "x = 0.03 # m"),
-        ('m = "3 mm"', 'm = "3.01 mm"', 'm = "3.02 mm"'),
-        ("z = 21", "z = 21", None), ("a = 1\nb = 2", "a = 2\nb = 3", None), ('m = "3 mm"', 'm = "3 in"', None),
-        ("z = 21", "z = 21\nx = 1", None), ("", "z = 21", None),
+        ("z = 21\nx = 0.3", "z = 22\nx = 0.3", ("z = 23\nx = 0.3", "z = 24\nx = 0.3")),
+        ("z = 13", "z = 11", ("z = 9", "z = 8", "z = 10")),
+        ("x = 0.98", "x = 0.99", ("x = 1.00", "x = 1.01")),
+        ("x = 0.3", "x = 0.35", ("x = 0.40", "x = 0.41", "x = 0.39")),
+        ("x = 0.1", "x = 0", ("x = -0.1", "x = -0.2")),
+        ("x = -.01 # m", "x = .01 # m", ("x = 0.03 # m", "x = 0.04 # m", "x = 0.02 # m")),
+        ('m = "3 mm"', 'm = "3.01 mm"', ('m = "3.02 mm"', 'm = "3.03 mm"')),
+        ("z = 21", "z = 21", ()), ("a = 1\nb = 2", "a = 2\nb = 3", ()), ('m = "3 mm"', 'm = "3 in"', ()),
+        ("z = 21", "z = 21\nx = 1", ()), ("", "z = 21", ()),
     ],
 )  # fmt: skip
-def test_a_number_that_moves_goes_on_by_the_same_step(before, now, after):
-    assert next_text(before, now) == after
+def test_a_number_that_moves_goes_on_by_steps_like_the_last(before, now, after):
+    assert next_texts(before, now) == after
 
 
 def test_the_next_place_of_a_gear_is_computed_ahead_and_recalled(working, tmp_path, monkeypatch):
@@ -265,7 +268,7 @@ accuracy.tolerance = 0.05
     assert answered(working, 1, teeth(21))[1] > 0
     assert ahead == []  # nobody knows where it goes
     assert answered(working, 2, teeth(22))[1] > 0
-    assert ahead == [teeth(23)]
+    assert ahead == [teeth(23), teeth(24)]
     assert [what for _, what, _ in working.said[places[0] :]] == ["dropped"]  # behind the answer, and nobody is told
     monkeypatch.setattr(worker, "compute_ahead", lambda *_given: ahead.append("next"))
     found, computed = answered(working, 3, teeth(23))
