@@ -97,7 +97,7 @@ class GaugeInputs:
     sharper: str = field(compare=False)
     name: str = field(compare=False)
     finer: str = field(compare=False, default="")
-    tolerance: float = field(compare=False, default=1.0)
+    tolerance: float = 1.0
     effects: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
     halves: int = 1
     neglected: bool = False
