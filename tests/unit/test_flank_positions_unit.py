@@ -255,8 +255,11 @@ def test_what_half_of_the_positions_show_is_continued():
         assert no_less_than_shown_by_half(np.array(few)).tolist() == few
 
 
-def test_coarser_gears_count_in_part_and_longer_panels_whole():
-    """Sines over the base pitch, about means: of what gears change a part is error, of means another than of shapes."""
+def test_coarser_gears_count_in_part_and_longer_panels_whole_as_errors_that_know_nothing_of_each_other():
+    """Sines over the base pitch, about means: of what gears change a part is error, of means another than of shapes.
+
+    Added up, what both leave of helical pairs was stated 4 to 6 times too large in the median.
+    """
     points = roll_points(pair(20.0), 48)
     turn = 2.0 * math.pi * points.x / points.period
 
@@ -270,12 +273,14 @@ def test_coarser_gears_count_in_part_and_longer_panels_whole():
     same = flank_transmission_error_shift(fine, fine, fine, fine)
     whole = flank_transmission_error_shift(fine, fine, longer, coarse)
     part = flank_transmission_error_shift(fine, fine, longer, coarse, (0.6, 0.4))
-    assert whole.mean - same.mean == pytest.approx(2.5, rel=1e-9)
-    assert part.mean - same.mean == pytest.approx(0.5 + 0.6 * 2.0, rel=1e-9)
-    assert part.stiffness - same.stiffness == pytest.approx(3.0 * (0.5 + 0.6 * 2.0), rel=1e-9)
-    assert part.first_harmonic - same.first_harmonic == pytest.approx(2.0 * (0.01 + 0.4 * 0.05), rel=1e-3)
-    assert part.peak_to_peak - same.peak_to_peak == pytest.approx(4.0 * (0.01 + 0.4 * 0.05), rel=5e-3)
-    assert part.effective - same.effective == pytest.approx(0.5 * (whole.effective - same.effective), rel=5e-3)
+    of_mean, of_shape, of_whole = math.hypot(0.5, 0.6 * 2.0), math.hypot(0.01, 0.4 * 0.05), math.hypot(0.01, 0.05)
+    assert whole.mean - same.mean == pytest.approx(math.hypot(0.5, 2.0), rel=1e-9)
+    assert part.mean - same.mean == pytest.approx(of_mean, rel=1e-9)
+    assert part.stiffness - same.stiffness == pytest.approx(3.0 * of_mean, rel=1e-9)
+    assert part.first_harmonic - same.first_harmonic == pytest.approx(2.0 * of_shape, rel=1e-3)
+    assert part.peak_to_peak - same.peak_to_peak == pytest.approx(4.0 * of_shape, rel=5e-3)
+    share = of_shape / of_whole
+    assert part.effective - same.effective == pytest.approx(share * (whole.effective - same.effective), rel=5e-3)
     # One harmonic may agree by chance in size, or altogether: its phase counts, and what those beside it are off by.
     later = replace(fine, series=series_over_pitch(points, 10.0 + 2.0 * np.sin(turn + 0.01)))
     assert later.series.amplitude[0] == pytest.approx(fine.series.amplitude[0], rel=1e-6)

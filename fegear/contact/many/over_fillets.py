@@ -164,7 +164,7 @@ def roughly(values, sign, end, arc):
 def largest(values, sign, end, length, arc, fit, fit_slope, height, rise):  # noqa: C901  (one search)
     """Largest value, times its sign, of the smooth curve through a fillet's points; as `root_stress.extreme`."""
     n = arc.size
-    if end < 1.0:  # as `_without_contact`
+    if end < 1.0:  # as `without_contact`
         below = min(max(np.searchsorted(arc, end) - 1, 0), n - 2)
         share = min(max((end - arc[below]) / (arc[below + 1] - arc[below]), 0.0), 1.0)
         last = (1.0 - share) * values[below] + share * values[below + 1]

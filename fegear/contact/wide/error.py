@@ -88,7 +88,8 @@ def flank_error(
     """Solve again with less of everything that leaves an error; the pressed width of the bands stays.
 
     Longer panels and coarser gears may change a number in opposite directions: they are changed one after the other,
-    and what each of them changes adds up, with what roll positions leave open.
+    and what each of them changes adds up, with what roll positions leave open. Of the transmission error, which is an
+    integral of both, they leave errors that know nothing of each other: the root of their sum of squares counts.
 
     Parameters
     ----------
@@ -128,10 +129,14 @@ def flank_error(
         largest_line_load=left.largest_line_load + missed * found.largest_line_load,
         largest_pressure=left.largest_pressure + missed * found.largest_pressure + _BETWEEN * between,
     )
-    sums = Stated(*(sum(parts) + more for *parts, more in zip(*changes, left, strict=True)))
-    te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
+    together = Stated(*map(np.add, *changes))._replace(
+        mean=np.hypot(*(one.mean for one in changes)), peak_to_peak=np.hypot(*(one.peak_to_peak for one in changes))
+    )
+    sums = Stated(*map(np.add, together, left))
+    by_panels_here, by_gears_here = (two.transmission_error - one.transmission_error for one, two in pairwise(steps))
+    te = np.hypot(by_panels_here, OF_GEARS_SHAPE * by_gears_here)
     share = sum(_share_changes(found, one, two) for one, two in pairwise(steps))
-    return FlankError(np.asarray(te), _SHARES * np.asarray(share), fewer, other, *sums)
+    return FlankError(te, _SHARES * np.asarray(share), fewer, other, *sums)
 
 
 def finer_changes(flanks: FlankPair, gaps: FlankGaps, over: OverPitch, about: float) -> dict[str, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -130,7 +131,7 @@ def flank_transmission_error_shift(
     coarse: FlankTransmissionError,
     of_gears: tuple[float, float] = (1.0, 1.0),
 ) -> TransmissionErrorShift:
-    """Estimated errors: the changes by coarser solutions, and that by half as many roll positions.
+    """Estimated errors: the changes by coarser solutions, independent of each other, and that by half of the positions.
 
     Parameters
     ----------
@@ -143,25 +144,29 @@ def flank_transmission_error_shift(
     """
     # read between the positions as `series_over_pitch` reads what is stated
     fewer = _error(te.load, te.points, *(of_half(te.points, one) for one in (te.values, te.local, te.secant)))
-    pairs = ((te, fewer), (fine, longer), (longer, coarse))
-    mean, shape = ((1.0, 1.0, part) for part in of_gears)
+    of_mean, of_shape = of_gears
 
-    def changed(key: str, parts: tuple[float, ...]) -> float:
-        changes = (abs(float(getattr(one, key)) - float(getattr(two, key))) for one, two in pairs)
-        return sum(part * change for part, change in zip(parts, changes, strict=True))
+    def changed(key: str, part: float) -> float:
+        by_positions, by_panels, by_gears = (
+            abs(float(getattr(one, key)) - float(getattr(two, key)))
+            for one, two in ((te, fewer), (fine, longer), (longer, coarse))
+        )
+        return by_positions + math.hypot(by_panels, part * by_gears)
 
     known = te.series.amplitude.size
-    amplitude = np.zeros(known)
-    for part, (one, two) in zip(shape, pairs, strict=True):
-        # of the complex coefficient: an amplitude's own change passes through zero where its phase changes
-        change = 2.0 * np.abs(one.series.coefficients - two.series.coefficients)[1:]
-        if two is fewer:
-            change = no_less_than_shown_by_half(change)
-        amplitude += part * np.pad(change, (0, known))[:known]
+    by_panels, by_gears = _changed(fine, longer, known), _changed(longer, coarse, known)
+    by_positions = no_less_than_shown_by_half(_changed(te, fewer, known))
+    amplitude = by_positions + np.hypot(by_panels, of_shape * by_gears)
     return TransmissionErrorShift(
-        changed("mean", mean), changed("peak_to_peak", shape), changed("effective_error", shape),
-        no_less_than_beside(amplitude), changed("mean_secant", mean),
+        changed("mean", of_mean), changed("peak_to_peak", of_shape), changed("effective_error", of_shape),
+        no_less_than_beside(amplitude), changed("mean_secant", of_mean),
     )  # fmt: skip
+
+
+def _changed(one: FlankTransmissionError, two: FlankTransmissionError, known: int) -> Array:
+    """Amplitudes of one curve less another, shape (known,); their own change vanishes where a phase changes."""
+    change = 2.0 * np.abs(one.series.coefficients - two.series.coefficients)[1:]
+    return np.pad(change, (0, known))[:known]
 
 
 def no_less_than_shown_by_half(change: Array) -> Array:

@@ -14,7 +14,7 @@ from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
 from fegear.fem.plane.influence import MOSTLY_TURNED, ROOM_SHARE, SIDES, Influence, Side
-from fegear.fem.plane.root_stress import smooth_at
+from fegear.fem.plane.stress_apart import apart_beside_contacts, apart_beside_ends
 
 #: What errors are estimated of.
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
@@ -63,17 +63,18 @@ _LESS_OF_OTHER, _LEAST_OF_OTHER = 0.8, 0.5
 #: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
-#: which both orders have: so many times the part of a tooth's own and no less than the other part. Relatively no
-#: neighbour errs by less than so much of what a tooth's own stress usually differs by.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _OF_OWN_STRESS = 1.5, 0.75, 0.9
-#: A neighbour's other fillets are smooth: so many times a tooth's own part.
+#: which both orders have: so many times the part of a tooth's own and no less than the other part, and so many times
+#: the usual scatter.
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _NEIGHBOUR_SCATTER = 1.15, 0.65, 1.5
+#: A neighbour's other fillets are smooth: so many times a tooth's own part. Where edges are long the order tells more
+#: than the error is: of elements of fourth order no more than so much counts (45 gears and rings, docs/numerics.md).
 _SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
+_MOST_SMOOTH: dict[Side, float] = {"tension": 0.55, "compression": 0.7}
+#: Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs by: on the tooth ahead
+#: of the loaded one, and on that behind it.
+_OF_OWN_STRESS: dict[Side, tuple[float, float]] = {"tension": (0.6, 0.35), "compression": (0.9, 0.9)}
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
-#: In the first and the last edge of a fillet, where its curvature ends, two solutions wave about each other, and may
-#: agree by chance where a neighbour's stress is largest: they are compared so many of these edges' lengths to either
-#: side of places no farther from an end than so many.
-_BESIDE_PLACE, _FROM_END = 0.25, 1.25
 #: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
 #: the same: by the mean over the flanks of both neighbours less so many times its scatter. That is no load's error. It
 #: is looked at where that is most of what gives way.
@@ -98,12 +99,16 @@ _BESIDE_ENDS = (0.005, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1)
 
 
 class _Stress(NamedTuple):
-    """Largest stress of a fillet, where it sits, its difference from the other solution's, and its scatter, (P,)."""
+    """Largest stress of a fillet, where it sits, its difference from the other solution's, and its scatter, (P,).
+
+    Beside narrowed contacts, how far both solutions' curves are apart about that place; elsewhere 0.
+    """
 
     value: Array
     place: Array
     difference: Array
     scatter: Array
+    beside: Array
 
 
 class _Counts(NamedTuple):
@@ -170,8 +175,9 @@ class Estimate:
     def root_stress(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
-        value, place, difference, scatter = self._stress_of(k, side, radius, half_width)
-        return value, place, self._stress_estimate(k, side, value, difference, 0.0 if k < 0 else scatter)
+        value, place, difference, scatter, beside = self._stress_of(k, side, radius, half_width)
+        off = np.maximum(difference, beside)
+        return value, place, self._stress_estimate(k, side, value, off, 0.0 if k < 0 else scatter)
 
     @cached_property
     def largest(self) -> Mapping[str, float]:
@@ -315,41 +321,19 @@ class Estimate:
         return self._neighbours_asked[key][k]
 
     def _stresses_of(self, teeth: Sequence[int], side: Side, radius: Array, half_width: Array) -> dict[int, _Stress]:
-        fine, coarse = (one.stress_below(teeth, side, radius, half_width) for one in (self.fine, self.coarse))
+        both = self.fine, self.coarse
+        fine, coarse = (one.stress_below(teeth, side, radius, half_width) for one in both)
         curve = self.fine.fillet_curve(side)
         value, place = curve.largest_below(*fine)
         difference = np.abs(value - self.coarse.fillet_curve(side).largest_below(*coarse)[0])
-        if 0 not in teeth:
-            difference = np.maximum(difference, self._apart_beside_ends(side, fine[0], coarse[0], place))
-        found = _Stress(value, place, difference, curve.scatter_below(fine[0], place, *fine[1:]))
+        beside = np.zeros_like(place)
+        if 0 in teeth:
+            beside = apart_beside_contacts(both, (fine[0], coarse[0]), place, *fine[1:], half_width)
+        else:
+            difference = np.maximum(difference, apart_beside_ends(both, side, (fine[0], coarse[0]), place))
+        found = _Stress(value, place, difference, curve.scatter_below(fine[0], place, *fine[1:]), beside)
         each = (one.reshape(len(teeth), -1) for one in found)
         return {k: _Stress(*one) for k, one in zip(teeth, zip(*each, strict=True), strict=True)}
-
-    def _apart_beside_ends(self, side: Side, fine: Array, coarse: Array, place: Array) -> Array:
-        """How far both solutions' curves are apart beside places near an end of the fillet, shape (P,); elsewhere 0.
-
-        Parameters
-        ----------
-        fine, coarse : ndarray, shape (points, P)
-            Stress along the fillet.
-        place : ndarray, shape (P,)
-        """
-        fillet, order = self.fine.fillets[side], self.fine.flank.order
-        arc, length = fillet.arc, fillet.length
-        # Gauss points stand alike from both ends of an edge.
-        first, last = float(arc[0] + arc[order - 1]), float(2.0 * length - arc[-1] - arc[-order])
-        edge = np.where(place < 0.5 * length, first, last)
-        near = np.minimum(place, length - place) <= _FROM_END * edge
-        found = np.zeros(place.shape)
-        if near.any():
-            at = place[near] + _BESIDE_PLACE * edge[near] * np.array([[-1.0], [0.0], [1.0]])
-            at = np.clip(at, 0.0, length)
-            curves = [
-                smooth_at(stress[:, near], one.fillets[side].arc, at)
-                for one, stress in ((self.fine, fine), (self.coarse, coarse))
-            ]
-            found[near] = np.abs(curves[0] - curves[1]).max(axis=0)
-        return found
 
     def _stress_at_samples(self, k: int) -> dict[Side, tuple[Array, Array]]:
         """Value of each side, and its difference from the other solution's."""
@@ -378,12 +362,13 @@ class Estimate:
             scattered = _SCATTERED * _root_mean_square(self._scatter[k, side][:_SAMPLES])
             if k > 0 and side == "compression":
                 share, beside = max(_NEIGHBOUR_STRESS * share, _LEAST_NEIGHBOUR_STRESS), _USUAL * beside
-                scattered *= _NEIGHBOUR_STRESS
+                scattered *= _NEIGHBOUR_SCATTER
             else:
                 share *= _SMOOTH_STRESS[side]
+                share = min(share, _MOST_SMOOTH[side]) if self.fine.flank.order == 4 else share
             error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
             least = _USUAL * max(self._usual_stress.values())
-            return np.asarray(np.maximum(error, _OF_OWN_STRESS * least * np.abs(value)))
+            return np.asarray(np.maximum(error, _OF_OWN_STRESS[side][k < 0] * least * np.abs(value)))
         of_other = max(1.0 - _LESS_OF_OTHER * share, _LEAST_OF_OTHER)
         counts = _Counts(_OWN_USUAL[side], of_other, _OWN_SCATTERED, _OWN_SCATTERED_HERE)
         found = self._own_stress_estimate(side, value, difference, scatter, counts)

@@ -174,7 +174,7 @@ class FilletCurve:
         values = np.ascontiguousarray(stress)
         if self.side == "tension":
             ends = np.broadcast_to(search_end(self.length, above, width, CLEARANCE), values.shape[1:])
-            values = _without_contact(values, self.arc, ends, CLEARANCE)
+            values = without_contact(values, self.arc, ends, CLEARANCE)
         return smooth_at(values, self.arc, (share * self.length)[:, None])
 
     def _beside(self, radius: ArrayLike, half_width: float) -> tuple[Array, Array]:
@@ -195,7 +195,7 @@ class FilletCurve:
         if self.side == "compression":
             return _scatter(stress, self.arc, place, np.full(place.shape, self.length))
         end = np.broadcast_to(search_end(self.length, above, width, CLEARANCE), place.shape)
-        return _scatter(_without_contact(stress, self.arc, end, CLEARANCE), self.arc, place, end)
+        return _scatter(without_contact(stress, self.arc, end, CLEARANCE), self.arc, place, end)
 
     def largest_below(self, stress: Array, above: Array, width: Array) -> tuple[Array, Array]:
         """The same below contacts that stand so far above the fillet, of those half-widths [modules].
@@ -293,7 +293,7 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     values = np.ascontiguousarray(values)  # once: each product with a sparse matrix would copy it
     ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
     if clearance < math.inf:
-        values = _without_contact(values, arc, ends, clearance)
+        values = without_contact(values, arc, ends, clearance)
     smoothing, slopes = smooth_curve(arc)
     height, rise, step = smoothing @ values, slopes @ values, np.diff(arc)
     if sign < 0.0:
@@ -342,7 +342,7 @@ def _scatter(values: Array, arc: Array, place: Array, end: Array) -> Array:
     return np.asarray(np.where(arc[beside] <= end, off, 0.0).max(axis=0))
 
 
-def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:
+def without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:
     """Values that fade, between a fifth and a half of the clearance beyond the end, into that at the end."""
     faded = np.clip(((arc[:, None] - ends) / clearance - 0.2) / 0.3, 0.0, 1.0)
     below, columns = np.clip(np.searchsorted(arc, ends) - 1, 0, arc.size - 2), np.arange(ends.size)
