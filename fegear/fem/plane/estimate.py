@@ -65,9 +65,9 @@ _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
 #: which both orders have: so many times the part of a tooth's own and no less than the other part, and so many times
 #: the usual scatter.
-_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _NEIGHBOUR_SCATTER = 1.15, 0.65, 1.5
+_NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _NEIGHBOUR_SCATTER = 1.15, 0.75, 1.5
 #: A neighbour's other fillets are smooth: so many times a tooth's own part. Where edges are long the order tells more
-#: than the error is: of elements of fourth order no more than so much counts (45 gears and rings, docs/numerics.md).
+#: than the error is: of elements of fourth order no more than so much counts (64 gears and rings, docs/numerics.md).
 _SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
 _MOST_SMOOTH: dict[Side, float] = {"tension": 0.55, "compression": 0.7}
 #: Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs by: on the tooth ahead
