@@ -23,10 +23,10 @@ def left(values, most=None, finer=0):
     return LeftOverRange(0.05 * LOAD, LOAD, np.ones(2), *numbers, finer=finer)
 
 
-def said(linear, parabolic, finer=0, grade=5):
+def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6)):
     """With linear reliefs to be ground."""
     rows = tuple(
-        Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, 6e-6, start_diameter=0.06)
+        Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
         for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
     )  # fmt: skip
     left_over = {
@@ -47,6 +47,17 @@ def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_to
     )
     assert single.endswith(
         "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
+    )
+
+
+def test_a_relief_far_below_its_tolerance_is_named():
+    ordinary = said((3.3, 4.5), (3.5, 5.0))
+    assert said((3.3, 4.5), (3.5, 5.0), amounts=(1.26e-6, 6e-6))[1:] == ordinary[1:]
+    *_, faint, single = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
+    assert single == ordinary[-1]
+    assert faint == (
+        "Pair I: 0.057 µm on gear p is below a quarter of its tolerance (± 5 µm) and cannot be ground; omit it, or set "
+        "weights that emphasise the larger torques."
     )
 
 

@@ -15,6 +15,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.rows import Cell, Off, Rows
+from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.left_errors import left_error
 
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair
+
+#: Tip relief over its tolerance below which grinding cannot be told from not grinding.
+_FAINT = 0.25
 
 
 @dataclass(frozen=True)
@@ -145,6 +149,15 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...]) -> Iterat
 
     within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, allowed)
     yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
+    weights = ", or set weights that emphasise the larger torques" if len(every) > 1 else ""
+    for row in rows:
+        off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
+        if row.amount < _FAINT * off:
+            amount, allowed_off = (figures(one * 1e6, 2) for one in (row.amount, off))
+            yield (
+                f"Pair {seen.name}: {amount} µm on gear {row.gear} is below a quarter of its tolerance "
+                f"(± {allowed_off} µm) and cannot be ground; omit it{weights}."
+            )
 
 
 def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int]) -> str:
