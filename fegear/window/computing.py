@@ -6,7 +6,6 @@ What a page has been told already, so that it is sent only what has become diffe
 from __future__ import annotations
 
 import contextlib
-import json
 import threading
 import time
 from typing import TYPE_CHECKING, Any
@@ -176,7 +175,7 @@ class Sent:
     """What was sent last, by task; a figure that is the same again travels as its key alone."""
 
     def __init__(self) -> None:
-        self._figures: dict[tuple[str, str], str] = {}
+        self._figures: dict[tuple[str, str], _Content] = {}
         self._empty: set[str] = set()
 
     def news(self, content: _Content) -> _Content | None:
@@ -198,9 +197,9 @@ class Sent:
             if one.get("same"):
                 figures.append(one)
                 continue
-            place, text = (content["task"], one["key"]), json.dumps(one)
-            figures.append({"key": one["key"], **SAME} if self._figures.get(place) == text else one)
-            self._figures[place] = text
+            place = content["task"], one["key"]
+            figures.append({"key": one["key"], **SAME} if self._figures.get(place) == one else one)
+            self._figures[place] = one
         return {**content, "figures": figures}
 
     def knows(self, task: str, figure: str = "") -> bool:

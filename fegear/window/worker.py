@@ -251,7 +251,9 @@ class Worker:
     def _compute_ahead(self) -> float:
         """Compute places where a gear that is changed step by step may be next; gives way as soon as it moves."""
         begun, asked, places, self._next = time.monotonic(), self._asked, self._next, ()
-        for text in places if asked is not None else ():
+        if asked is None:
+            return 0.0
+        for text in places:
             self._inbox.look()
             self._untidy += 1
             with contextlib.suppress(Exception):  # nobody has asked for it: who does is told

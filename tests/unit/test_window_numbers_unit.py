@@ -163,7 +163,7 @@ def hold(tmp_path: Path, text: str, changes: list[tuple[str, str]], wire: Wire, 
     for name, one in json.loads((run / "summary.json").read_text())["results"].items():
         assert "now" in one or any(name in content["values"] for content in page.values()), name
     worker.answer(Export(101, asked, "tables", str(tmp_path / "tables")))
-    tables = {path.name: path.read_bytes() for path in (run / "tables").iterdir()}
+    tables = {path.name: path.read_bytes() for path in (run / "tables").glob("*.csv")}
     exported = {path.name: path.read_bytes() for path in (tmp_path / "tables").glob("*.csv")}
     assert exported.keys() == tables.keys()
     for name, table in tables.items():
