@@ -255,7 +255,7 @@ def _bounded(normal: Array, right: Array, low: Array, high: Array) -> Array:
     clipped = np.clip(step, low, high)
     stays = clipped != step
     if not stays.any():
-        return step
+        return np.asarray(step, dtype=float)
     free = np.where(stays[:, :, None] | stays[:, None, :], 0.0, normal)
     at = np.arange(normal.shape[1])
     free[:, at, at] += stays
