@@ -174,6 +174,32 @@ class Gear(Described):
         """
         return self._with_odd_tooth(tooth, keyway=keyway)
 
+    def with_pit(self, tooth: int = 0, **pit: Any) -> Gear:
+        """A gear with one more pit (or spall) on the loaded flank of a tooth.
+
+        Parameters
+        ----------
+        tooth : int
+            Number of the tooth in meshing order; a tooth that has pits already gets one more, one that differs
+            otherwise has the pit instead.
+        **pit
+            Keys of ``[[gear.NAME.odd_tooth]] pits`` of a case file: ``diameter`` or ``radius`` (from, to),
+            ``face_share``, ``depth``, and for 3D pairs ``face_position``.
+
+        Raises
+        ------
+        InputError
+            If the gear can have no such pit: key, value, rule, remedy.
+
+        Examples
+        --------
+        >>> pitted = pinion.with_pit(tooth=0, diameter=["59 mm", "61 mm"], face_share=0.4)
+        """
+        given = self.keys.get("odd_tooth", [])
+        teeth = [given] if isinstance(given, dict) else given
+        pits = [pit for one in teeth if one.get("tooth", 0) == tooth for pit in one.get("pits", [])]
+        return self._with_odd_tooth(tooth, pits=[*pits, pit])
+
     def _with_odd_tooth(self, tooth: int, **what: Any) -> Gear:
         """A gear of which one tooth is another one."""
         given = self.keys.get("odd_tooth", [])

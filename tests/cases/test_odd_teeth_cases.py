@@ -207,6 +207,14 @@ def planned(*changes):
         ("pits = [{ diameter = ['50 mm', '51 mm'] }]", "depth = .*: is required with face_share = 1"),
         ("pits = [{ diameter = ['50 mm', '51 mm'], face_share = 2 }]", "face_share = 2"),
         ("pits = [{ radius = ['30 mm', '31 mm'], face_share = 0.5 }]", "radius = 30 to 31 mm: is outside the flank"),
+        (
+            "pits = [{ diameter = ['50 mm', '51 mm'], face_share = 0.4, face_position = '-3 mm' }]",
+            r"pits\[0\].face_position = -3 mm: has no effect in plane .* pair.I.width = .solid",
+        ),
+        (
+            "pits = [{ diameter = ['50 mm', '51 mm'], face_share = 0.4, face_position = '15 mm' }]",
+            "face_position = 15 mm: places the whole pit outside the face, -10 to 10 mm",
+        ),
         ("tooth = 0, crack = { depht = '1 mm' }", 'is an unknown key; did you mean "depth"'),
     ],
 )
@@ -362,6 +370,25 @@ def test_a_gear_gets_a_crack_in_python():
         fegear.Pair(plain.with_crack(depth_ratio=0.5), wheel), torque="60 N*m", tolerance=2e-2, cache=CACHE
     )
     assert found.values["I.mesh_stiffness_loss"].si == pytest.approx(0.314, abs=5e-3)
+
+
+def test_a_gear_gets_pits_in_python():
+    """One after the other on a tooth, in place of its crack."""
+    first, second = {"diameter": ["49 mm", "50 mm"], "face_share": 0.4}, {"radius": ["25 mm", "26 mm"], "depth": "1 mm"}
+    gear = fegear.Gear(25, "2 mm", face_width="20 mm", name="a").with_crack(tooth=2, depth="0.5 mm")
+    pitted = gear.with_pit(tooth=2, **first).with_pit(tooth=2, **second).with_pit(**first)
+    assert pitted.keys["odd_tooth"] == [{"tooth": 2, "pits": [first, second]}, {"tooth": 0, "pits": [first]}]
+    with pytest.raises(InputError, match=r"depth = .*: is required with face_share = 1"):
+        gear.with_pit(diameter=["49 mm", "50 mm"])
+
+
+def test_a_plane_pair_says_what_it_assumes_of_pits():
+    """Where the remaining face carries; a pit over the whole face is a gap and nothing is assumed."""
+    part, whole = "diameter = ['50 mm', '51 mm'], face_share = 0.4", "diameter = ['50 mm', '51 mm'], depth = '50 um'"
+    odd = "gear.pinion.odd_tooth=[{{ tooth = 3, pits = [{{ {} }}] }}]"
+    (said,) = odd_remarks(read_scene(CASE, (odd.format(part),)))
+    assert "pinion: pits of tooth 3 change the contact only" in said
+    assert odd_remarks(read_scene(CASE, (odd.format(whole),))) == []
 
 
 @pytest.mark.dear

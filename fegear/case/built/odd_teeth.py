@@ -247,6 +247,14 @@ def _pit(gear: Gear, part: PitPart, prefix: str) -> Pit:
             f"{prefix}.{key}", f"{low * scale:.6g} to {high * scale:.6g} mm",
             f"is outside the flank, {start * scale:.6g} to {end * scale:.6g} mm",
         )  # fmt: skip
+    off = abs(part.face_position)
+    if off > 0.0 and off >= 0.5 * (1.0 + part.face_share) * gear.face_width:
+        half = 0.5e3 * gear.face_width
+        raise InputError(
+            f"{prefix}.face_position", f"{part.face_position * 1e3:.6g} mm",
+            f"places the whole pit outside the face, {-half:.6g} to {half:.6g} mm from its middle",
+            "choose a position on the face",
+        )  # fmt: skip
     return Pit(low, high, part.face_share, part.depth or 0.0, part.face_position)
 
 
@@ -359,6 +367,24 @@ def check_left_contact(scene: Scene, pair: str) -> None:
             f"leaves no tooth pair in contact at a missing tooth (contact ratio {meshed.contact_ratio:.3f})",
             "set effects.corner_contact = true",
         )  # fmt: skip
+
+
+def check_plane_pits(scene: Scene, pair: str) -> None:
+    """Refuse pits of a plane pair beside mid-face: there the face has no places.
+
+    Raises
+    ------
+    InputError
+    """
+    for gear in odd_gears_of(scene, pair):
+        for n, part in enumerate(scene.case.gear[gear].odd_tooth):
+            for at, pit in enumerate(part.pits):
+                if pit.face_position != 0.0:
+                    raise InputError(
+                        f"gear.{gear}.odd_tooth[{n}].pits[{at}].face_position", f"{pit.face_position * 1e3:.6g} mm",
+                        "has no effect in plane (2D) pairs, whose pits are at mid-face",
+                        f'set pair.{pair}.width = "solid", or remove face_position',
+                    )  # fmt: skip
 
 
 def _as_given(error: InputError, part: CrackPart, start: str, module: float) -> InputError:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.notes import neglecting
 from fegear.case.built.odd_gears import odd_gears_of, reshaped_gears
-from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, odd_teeth_in
+from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, check_plane_pits, odd_teeth_in
 from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
 from fegear.case.built.pair_spec import pair_spec
 from fegear.contact.odd_flank import OddFlank
@@ -66,6 +66,7 @@ def _check(scene: Scene, name: str) -> None:
     for gear in odd_gears_of(scene, name):
         check_odd_gear(scene, gear)
     check_left_contact(scene, name)
+    check_plane_pits(scene, name)
     if scene.case.effects.relief:
         for gear in odd_gears_of(scene, name):
             member: Member = "driver" if gear == scene.case.pair[name].driver else "driven"
@@ -74,8 +75,16 @@ def _check(scene: Scene, name: str) -> None:
 
 
 def _remarks(seen: Seen) -> Iterator[str]:
-    """Profiles of single teeth that do not count."""
+    """Profiles of single teeth that do not count, and what is assumed of pits."""
     spec = seen.asked.spec
+    for flank in spec.both:
+        teeth = [tooth for tooth, one in flank.odd if any(pit.face_share < 1.0 for pit in one.pits)]
+        if teeth:
+            yield neglecting(
+                f"Gear {flank.gear}: pits of {'tooth' if len(teeth) == 1 else 'teeth'} {', '.join(map(str, teeth))} "
+                "change the contact only: tooth body as without pits, uniform load over the remaining face. Set "
+                'width = "solid" of the pair for pits beside mid-face.'
+            )
     for flank in spec.both if not spec.relief else ():
         if flank.profiles:
             yield neglecting(f"Gear {flank.gear}: profiles of single teeth ignored because effects.relief is off.")
