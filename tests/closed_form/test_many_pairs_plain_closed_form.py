@@ -173,6 +173,19 @@ def test_followed_root_stresses_are_those_of_a_pair_to_round_off(pairs, many):
     assert np.isnan(found.tension[:, 1]).all()
 
 
+def test_undercut_flanks_begin_where_those_of_a_gear_do(many):
+    gear = _gear(14, 0.05)
+    assert gear.tooth.undercut
+    one = replace(
+        many, teeth=np.full((2, 2), 14.0), generating_shift=np.full((2, 2), 0.05),
+        tip_radius=np.full((2, 2), gear.tip_radius), bore_radius=np.full((2, 2), gear.bore_radius), centre_distance=np.full(2, 2.0 * gear.pitch_radius + 3e-4),
+    )  # fmt: skip
+    found = known_pairs(shipped_atlas("A"), one)
+    assert found.held.all()
+    low = math.sqrt((gear.form_radius - gear.base_radius) * (gear.form_radius + gear.base_radius))
+    np.testing.assert_allclose(found.engagements.flanks.lowest, low, rtol=1e-12)
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_largest_stress_of_a_fillet_is_that_of_its_smooth_curve_below_the_contact(sign):
     """Of a parabola, inside and at the end; what a contact does above the end of the search is faded out."""
