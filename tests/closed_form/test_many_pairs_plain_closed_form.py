@@ -178,7 +178,8 @@ def test_undercut_flanks_begin_where_those_of_a_gear_do(many):
     assert gear.tooth.undercut
     one = replace(
         many, teeth=np.full((2, 2), 14.0), generating_shift=np.full((2, 2), 0.05),
-        tip_radius=np.full((2, 2), gear.tip_radius), bore_radius=np.full((2, 2), gear.bore_radius), centre_distance=np.full(2, 2.0 * gear.pitch_radius + 3e-4),
+        tip_radius=np.full((2, 2), gear.tip_radius), bore_radius=np.full((2, 2), gear.bore_radius),
+        centre_distance=np.full(2, 2.0 * gear.pitch_radius + 3e-4),
     )  # fmt: skip
     found = known_pairs(shipped_atlas("A"), one)
     assert found.held.all()
