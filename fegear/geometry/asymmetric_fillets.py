@@ -21,7 +21,7 @@ from fegear.geometry.asymmetric_tooth import AsymmetricSide, AsymmetricTooth
 from fegear.geometry.fillet_curves import turned_curve
 from fegear.geometry.fillet_shapes import EllipseOnSpace, FilletShape
 from fegear.geometry.flank_above import FlankAbove, Foot
-from fegear.geometry.involute_side import FLANKS, Flank, TakenOver
+from fegear.geometry.involute_side import FLANKS, Flank, InvoluteSide, TakenOver
 from fegear.geometry.shaped_side import FilletKey, ShapedSide
 from fegear.geometry.two_flanks import OneOfTwoFlanks, TwoFlanks
 
@@ -179,6 +179,12 @@ def with_fillets(
     if not any(given.values()):
         return tooth.side(side.flank)
     return AsymmetricFilletsTooth(tooth, given.get("drive"), given.get("coast")).side(side.flank)
+
+
+def kept_land(side: InvoluteSide) -> float:
+    """Angle beyond the middle of the generated tooth space at which the fillet of the other side ends [rad]."""
+    back = side.back
+    return back.root_land_half_angle + (back.turn if isinstance(back, AsymmetricFilletSide) else 0.0)
 
 
 def _above(side: AsymmetricSide | AsymmetricInternalSide, other: Foot | None) -> FlankAbove:

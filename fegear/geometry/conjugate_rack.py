@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 
 #: Points of a fillet.
 _POINTS = 193
@@ -64,13 +64,13 @@ class ConjugateRack:
         return float((self.along[convex] / self.turned[convex]).min(initial=np.inf))
 
 
-def conjugate_rack(tooth: InvoluteTooth, count: int = _POINTS) -> ConjugateRack:
+def conjugate_rack(tooth: InvoluteSide, count: int = _POINTS) -> ConjugateRack:
     """Outline of the rack that generates the fillet of an external tooth.
 
     Parameters
     ----------
-    tooth : InvoluteTooth
-        External.
+    tooth : InvoluteSide
+        External; the outline is that of the half of the rack beside its flank.
     count : int
         Points, evenly over the fillet's parameter.
 

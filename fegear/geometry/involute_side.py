@@ -121,6 +121,11 @@ class InvoluteSide(ABC):
 
     @property
     @abstractmethod
+    def generating_shift(self) -> float:
+        """x_E, generating profile shift coefficient: the shift less what the thickness allowance takes."""
+
+    @property
+    @abstractmethod
     def root_radius(self) -> float:
         """r_f [modules]."""
 

@@ -95,6 +95,11 @@ class OneOfTwoFlanks(SideOfTooth, Generic[T]):
         return self.flank
 
     @property
+    def generating_shift(self) -> float:
+        """x_E, of both flanks."""
+        return self.tooth.generating_shift
+
+    @property
     def normal_pressure_angle(self) -> float:
         """alpha_n of this flank [rad]."""
         return self.tooth.angle(self.flank)

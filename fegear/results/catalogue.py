@@ -133,7 +133,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("fillet-design", "pair.fillet_design.FILLET_DESIGN", "Fillet with minimum root stress",
               ("fillet-design",),
               "fillet of a gear with minimum root stress within clearance and minimum radius, and its gain",
-              effects=_PLANE_STRESS, internal=True),
+              effects=_PLANE_STRESS, internal=True, asymmetric=True),
         Entry("stress-in-mesh", "pair.stress_in_mesh.STRESS_IN_MESH", "Root stress of the gears in mesh",
               effects=_STRESS, internal=True, asymmetric=True),
         Entry("outline-motion", "pair.deformed_in_mesh.OUTLINE_MOTION",

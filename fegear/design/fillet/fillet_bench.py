@@ -21,15 +21,18 @@ from fegear.contact.plane.root_stress import RootStress
 from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
 from fegear.contact.plane.tooth_stress import LoadedStates, loaded_states
 from fegear.design.fillet.fillet_limits import Limits
+from fegear.design.fillet.shared_bottom import BothFillets
 from fegear.fem.plane.settings import MeshSettings, settings_at
 from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.asymmetric_fillets import with_fillets
 from fegear.geometry.conjugate_rack import conjugate_rack
-from fegear.geometry.custom_fillet_tooth import CustomFilletTooth, with_fillet
+from fegear.geometry.custom_fillet_tooth import with_fillet
 from fegear.geometry.fillet_shapes import FilletShape
 from fegear.geometry.flank_above import FlankAbove
 from fegear.geometry.gear import Gear
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.pair import Member
+from fegear.geometry.shaped_side import ShapedSide
 
 if TYPE_CHECKING:
     from fegear.fem.plane.root_stress import FilletCurve
@@ -58,14 +61,22 @@ class Judged:
 
     Parameters
     ----------
-    stress : ndarray, shape (S,)
-        Along it, the largest over the mesh [Pa].
+    stress : ndarray, shape (S,) or (2 S,)
+        Along it, the largest over the mesh [Pa]; of both fillets, one behind the other.
     room : ndarray
         What is left of its limits.
+    fillets : int
+        1 or 2.
     """
 
     stress: Array
     room: Array
+    fillets: int = 1
+
+    @property
+    def each(self) -> Array:
+        """Largest stress of each fillet, shape (fillets,) [Pa]."""
+        return self.stress.reshape(self.fillets, -1).max(axis=1)
 
 
 @dataclass
@@ -84,7 +95,7 @@ class FilletBench:
     settings : MeshSettings
     other : FilletBench, optional
         Of the same gear in the pair that loads its other flanks, as of a planet between sun and ring; by default that
-        is loaded as this one.
+        is loaded as this one. With asymmetric teeth, whose other fillet that pair pulls, both fillets are judged.
     """
 
     engagement: Engagement
@@ -104,15 +115,20 @@ class FilletBench:
         self.corner = mating_corner(e, self.member)
 
     @property
-    def generated(self) -> InvoluteTooth:
+    def generated(self) -> InvoluteSide:
         """The tooth as its tool makes it."""
-        tooth = self.gear.symmetric_tooth
-        return tooth.generated if isinstance(tooth, CustomFilletTooth) else tooth
+        tooth = self.gear.tooth
+        return tooth.as_generated if isinstance(tooth, ShapedSide) else tooth
+
+    @property
+    def both(self) -> bool:
+        """Whether two different fillets are judged."""
+        return self.other is not None and self.gear.asymmetric
 
     @property
     def active_roll(self) -> float:
         """Roll angle at which a mating tip touches the flank [rad]: there it must have begun."""
-        if self.other is not None:
+        if self.other is not None and not self.both:
             return min(self._active_roll, self.other.active_roll, key=abs)
         return self._active_roll
 
@@ -130,24 +146,38 @@ class FilletBench:
             tooth.base_radius, tooth.base_half_angle, tooth.side, math.pi / tooth.teeth, root_radius, tooth.form_radius
         )
 
-    def tooth(self, shape: FilletShape) -> InvoluteTooth:
-        """The gear's tooth with a fillet; raises `GeometryError`."""
-        return with_fillet(self.generated, shape)  # type: ignore[arg-type]  # a tooth that a tool generates
+    def tooth(self, shape: FilletShape | BothFillets) -> InvoluteSide:
+        """The gear's tooth with a fillet, of asymmetric teeth on this side or on both; raises `GeometryError`."""
+        tooth = self.gear.tooth
+        if not self.gear.asymmetric:
+            return with_fillet(self.generated, shape)  # type: ignore[arg-type]  # a tooth that a tool generates
+        flank = tooth.working_flank
+        shapes = {flank: shape.own, tooth.back.working_flank: shape.back} if isinstance(shape, BothFillets) else {
+            flank: shape
+        }  # fmt: skip
+        return with_fillets(tooth, **shapes)  # type: ignore[arg-type]  # an asymmetric one
 
-    def judged(self, tooth: InvoluteTooth) -> Judged:
+    def judged(self, tooth: InvoluteSide) -> Judged:
         """Stress along the fillet and what is left of the limits."""
-        return Judged(self.along(tooth), self.room(tooth))
+        return Judged(self.along(tooth), self.room(tooth), 1 + self.both)
 
-    def largest(self, tooth: InvoluteTooth) -> float:
+    def largest(self, tooth: InvoluteSide) -> float:
         """Largest stress by the objective [Pa]."""
         return float(self.along(tooth).max())
 
-    def along(self, tooth: InvoluteTooth) -> Array:
-        """Stress by the objective along the fillet, the largest over the mesh under the present loads, (S,) [Pa]."""
+    def along(self, tooth: InvoluteSide) -> Array:
+        """Stress by the objective along the fillet, the largest over the mesh under the present loads, (S,) [Pa].
+
+        Of both fillets (2 S,): the other one behind this one.
+        """
         self.tried += 1
-        gear = replace(self.gear, tooth=tooth)
-        solved = solve_gear(gear, self.settings, reach=self.reach, estimate_error=False)
-        return self.stress(finite_element_compliance(solved))
+        known = [
+            finite_element_compliance(
+                solve_gear(replace(self.gear, tooth=side), self.settings, reach=self.reach, estimate_error=False)
+            )
+            for side in ((tooth, tooth.back) if self.both else (tooth,))
+        ]
+        return self.stress(*known)
 
     @property
     def reach(self) -> int:
@@ -155,20 +185,22 @@ class FilletBench:
         own = max(self.engagement.compliance.source(self.member).reach, 1)
         return own if self.other is None else max(own, self.other.reach)
 
-    def stress(self, known: FiniteElementCompliance) -> Array:
-        """The same of a tooth that was solved.
+    def stress(self, known: FiniteElementCompliance, of_back: FiniteElementCompliance | None = None) -> Array:
+        """The same of a tooth that was solved, of asymmetric teeth in two meshes also as seen from its other flank.
 
         A fillet is pulled by loads on its flank and pressed by those on the other one: with another pair the larger of
         both fillets counts.
         """
         other = self.other
         tension = self._extreme(known, "tension").max(axis=0)
-        pulled = tension if other is None else other._extreme(known, "tension").max(axis=0)  # noqa: SLF001  (one class)
+        beside = known if of_back is None else of_back
+        pulled = tension if other is None else other._extreme(beside, "tension").max(axis=0)  # noqa: SLF001  (one class)
         if self.objective == "tension":
-            return np.maximum(tension, pulled)
+            return np.concatenate([tension, pulled]) if self.both else np.maximum(tension, pulled)
         pressed = self._extreme(known, "compression").min(axis=0)
-        beside = pressed if other is None else other._extreme(known, "compression").min(axis=0)  # noqa: SLF001  (one class)
-        return np.asarray(0.5 * np.maximum(tension - beside, pulled - pressed))
+        squeezed = pressed if other is None else other._extreme(beside, "compression").min(axis=0)  # noqa: SLF001  (one class)
+        ranges = tension - squeezed, pulled - pressed
+        return np.asarray(0.5 * (np.concatenate(ranges) if self.both else np.maximum(*ranges)))
 
     def _extreme(self, source: FiniteElementCompliance, side: Side) -> Array:
         """Stress at all positions of a tooth in the mesh, shape (positions, S) [Pa]."""
@@ -183,22 +215,36 @@ class FilletBench:
         ]  # fmt: skip
         return np.concatenate(found)
 
-    def room(self, tooth: InvoluteTooth) -> Array:
+    def room(self, tooth: InvoluteSide) -> Array:
         """What is left of the clearance [modules] and of the smallest radius (relative), (2 P,); negative: broken.
 
-        With `Limits.generated` also what is left of the tool's outline, relative, (P,).
+        With `Limits.generated` also what is left of the tool's outline, relative, (P,). Of both fillets one behind the
+        other.
         """
+        if self.both and self.other is not None:
+            back = self.other._room(tooth.back, [self.other.corner])  # noqa: SLF001  (one class)
+            return np.concatenate([self._room(tooth, [self.corner]), back])
+        corners = [self.corner] if self.other is None else [self.corner, self.other.corner]
+        return self._room(tooth, corners)
+
+    def _room(self, tooth: InvoluteSide, corners: list[tuple[Array, Array]]) -> Array:
+        """The same of one fillet, below the flank that a tooth is seen from."""
         fillet = tooth.fillet
         u = np.linspace(fillet.start, fillet.end, _LOOKED_AT)
         x, y = fillet.points(u)
         radius, polar = np.hypot(x, y), np.arctan2(x, y)
+        polar += self.gear.tooth.base_half_angle - tooth.base_half_angle  # as paths are seen
         share = (radius[-1] - radius) / (radius[-1] - radius[0])
-        corners = [self.corner] if self.other is None else [self.corner, self.other.corner]
         paths = [np.interp(tooth.side * radius, *corner, left=polar[0] + 1.0) for corner in corners]
         gap = (np.minimum.reduce(paths) - polar) * radius - self.limits.clearance * share
         sharp = 1.0 - self.limits.smallest_radius * np.abs(fillet.curvatures(u))
         made = [conjugate_rack(tooth).room(self.limits.smallest_tool_radius)] if self.limits.generated else []
         return np.concatenate([np.minimum(gap[:-1], 1.0), sharp, *made])
+
+    def rack_room(self, tooth: InvoluteSide) -> float:
+        """Least that is left of the outline of the rack that generates the fillet, or both, relative."""
+        sides = (tooth, tooth.back) if self.both else (tooth,)
+        return min(float(conjugate_rack(side).room(self.limits.smallest_tool_radius).min()) for side in sides)
 
 
 def mating_corner(e: Engagement, member: Member) -> tuple[Array, Array]:
@@ -224,9 +270,9 @@ def mating_corner(e: Engagement, member: Member) -> tuple[Array, Array]:
     """
     pair = e.pair
     mate, own = pair.gear("driven" if member == "driver" else "driver"), pair.gear(member)
-    side, inner = own.symmetric_tooth.side, -1.0 if own.symmetric_tooth.side * mate.symmetric_tooth.side < 0 else 1.0
+    side, inner = own.tooth.side, -1.0 if own.tooth.side * mate.tooth.side < 0 else 1.0
     along = inner * pair.centre_distance * math.sin(pair.working_pressure_angle)
-    tip = mate.symmetric_tooth.side * math.sqrt(
+    tip = mate.tooth.side * math.sqrt(
         (mate.involute_tip_radius - mate.base_radius) * (mate.involute_tip_radius + mate.base_radius)
     ) / mate.base_radius  # fmt: skip
     middle = float(pair.roll_angle(0.0, member))
@@ -236,7 +282,7 @@ def mating_corner(e: Engagement, member: Member) -> tuple[Array, Array]:
     mate_e, mate_n = -inner, -1.0
     at_e = own.base_radius - mate_e * mate.base_radius + mate.base_radius * mate_e * (np.cos(turn) - tip * np.sin(turn))
     at_n = along + mate.base_radius * mate_n * (np.sin(turn) + tip * np.cos(turn))
-    phi = own.symmetric_tooth.base_half_angle - t
+    phi = own.tooth.base_half_angle - t
     x, y = at_e * np.sin(phi) + at_n * np.cos(phi), at_e * np.cos(phi) - at_n * np.sin(phi)
     height, polar = side * np.hypot(x, y) / own.module, np.arctan2(x, y)
     low = int(np.argmin(height))

@@ -21,17 +21,22 @@ from fegear.contact.plane.maker import load_plane
 from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
 from fegear.design.fillet.fillet_bench import FilletBench, Objective
 from fegear.design.fillet.fillet_limits import Limits
-from fegear.design.fillet.fillet_search import Found, search
+from fegear.design.fillet.fillet_search import Designed, Family, Found, search
 from fegear.design.fillet.moved_ellipses import Basis, MovedEllipses
+from fegear.design.fillet.shared_bottom import BothFillets, BothSides, with_bottom
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.solution import solve_to_tolerance
+from fegear.geometry.asymmetric_fillets import kept_land
+from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
+from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.geometry.conjugate_rack import ConjugateRack, conjugate_rack
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_shapes import PointsFillet
 from fegear.geometry.gear import Gear
-from fegear.geometry.involute_tooth import InvoluteTooth
+from fegear.geometry.involute_side import FLANKS, InvoluteSide
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.shaped_side import ShapedSide
 
 #: Searches: basis, where the flank begins at first (share of the way to the base circle), and height of the first wave
 #: or bump. The first is the design, the others are its proof.
@@ -57,17 +62,25 @@ class Stressed:
     Parameters
     ----------
     name : str
-    tooth : InvoluteTooth
+    tooth : InvoluteSide
     stress, error : float
     along : ndarray, shape (S,)
         Largest stress over the mesh along the fillet, at `SHARES` of its length from the root circle [Pa].
+    back : ndarray, shape (S,), optional
+        The same of the other fillet of an asymmetric tooth, if both are designed.
     """
 
     name: str
-    tooth: InvoluteTooth
+    tooth: InvoluteSide
     stress: float
     error: float
     along: Array
+    back: Array | None = None
+
+    @property
+    def sides(self) -> list[tuple[InvoluteSide, Array]]:
+        """Each fillet that is judged, below the flank that its tooth is seen from, and the stress along it."""
+        return [(self.tooth, self.along), *([] if self.back is None else [(self.tooth.back, self.back)])]
 
 
 @dataclass(frozen=True)
@@ -94,9 +107,10 @@ class FilletDesign:
     off: tuple[float, float]
 
     @property
-    def shape(self) -> PointsFillet:
-        """The fillet."""
-        return self.found[self.first].shape
+    def shapes(self) -> tuple[PointsFillet, ...]:
+        """The fillet, of both sides that below the other flank behind it."""
+        shape = self.found[self.first].shape
+        return tuple(shape) if isinstance(shape, BothFillets) else (shape,)
 
     @property
     def first(self) -> str:
@@ -109,9 +123,9 @@ class FilletDesign:
         return self.found[self.first].kept
 
     @property
-    def tool(self) -> ConjugateRack | None:
-        """Tip of the rack that generates it, if there is one: none of internal gears."""
-        return None if self.best.tooth.internal else conjugate_rack(self.best.tooth)
+    def tools(self) -> tuple[ConjugateRack, ...]:
+        """Tip of the rack that generates it beside each fillet, if there is one: none of internal gears."""
+        return () if self.best.tooth.internal else tuple(conjugate_rack(side) for side, _ in self.best.sides)
 
     @property
     def off_by(self) -> float:
@@ -159,6 +173,11 @@ class LoadedSolved:
     def bench(self, limits: Limits, objective: Objective, other: FilletBench | None = None) -> FilletBench:
         """What fillets are judged by in it."""
         return FilletBench(self.loaded.engagement, self.loaded.nominal, self.member, limits, objective, other=other)
+
+    @property
+    def gear(self) -> Gear:
+        """That gets a fillet."""
+        return self.loaded.pair.gear(self.member)
 
     @property
     def reach(self) -> int:
@@ -217,12 +236,11 @@ def design_fillet(
     """
     bench = pair.bench(limits, objective, None if other is None else other.bench(limits, objective))
     member = pair.member
-    tooth = bench.gear.symmetric_tooth
+    tooth = bench.gear.tooth
     present = bench.largest(tooth)
-    flank = bench.flank(tooth.root_radius)
     found = {}
     for n, (name, (basis, share, height)) in enumerate(islice(SEARCHES.items(), searches)):
-        family = MovedEllipses(flank, bench.active_roll, basis, waves if basis == "waves" else max(1, waves - 1))
+        family = family_of(bench, basis, waves if basis == "waves" else max(1, waves - 1))
         start = _start(bench, family, share, height)
         if start is not None:
             found[name] = search(bench, family, present, start)
@@ -242,10 +260,23 @@ def design_fillet(
     progress(1.0)
     if rows[0] is None or rows[1] is None:
         raise ConvergenceError("fillet design: the present or the best fillet could not be solved")
-    return FilletDesign(member, rows[0], rows[1], rows[2], found, _off(bench, best.shape, flank.side))
+    return FilletDesign(member, rows[0], rows[1], rows[2], found, _off(bench, best.shape, tooth.side))
 
 
-def _start(bench: FilletBench, family: MovedEllipses, share: float, height: float) -> Array | None:
+def family_of(bench: FilletBench, basis: Basis, count: int) -> Family:
+    """Fillets of the gear by so many waves or bumps, of asymmetric teeth below one flank, or each of both."""
+    tooth = bench.gear.tooth
+    own = MovedEllipses(bench.flank(tooth.root_radius), bench.active_roll, basis, count)
+    if not bench.gear.asymmetric:
+        return own
+    if bench.both and bench.other is not None:
+        return BothSides(
+            own, MovedEllipses(bench.other.flank(tooth.root_radius), bench.other.active_roll, basis, count)
+        )
+    return with_bottom(own, tooth.root_radius * kept_land(tooth))  # up to where the kept fillet ends
+
+
+def _start(bench: FilletBench, family: Family, share: float, height: float) -> Array | None:
     """Numbers of the first start that is a fillet within reach, by a rack if it is to be generated by one.
 
     Far beyond what a rack can make, slopes lead nowhere: starts come nearer to the plain ellipse until one can, or lie
@@ -253,29 +284,36 @@ def _start(bench: FilletBench, family: MovedEllipses, share: float, height: floa
     """
     first = None
     asked = [(share, height)]
-    if bench.limits.generated and (share, height) != (0.0, 0.0):
-        asked += [(share / n, height / n) for n in (2.0, 4.0, 8.0)] + _DEEPER
+    if (share, height) != (0.0, 0.0):
+        asked += [(share / n, height / n) for n in (2.0, 4.0, 8.0)]
+        asked += _DEEPER if bench.limits.generated else []
     for one, up in (*asked, *_STARTS):
-        numbers = np.zeros(family.count + 1)
-        numbers[:2] = one, up
+        numbers = family.start(one, up)
         try:
             tooth = bench.tooth(family.shape(numbers))
         except GeometryError:
             continue
         first = numbers if first is None else first
-        if not bench.limits.generated or conjugate_rack(tooth).room(bench.limits.smallest_tool_radius).min() > 0.0:
+        if not bench.limits.generated or bench.rack_room(tooth) > 0.0:
             return numbers
     return first
 
 
-def full_rounded(tooth: InvoluteTooth) -> Tooth | None:
-    """The tooth that a rack with a full fillet of the same depth makes; None where there is none."""
-    made = getattr(tooth, "generated", tooth)
-    if not isinstance(made, Tooth) or made.rack.residual_undercut:
-        return None
-    rack = made.rack
+def full_rounded(tooth: InvoluteSide) -> InvoluteSide | None:
+    """The tooth that a rack with a full fillet of the same depth makes; None where there is none.
+
+    Beside asymmetric teeth it has equal tip roundings, which are one arc.
+    """
+    made = tooth.as_generated if isinstance(tooth, ShapedSide) else tooth
     try:
-        full = BasicRack.full_fillet(rack.addendum, rack.dedendum, rack.pressure_angle)
+        if isinstance(made, AsymmetricSide):
+            rack, radius = made.tooth.rack, made.tooth.rack.full_fillet_radius
+            drive, coast = (RackFlank(rack.half(flank).pressure_angle, radius) for flank in FLANKS)
+            whole = AsymmetricRack(drive, coast, rack.addendum, rack.dedendum)
+            return replace(made.tooth, rack=whole, tip_radius=made.tip_radius).side(made.flank)
+        if not isinstance(made, Tooth) or made.rack.residual_undercut:
+            return None
+        full = BasicRack.full_fillet(made.rack.addendum, made.rack.dedendum, made.rack.pressure_angle)
         return replace(made, rack=full, tip_radius=made.tip_radius)
     except GeometryError:
         return None
@@ -292,12 +330,13 @@ def moved(shape: PointsFillet, by: float) -> PointsFillet:
     return replace(shape, points=tuple(map(tuple, moved_points.T.tolist())))
 
 
-def _off(bench: FilletBench, shape: PointsFillet, side: int) -> tuple[float, float]:
+def _off(bench: FilletBench, shape: Designed, side: int) -> tuple[float, float]:
     here = bench.largest(bench.tooth(shape))
     found = []
-    for by in (-OFF, OFF):
+    for by in (-side * OFF, side * OFF):
+        off = BothFillets(*(moved(one, by) for one in shape)) if isinstance(shape, BothFillets) else moved(shape, by)
         try:
-            found.append(bench.largest(bench.tooth(moved(shape, side * by))) / here - 1.0)
+            found.append(bench.largest(bench.tooth(off)) / here - 1.0)
         except GeometryError:
             found.append(math.nan)
     return found[0], found[1]
@@ -312,23 +351,29 @@ class _Final:
     objective: Objective
     tolerance: float
 
-    def stressed(self, name: str, tooth: InvoluteTooth) -> Stressed:
+    def stressed(self, name: str, tooth: InvoluteSide) -> Stressed:
         """Of a tooth, with its estimated error."""
         both = [one for one in (self.other, self.pair) if one is not None]
-        new = replace(self.pair.loaded.pair.gear(self.pair.member), tooth=tooth)
-        of_new = solve_to_tolerance(new, self.tolerance, reach=max(one.reach for one in both))
-        known, bench, found = finite_element_compliance(of_new), None, []
+        apart = self.other is not None and self.pair.gear.asymmetric
+        known, bench, found = {}, None, []
         for one in both:  # that of the pair itself last, with the other one in it
+            new = replace(one.gear, tooth=tooth.back if apart and one is self.other else tooth)
+            if new not in known:
+                known[new] = solve_to_tolerance(new, self.tolerance, reach=max(pair.reach for pair in both))
+            of_new = known[new]
             e = one.with_gear(new, of_new)
             states = loaded_states(e, (), (one.loaded.nominal,), roll_positions(e, _POSITIONS))
-            found.append(tooth_stress(e, states, one.member, known))
+            found.append(tooth_stress(e, states, one.member, finite_element_compliance(of_new)))
             bench = FilletBench(
                 e, one.loaded.nominal, one.member, objective=self.objective, settings=of_new.settings, other=bench
             )
         assert bench is not None  # noqa: S101  (for mypy: there is a pair)
-        along = bench.stress(known)
+        along = bench.stress(*(finite_element_compliance(solved) for solved in reversed(known.values())))
+        each = tuple(along.reshape(1 + apart, -1))
+        behind = each[1] if apart else None
         pulled = max(one.error(0) or 0.0 for one in found)
         if self.objective == "tension" or found[-1].largest_compression is None:
-            return Stressed(name, tooth, max(float(one.largest_tension[0]) for one in found), pulled, along)
+            largest = max(float(one.largest_tension[0]) for one in found)
+            return Stressed(name, tooth, largest, pulled, each[0], behind)
         pressed = max(one.compression_off(0) or 0.0 for one in found)
-        return Stressed(name, tooth, float(along.max()), 0.5 * (pulled + pressed), along)
+        return Stressed(name, tooth, float(along.max()), 0.5 * (pulled + pressed), each[0], behind)

@@ -16,6 +16,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import GeometryError
 from fegear.design.fillet.fillet_bench import FilletBench, Judged
 from fegear.design.fillet.moved_ellipses import MovedEllipses
+from fegear.design.fillet.shared_bottom import BothFillets, BothSides
 from fegear.geometry.fillet_shapes import PointsFillet
 
 #: First and last region of trust, of the family's spread; how slopes are taken; rounds; promised gain that ends it.
@@ -24,6 +25,13 @@ _TRUST, _NO_TRUST, _SLOPE, _ROUNDS, _ENDED = 0.5, 2e-3, 0.02, 30, 1e-4
 _BROKEN = 10.0
 #: How far below zero what is left of a limit may end.
 KEPT = 1e-3
+#: Weight of the largest stress of each of two fillets against that of both: the less stressed one is not left as it is.
+_EACH = 0.02
+
+#: Families of fillets.
+Family = MovedEllipses | BothSides
+#: Fillets of a family.
+Designed = PointsFillet | BothFillets
 
 
 @dataclass(frozen=True)
@@ -33,7 +41,7 @@ class Found:
     Parameters
     ----------
     numbers : ndarray
-    shape : PointsFillet
+    shape : PointsFillet or BothFillets
     stress : float
         On the search's mesh, under the present loads [Pa].
     tried : int
@@ -43,7 +51,7 @@ class Found:
     """
 
     numbers: Array
-    shape: PointsFillet
+    shape: Designed
     stress: float
     tried: int
     room: float = 0.0
@@ -54,7 +62,7 @@ class Found:
         return self.room > -KEPT
 
 
-def search(bench: FilletBench, family: MovedEllipses, present: float, start: Array) -> Found:
+def search(bench: FilletBench, family: Family, present: float, start: Array) -> Found:
     """Lead a fillet to the least nearby.
 
     Parameters
@@ -74,7 +82,7 @@ def search(bench: FilletBench, family: MovedEllipses, present: float, start: Arr
     for _ in range(_ROUNDS):
         slopes = _slopes(bench, family, numbers, at)
         while trust > _NO_TRUST:
-            step, promised = _programme(at, slopes, present, numbers, spread, trust)
+            step, promised = _programme(at, slopes, present, numbers, family, trust)
             if promised < _ENDED:
                 return _found(bench, family, numbers, at, begun)
             there = _judged(bench, family, numbers + step * spread)
@@ -89,12 +97,12 @@ def search(bench: FilletBench, family: MovedEllipses, present: float, start: Arr
     return _found(bench, family, numbers, at, begun)
 
 
-def _found(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judged, begun: int) -> Found:
+def _found(bench: FilletBench, family: Family, numbers: Array, at: Judged, begun: int) -> Found:
     room = float(at.room.min())
     return Found(numbers, family.shape(numbers), float(at.stress.max()), bench.tried - begun, room)
 
 
-def _judged(bench: FilletBench, family: MovedEllipses, numbers: Array) -> Judged | None:
+def _judged(bench: FilletBench, family: Family, numbers: Array) -> Judged | None:
     try:
         return bench.judged(bench.tooth(family.shape(numbers)))
     except GeometryError:
@@ -102,10 +110,12 @@ def _judged(bench: FilletBench, family: MovedEllipses, numbers: Array) -> Judged
 
 
 def _merit(one: Judged, present: float) -> float:
-    return float(one.stress.max()) / present + _BROKEN * max(0.0, -float(one.room.min()))
+    each = one.each / present
+    lesser = _EACH * float(each.sum()) if each.size > 1 else 0.0
+    return float(each.max()) + lesser + _BROKEN * max(0.0, -float(one.room.min()))
 
 
-def _slopes(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judged) -> tuple[Array, Array]:
+def _slopes(bench: FilletBench, family: Family, numbers: Array, at: Judged) -> tuple[Array, Array]:
     """Change of stress and room by each number, over its spread."""
     stress, room = [], []
     for n in range(numbers.size):
@@ -113,7 +123,7 @@ def _slopes(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judge
         for step in (_SLOPE, -_SLOPE, 0.1 * _SLOPE, -0.1 * _SLOPE):
             off = numbers.copy()
             off[n] += step * family.spread[n]
-            if n == 0 and not 0.0 <= off[0] <= 1.0:
+            if not family.lower[n] <= off[n] <= family.upper[n]:
                 continue
             if (found := _judged(bench, family, off)) is not None:
                 break
@@ -123,20 +133,29 @@ def _slopes(bench: FilletBench, family: MovedEllipses, numbers: Array, at: Judge
 
 
 def _programme(
-    at: Judged, slopes: tuple[Array, Array], present: float, numbers: Array, spread: Array, trust: float
+    at: Judged, slopes: tuple[Array, Array], present: float, numbers: Array, family: Family, trust: float
 ) -> tuple[Array, float]:
     """Step of the spread that the slopes say is best, and the merit that it promises to gain."""
     from scipy.optimize import linprog
 
-    n = numbers.size
-    # unknowns: step, largest stress over the present one, largest broken limit
-    stress = np.hstack([slopes[0] / present, -np.ones((at.stress.size, 1)), np.zeros((at.stress.size, 1))])
-    room = np.hstack([-slopes[1], np.zeros((at.room.size, 1)), -np.ones((at.room.size, 1))])
-    share = ((0.0 - numbers[0]) / spread[0], (1.0 - numbers[0]) / spread[0])
-    bounds = [(max(-trust, share[0]), min(trust, share[1])), *[(-trust, trust)] * (n - 1), (0.0, None), (0.0, None)]
+    n, fillets, spread = numbers.size, at.each.size, family.spread
+    # unknowns: step, largest stress of each fillet over the present one, that of both, largest broken limit
+    both = int(fillets > 1)
+    of_each = np.repeat(np.eye(fillets), at.stress.size // fillets, axis=0)
+    stress = np.hstack([slopes[0] / present, -of_each, np.zeros((at.stress.size, both + 1))])
+    room = np.hstack([-slopes[1], np.zeros((at.room.size, fillets + both)), -np.ones((at.room.size, 1))])
+    rows, limits = [stress, room], [-at.stress / present, at.room]
+    cost = [_EACH if both else 1.0] * fillets + [1.0] * both + [_BROKEN]
+    if both:
+        rows.append(
+            np.hstack([np.zeros((fillets, n)), np.eye(fillets), -np.ones((fillets, 1)), np.zeros((fillets, 1))])
+        )
+        limits.append(np.zeros(fillets))
+    low, high = ((limit - numbers) / spread for limit in (family.lower, family.upper))
+    bounds = [(max(-trust, a), min(trust, b)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
+    bounds += [(0.0, None)] * (fillets + both + 1)
     found = linprog(
-        np.concatenate([np.zeros(n), [1.0, _BROKEN]]), np.vstack([stress, room]),
-        np.concatenate([-at.stress / present, at.room]), bounds=bounds, method="highs",
+        np.concatenate([np.zeros(n), cost]), np.vstack(rows), np.concatenate(limits), bounds=bounds, method="highs",
     )  # fmt: skip
     if found.x is None:
         return np.zeros(n), 0.0

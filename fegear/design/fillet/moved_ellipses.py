@@ -44,6 +44,20 @@ class MovedEllipses:
     count: int = 5
 
     @property
+    def lower(self) -> Array:
+        """Smallest numbers."""
+        return np.array([0.0, *[-math.inf] * self.count])
+
+    @property
+    def upper(self) -> Array:
+        """Largest numbers."""
+        return np.array([1.0, *[math.inf] * self.count])
+
+    def start(self, share: float, height: float) -> Array:
+        """Numbers of an ellipse with a first wave or bump [modules]."""
+        return np.array([share, height, *[0.0] * (self.count - 1)])
+
+    @property
     def spread(self) -> Array:
         """How far each number may reasonably move."""
         if self.basis == "bumps":

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Seconds of a fillet that is tried, how many a wave takes, and of the final solutions.
 _TRIED, _BY_WAVE, _FINAL = 0.08, 7.0, 1.5
+#: The same of both fillets of asymmetric teeth over that of one.
+_BOTH = 4.0
 
 
 def fillet_part(scene: Scene) -> FilletDesignPart:
@@ -43,9 +45,14 @@ def fillet_pairs(scene: Scene) -> tuple[str, ...]:
     return plane or tuple(scene.pairs)
 
 
+def named_gears(scene: Scene, name: str) -> dict[Member, str]:
+    """Gears of a pair by member as the case names them, whichever flank of asymmetric teeth it loads."""
+    return {member: scene.written.get(gear, gear) for member, gear in gears_of(scene, name).items()}
+
+
 def fillet_member(scene: Scene, name: str) -> Member:
     """Driver or driven gear of the pair: named, or the driver."""
-    gear, gears = fillet_part(scene).gear, gears_of(scene, name)
+    gear, gears = fillet_part(scene).gear, named_gears(scene, name)
     for member in MEMBERS:
         if gear in (None, gears[member]):
             return member
@@ -66,9 +73,9 @@ def other_pair(scene: Scene, name: str) -> str | None:
     other = fillet_part(scene).other_pair
     if other is None:
         return None
-    gear = gears_of(scene, name)[fillet_member(scene, name)]
+    gear = named_gears(scene, name)[fillet_member(scene, name)]
     key = "fillet_design.other_pair"
-    known = [one for one in scene.pairs if one != name and gear in gears_of(scene, one).values()]
+    known = [one for one in scene.pairs if one != name and gear in named_gears(scene, one).values()]
     if other not in scene.pairs:
         raise InputError(key, shown(other), "is not a pair of this case", nearest(other, known))
     if other not in known:
@@ -81,15 +88,16 @@ def _other_member(scene: Scene, name: str) -> Member | None:
     other = other_pair(scene, name)
     if other is None:
         return None
-    gear = gears_of(scene, name)[fillet_member(scene, name)]
-    return next(member for member in MEMBERS if gears_of(scene, other)[member] == gear)
+    gear = named_gears(scene, name)[fillet_member(scene, name)]
+    return next(member for member in MEMBERS if named_gears(scene, other)[member] == gear)
 
 
 def _check(scene: Scene, name: str) -> None:
     for one in (name, other_pair(scene, name)):
         if one is not None:
             _check_pair(scene, one)
-    gear = gears_of(scene, name)[fillet_member(scene, name)]
+    gear = named_gears(scene, name)[fillet_member(scene, name)]
+    _check_flanks(scene, name, gear)
     if (mesh := scene.case.gear[gear].tooth_mesh) is not None:
         raise InputError(
             f"gear.{gear}.tooth_mesh", shown(str(mesh)), "contradicts fillet design, which meshes every fillet anew",
@@ -99,6 +107,31 @@ def _check(scene: Scene, name: str) -> None:
         raise InputError(
             "fillet_design.generated", "true", f"requires a gear cut by a rack, and gear {gear} is internal",
             "set generated = false",
+        )  # fmt: skip
+
+
+def _check_flanks(scene: Scene, name: str, gear: str) -> None:
+    """Refuse loads on one flank of asymmetric teeth where those on both are needed."""
+    made, other = scene.gears[gear], other_pair(scene, name)
+    if not made.asymmetric:
+        return
+    if other is None and fillet_part(scene).objective == "alternating":
+        raise InputError(
+            "fillet_design.other_pair", "(not given)",
+            f"is required for alternating stress of gear {gear} (asymmetric teeth)",
+            "name a pair that loads the coast flanks, as of the same gears with driver and driven exchanged",
+        )  # fmt: skip
+    beside = _other_member(scene, name)
+    if other is None or beside is None:
+        return
+    flank, second = (
+        scene.gears[gears_of(scene, one)[member]].tooth.working_flank
+        for one, member in ((name, fillet_member(scene, name)), (other, beside))
+    )
+    if flank == second:
+        raise InputError(
+            "fillet_design.other_pair", shown(other), f"loads the {flank} flanks of gear {gear} as pair {name} does",
+            "name a pair that loads the other flanks, or remove it",
         )  # fmt: skip
 
 
@@ -118,7 +151,7 @@ def _check_pair(scene: Scene, name: str) -> None:
 
 
 def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
-    gears, member = gears_of(scene, name), fillet_member(scene, name)
+    gears, member = named_gears(scene, name), fillet_member(scene, name)
     part, module, usual = fillet_part(scene), scene.pairs[name].driver.module, Limits()
     other = other_pair(scene, name)
     limits = Limits(
@@ -129,7 +162,7 @@ def _inputs(scene: Scene, name: str) -> FilletDesignInputs:
     )
     return FilletDesignInputs(
         part.objective, limits, part.waves, part.searches, member, gears["driver"] == gears["driven"],
-        scene.case.accuracy.tolerance, _other_member(scene, name), name, gears, other or "",
+        scene.case.accuracy.tolerance, _other_member(scene, name), name, gears, gears_of(scene, name), other or "",
         gears_of(scene, other) if other else {},
     )  # fmt: skip
 
@@ -142,7 +175,7 @@ def _compute(asked: FilletDesignInputs, upstream: Upstream, work: Work) -> Fille
         solved = solution_of(upstream, gears["driver"]), solution_of(upstream, gears["driven"])
         return LoadedSolved(loaded, loaded.spec, solved, member, alike)
 
-    pair, other = of(asked.name, asked.gears, asked.member, alike=asked.alike), None
+    pair, other = of(asked.name, asked.solved, asked.member, alike=asked.alike), None
     if asked.other_member is not None:
         other = of(asked.other, asked.other_gears, asked.other_member, alike=False)
     design = design_fillet(
@@ -160,10 +193,12 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _forecast(scene: Scene, _name: str) -> Forecast:
+def _forecast(scene: Scene, name: str) -> Forecast:
     part = fillet_part(scene)
     tried = round(part.searches * _BY_WAVE * (part.waves + 1))
-    return Forecast({"searches": part.searches, "waves": part.waves}, _FINAL + _TRIED * tried)
+    asymmetric = scene.gears[gears_of(scene, name)[fillet_member(scene, name)]].asymmetric
+    solved = _BOTH if asymmetric and part.other_pair is not None else 1.0  # fillets of twice as many waves, each twice
+    return Forecast({"searches": part.searches, "waves": part.waves}, _FINAL + _TRIED * solved * tried)
 
 
 FILLET_DESIGN = Stage(

@@ -13,12 +13,15 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.shown import shown, shows
 from fegear.design.fillet.fillet_limits import Limits
+from fegear.geometry.asymmetric_tooth import AsymmetricSide
 from fegear.geometry.conjugate_rack import conjugate_rack
 from fegear.geometry.pair import GearPair, Member
+from fegear.geometry.shaped_side import FilletKey, ShapedSide
 
 if TYPE_CHECKING:
     from fegear.design.fillet.fillet_bench import Objective
     from fegear.design.fillet.fillet_design import FilletDesign, Stressed
+    from fegear.geometry.involute_side import InvoluteSide
 
 #: Points by which the length of a fillet is measured.
 _MEASURED = 1001
@@ -52,10 +55,12 @@ class FilletDesignInputs:
         Of the pair.
     gears : mapping of str to str
         Names of driver and driven.
+    solved : mapping of str to str
+        The same of their solutions: asymmetric gears have one for each flank.
     other : str
         Name of the pair that loads the other flanks of the gear; empty without.
     other_gears : mapping of str to str
-        Names of its driver and driven.
+        Names of the solutions of its driver and driven.
     """
 
     objective: Objective
@@ -68,6 +73,7 @@ class FilletDesignInputs:
     other_member: Member | None
     name: str = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
+    solved: Mapping[Member, str] = field(compare=False)
     other: str = field(default="", compare=False)
     other_gears: Mapping[Member, str] = field(default_factory=dict, compare=False)
 
@@ -87,11 +93,32 @@ class FilletDesignData:
 
 
 @dataclass(frozen=True)
-class FilletPoints:
-    """Points of the designed fillet, which a case reads back as ``fillet``; arrays of shape (N,)."""
+class DesignedFillet:
+    """One designed fillet, which a case reads back as ``fillet`` or ``coast_fillet``.
 
+    Parameters
+    ----------
+    key : {"fillet", "coast_fillet"}
+    side : str
+        " drive" or " coast" of asymmetric teeth, in words of titles; empty of equal flanks.
+    x, y : ndarray, shape (N,)
+        Points [m].
+    """
+
+    key: FilletKey
+    side: str
     x: Array = shown("mm", "distance from the centre line of the tooth")
     y: Array = shown("mm", "distance from the gear axis along the centre line of the tooth")
+    minimum_radius: float = shown("mm", "minimum radius of curvature of the designed fillet")
+    form_diameter: float = shown("mm", "root form diameter, where the designed fillet ends")
+    minimum_tool_radius: float | None = shown(
+        "mm", "minimum radius of curvature of the tip of the rack that generates the designed fillet"
+    )
+
+    @property
+    def suffix(self) -> str:
+        """In names of tables and values."""
+        return self.side.replace(" ", "_")
 
 
 @dataclass(frozen=True)
@@ -100,16 +127,46 @@ class ToolTip:
 
     Parameters
     ----------
-    role : str
+    role, dash : str
         Of its curve: that of the fillet.
+    side : str
+        As of `DesignedFillet`.
+    drawn : ndarray
+        Distance from the centre line, negative on the coast side where both are drawn [m].
     """
 
     role: str
+    dash: str
+    side: str
+    drawn: Array
     half_width: Array = shown("mm", "distance from the centre line of the tool's tooth")
     height: Array = shown(
         "mm", "height above the tool's reference line, where its tooth is half a pitch wide",
         label="height above the reference line",
     )  # fmt: skip
+
+    @property
+    def suffix(self) -> str:
+        """In names of tables."""
+        return self.side.replace(" ", "_")
+
+
+@dataclass(frozen=True)
+class LargestStress:
+    """Largest stress with a fillet, or with both.
+
+    Parameters
+    ----------
+    word, fillet : str
+        In names of values, and in their meaning.
+    error : float
+        Estimated [Pa].
+    """
+
+    word: str
+    fillet: str
+    error: float
+    largest: float = shown("MPa", "maximum root stress over the mesh", name="root_stress")
 
 
 @dataclass(frozen=True)
@@ -118,19 +175,22 @@ class StressedFillet:
 
     Parameters
     ----------
-    label, role : str
+    label, role, dash : str
         Of its curves.
-    word : str
-        In names of values.
+    word, side : str
+        In names of values; as of `DesignedFillet` where both fillets are designed.
     error : float
         Estimated, of the largest stress [Pa].
     x, y : ndarray, shape (N,)
-        Right half of the tooth from the middle of the space to above the fillet [m].
+        Half of the tooth from the middle of the space to above the fillet: the right one, of the other side of
+        asymmetric teeth the left one [m].
     """
 
     label: str
     role: str
+    dash: str
     word: str
+    side: str
     error: float
     x: Array = shown("mm", "distance from the centre line of the tooth")
     y: Array = shown("mm", "distance from the gear axis")
@@ -167,15 +227,52 @@ class FilletShown:
         return self.data.pair.driver.module
 
     @property
-    def points(self) -> FilletPoints:
-        """Of the designed fillet."""
-        x, y = np.array(self.design.shape.points).T * self.module
-        return FilletPoints(x, y)
+    def both(self) -> bool:
+        """Whether fillets of both sides are designed."""
+        return self.design.best.back is not None
+
+    def _side(self, side: InvoluteSide, *, always: bool = False) -> str:
+        """Word of a side of asymmetric teeth, where fillets of both are meant or always."""
+        return f" {side.working_flank}" if side.working_flank and (always or self.both) else ""
+
+    @cached_property
+    def designed(self) -> list[DesignedFillet]:
+        """Each designed fillet."""
+        found, m = [], self.module
+        tools = self.design.tools or (None,) * len(self.design.shapes)
+        for shape, (side, _), tool in zip(self.design.shapes, self.design.best.sides, tools, strict=True):
+            x, y = np.array(shape.points).T * m
+            curvature = side.fillet.curvatures(np.linspace(side.fillet.start, side.fillet.end, _MEASURED))
+            key = side.fillet_key if isinstance(side, ShapedSide) else None
+            found.append(
+                DesignedFillet(
+                    key or "fillet", self._side(side, always=True), x, y, float(m / np.abs(curvature).max()),
+                    2.0 * m * side.form_radius,
+                    m * tool.smallest_radius if tool is not None and tool.exists else None,
+                )
+            )  # fmt: skip
+        return found
+
+    @property
+    def largest(self) -> list[LargestStress]:
+        """Largest stress with each of them."""
+        return [LargestStress(_WORDS[one.name], one.name, one.error, one.stress) for one in self._rows]
+
+    @property
+    def of_sides(self) -> list[LargestStress]:
+        """The same in each of both fillets."""
+        return [
+            LargestStress(f"{one.word}{one.side.replace(' ', '_')}", one.fillet, one.error, one.largest)
+            for one in self.fillets if one.side
+        ]  # fmt: skip
 
     @cached_property
     def fillets(self) -> list[StressedFillet]:
-        """Present, that of a rack with a full radius where there is one, and the designed one."""
-        return [self._stressed(one) for one in self._rows]
+        """Present, that of a rack with a full radius where there is one, and the designed one; of both sides."""
+        return [
+            self._stressed(one, side, along, left=n > 0)
+            for one in self._rows for n, (side, along) in enumerate(one.sides)
+        ]  # fmt: skip
 
     @property
     def _rows(self) -> list[Stressed]:
@@ -185,18 +282,27 @@ class FilletShown:
     @cached_property
     def tools(self) -> list[ToolTip]:
         """Tips of the racks that generate these fillets, of those that one generates."""
-        found = [(one, conjugate_rack(one.tooth)) for one in self._rows if not one.tooth.internal]
         return [
-            ToolTip(_ROLES[one.name], tip.half_width * self.module, tip.height * self.module)
-            for one, tip in found
-            if tip.exists
-        ]
+            self._tip(one.name, side, left=n > 0)
+            for one in self._rows if not one.tooth.internal
+            for n, (side, _) in enumerate(one.sides) if all(conjugate_rack(each).exists for each, _ in one.sides)
+        ]  # fmt: skip
+
+    def _tip(self, name: str, side: InvoluteSide, *, left: bool) -> ToolTip:
+        """Beside one fillet; of asymmetric teeth from the middle of the tool's tooth at its reference line."""
+        tip, made = conjugate_rack(side), side.as_generated if isinstance(side, ShapedSide) else side
+        width = tip.half_width
+        if isinstance(made, AsymmetricSide):
+            width = width + side.pitch_radius * (side.base_half_angle - made.base_half_angle) + made.beside
+        m, dash = self.module, "dash" if left else "solid"
+        drawn = (-width if left else width) * m
+        return ToolTip(_ROLES[name], dash, self._side(side, always=True), drawn, width * m, tip.height * m)
 
     @property
-    def tool(self) -> ToolTip | None:
-        """Of the designed fillet; None where no rack generates it."""
-        made = self.design.tool
-        return self.tools[-1] if made is not None and made.exists else None
+    def tool(self) -> list[ToolTip]:
+        """Of the designed fillet; none where no rack generates it."""
+        made = self.design.tools
+        return self.tools[-len(made) :] if made and all(one.exists for one in made) else []
 
     @property
     def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -206,22 +312,28 @@ class FilletShown:
         middle = [0.5 * float(one.min() + one.max()) for one in (x, y)]
         return (middle[0] - half, middle[0] + half), (middle[1] - half, middle[1] + half)
 
-    def _stressed(self, one: Stressed) -> StressedFillet:
+    def _stressed(self, one: Stressed, side: InvoluteSide, along: Array, *, left: bool) -> StressedFillet:
         from fegear.design.fillet.fillet_bench import SHARES
-        from fegear.geometry.outline import tooth_outline
+        from fegear.geometry.outline import tooth_outline, turned
 
-        tooth, m = one.tooth, self.module
-        x, y = tooth.fillet.points(np.linspace(tooth.fillet.start, tooth.fillet.end, _MEASURED)) * m
+        m, named = self.module, self._side(side)
+        x, y = side.fillet.points(np.linspace(side.fillet.start, side.fillet.end, _MEASURED)) * m
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-        land = float(np.hypot(x[0], y[0])) * (math.pi / tooth.teeth - math.atan2(abs(float(x[0])), float(y[0])))
+        land = float(np.hypot(x[0], y[0])) * (math.pi / side.teeth - math.atan2(abs(float(x[0])), float(y[0])))
         places = SHARES * arc[-1]
         diameter = 2.0 * np.interp(places, arc, np.hypot(x, y))
-        half = tooth_outline(tooth, _CHORD) * m
-        up = tooth.side * (half[1] - 0.5 * diameter[-1])
+        half = tooth_outline(side, _CHORD) * m
+        up = side.side * (half[1] - 0.5 * diameter[-1])
         half = half[:, (half[0] >= 0.0) & (up <= _ABOVE * m)][:, ::-1]
+        if side.working_flank:  # flanks of all fillets on each other, about the centre line of the generated tooth
+            reference = self.design.present.sides[int(left)][0]
+            made = reference.as_generated if isinstance(reference, ShapedSide) else reference
+            half = turned(half, made.base_half_angle - side.base_half_angle)
+        largest = one.stress if one.back is None else float(along.max())
+        name = f"{one.name},{named}" if named else one.name
         return StressedFillet(
-            f"{one.name}: {one.stress * 1e-6:.4g} MPa", _ROLES[one.name], _WORDS[one.name], one.error, half[0], half[1],
-            one.stress, one.name, land + places, diameter, one.along,
+            f"{name}: {largest * 1e-6:.4g} MPa", _ROLES[one.name], "dash" if left else "solid", _WORDS[one.name], named,
+            one.error, -half[0] if left else half[0], half[1], largest, name, land + places, diameter, along,
         )  # fmt: skip
 
     @property
@@ -263,24 +375,3 @@ class FilletShown:
     def increase_if_higher(self) -> float:
         """NaN where there is no such fillet."""
         return self.design.off[1]
-
-    @property
-    @shows("mm", "minimum radius of curvature of the designed fillet")
-    def minimum_radius(self) -> float:
-        """Along the fillet [m]."""
-        fillet = self.design.best.tooth.fillet
-        curvature = np.abs(fillet.curvatures(np.linspace(fillet.start, fillet.end, _MEASURED)))
-        return float(self.module / curvature.max())
-
-    @property
-    @shows("mm", "minimum radius of curvature of the tip of the rack that generates the designed fillet")
-    def minimum_tool_radius(self) -> float | None:
-        """None where no rack generates it."""
-        tool = self.design.tool
-        return self.module * tool.smallest_radius if tool is not None and tool.exists else None
-
-    @property
-    @shows("mm", "root form diameter, where the designed fillet ends")
-    def form_diameter(self) -> float:
-        """[m]."""
-        return 2.0 * self.module * self.design.best.tooth.form_radius

@@ -51,8 +51,10 @@ def _answer(seen: Seen) -> Iterator[str]:
     if gain is not None:
         where = "below" if gain >= 0.0 else "above"
         rack = f"; {_in_percent(abs(gain), shown.gain_over_full_rounded_error)} {where} the full fillet of a rack"
+    sides = shown.designed
+    which = "fillets of both sides" if shown.both else f"{sides[0].side} fillet".strip()
     yield (
-        f"{subject}: fillet of gear {seen.asked.gear} by {len(design.shape.points)} points: {_kind(seen)} "
+        f"{subject}: {which} of gear {seen.asked.gear} by {sides[0].x.size} points: {_kind(seen)} "
         f"{before} -> {after} MPa ({_in_percent(-shown.gain, shown.gain_error)}){rack}."
     )
     if shown.spread_of_searches is not None:
@@ -62,10 +64,13 @@ def _answer(seen: Seen) -> Iterator[str]:
             f"{subject}: {len(design.found)} searches {agree} {percent(shown.spread_of_searches)}; a fillet {off} off "
             f"at half its length has {_loss(shown)}."
         )
-    if (radius := shown.minimum_tool_radius) is not None:
+    radii = [one.minimum_tool_radius for one in shown.designed if one.minimum_tool_radius is not None]
+    if len(radii) == len(shown.designed):
+        tables = " and ".join(f"fillet_tool_{seen.name}_{seen.asked.gear}{one.suffix}" for one in shown.designed)
+        table = "tables" if shown.both else "table"
         yield (
-            f"{subject}: a rack (hob) generates it; its tip, table fillet_tool_{seen.name}_{seen.asked.gear}, has a "
-            f"radius of at least {figures(1e3 * radius, 3)} mm."
+            f"{subject}: a rack (hob) generates it; its tip, {table} {tables}, has a radius of at least "
+            f"{figures(1e3 * min(radii), 3)} mm."
         )
 
 
@@ -112,17 +117,20 @@ def _remarks(seen: Seen) -> Iterator[Note | str]:
             f"{subject}: the designed fillet is for powder metal, moulded, broached and wire-cut gears; a pinion-type "
             "cutter for it is not searched."
         )
-    elif shown.tool is None:
+    elif not shown.tool:
         yield (
             f"{subject}: no rack generates the designed fillet exactly (its tip would turn back near the flank); set "
             "fillet_design.generated = true for the best fillet of a hob."
         )
     if design.full is None and not design.best.tooth.internal:
         yield f"{subject}: comparison with a rack of full tip radius omitted (no such rack for this gear)."
+    keys = " and ".join(
+        f'gear.{seen.asked.gear}.{one.key} = {{ kind = "points", file = "designed_fillet_{seen.name}_'
+        f'{seen.asked.gear}{one.suffix}.csv" }}'
+        for one in shown.designed
+    )
     yield (
-        f"{subject}: to compute with the designed fillet, run fegear apply RESULTS --fillet --case CASE, or set "
-        f'gear.{seen.asked.gear}.fillet = {{ kind = "points", file = "designed_fillet_{seen.name}_'
-        f'{seen.asked.gear}.csv" }}.'
+        f"{subject}: to compute with the designed fillet, run fegear apply RESULTS --fillet --case CASE, or set {keys}."
     )
 
 
@@ -135,26 +143,34 @@ def _up(seen: Seen) -> Axis:
 
 
 def _caption(seen: Seen) -> str:
+    half = "half a tooth from the middle of the tooth space (right) up the flank"
+    if seen.data.both:
+        half = f"tooth from the tooth space up its {seen.data.designed[0].side.strip()} flank (right) and the other one"
     return (
-        f"Pair {seen.name}, gear {seen.asked.gear}: half a tooth from the middle of the tooth space (right) up the "
-        f"flank with each fillet; {_kind(seen)} along each fillet from there, maximum over the mesh; half the tip of "
-        "each rack that generates one, in the colour of its fillet."
+        f"Pair {seen.name}, gear {seen.asked.gear}: {half} with each fillet; {_kind(seen)} along each fillet from "
+        "there, maximum over the mesh; half the tip of each rack that generates one, in the colour of its fillet."
     )
 
 
+def _plain(seen: Seen) -> dict[str, object]:
+    """Solid lines, of the other side of asymmetric teeth dashed."""
+    return {"dash": seen.one.dash, "markers": False}
+
+
 _FILLETS = Family("fillets", "{one.label}", "{one.role}")
-_PLAIN = {"dash": "solid", "markers": False}
+_TOOLS = Family("tools", "", "{one.role}")
 
 FILLET_DESIGN_SHEET = Sheet(
     of=FilletShown,
     tables=(
         Rows(
-            "designed_fillet_{name}_{asked.gear}", "Designed fillet of gear {asked.gear} in pair {name}",
-            ("x", "y"), of="points",
+            "designed_fillet_{name}_{asked.gear}{one.suffix}",
+            "Designed{one.side} fillet of gear {asked.gear} in pair {name}", ("x", "y"), each="designed",
         ),
         Rows(
-            "fillet_tool_{name}_{asked.gear}", "Tool tip for the designed fillet of gear {asked.gear} in pair {name}",
-            ("half_width", "height"), of="tool",
+            "fillet_tool_{name}_{asked.gear}{one.suffix}",
+            "Tool tip for the designed{one.side} fillet of gear {asked.gear} in pair {name}",
+            ("half_width", "height"), each="tool",
         ),
         Rows(
             "fillet_stress_{name}_{asked.gear}", "Root stress along fillets of gear {asked.gear} in pair {name}",
@@ -163,7 +179,11 @@ FILLET_DESIGN_SHEET = Sheet(
     ),
     values=(
         Number(
-            "largest", "error", owner=_OWNER, name="root_stress_{one.word}", each="fillets",
+            "largest", "error", owner=_OWNER, name="root_stress_{one.word}", each="largest",
+            meaning=lambda seen: f"maximum {_kind(seen)} over the mesh, {seen.one.fillet}",
+        ),
+        Number(
+            "largest", "error", owner=_OWNER, name="root_stress_{one.word}", each="of_sides",
             meaning=lambda seen: f"maximum {_kind(seen)} over the mesh, {seen.one.fillet}",
         ),
         Number("gain", "gain_error", owner=_OWNER, zero=_difference),
@@ -171,25 +191,25 @@ FILLET_DESIGN_SHEET = Sheet(
         Number("spread_of_searches", owner=_OWNER),
         Number("increase_if_deeper", owner=_OWNER),
         Number("increase_if_higher", owner=_OWNER),
-        Number("minimum_radius", exact, owner=_OWNER),
-        Number("minimum_tool_radius", exact, owner=_OWNER),
-        Number("form_diameter", exact, owner=_OWNER),
+        Number("minimum_radius", exact, owner=_OWNER, each="designed", ending="{one.suffix}"),
+        Number("minimum_tool_radius", exact, owner=_OWNER, each="designed", ending="{one.suffix}"),
+        Number("form_diameter", exact, owner=_OWNER, each="designed", ending="{one.suffix}"),
     ),
     figures=(
         Chart(
             "fillet_design_{name}", "Fillets of gear {asked.gear} in pair {name}", _caption,
             (
                 Over(
-                    _across, (Line("y", x="x", each=_FILLETS, look=_PLAIN),), _up, title="Fillets",
+                    _across, (Line("y", x="x", each=_FILLETS, look=_plain),), _up, title="Fillets",
                     panel={"height": 1.3, "equal": True},
                 ),
                 Over(
-                    "arc", (Line("stress", each=_FILLETS, look=_PLAIN),), "stress", options={"zero": True},
+                    "arc", (Line("stress", each=_FILLETS, look=_plain),), "stress", options={"zero": True},
                     title="Stress", panel={"height": 1.3},
                 ),
                 Over(
                     "half_width",
-                    (Line("height", x="half_width", each=Family("tools", "", "{one.role}"), look=_PLAIN),),
+                    (Line("height", x="half_width", x_si="drawn", each=_TOOLS, look=_plain),),
                     "height", title="Tool", panel={"height": 1.3, "equal": True}, of="tools", when="tools",
                 ),
             ),
