@@ -16,8 +16,9 @@ class FilletDesignPart(Part):
     gear: str | None = Field(default=None, description="Gear of the pair. Default: its driver.")
     other_pair: str | None = Field(
         default=None,
-        description="Pair that loads the other flanks of the gear, as of a planet between sun and ring gear. Default: "
-        "they are loaded as in `pair` (with the objective `alternating`).",
+        description="Pair that loads the other flanks of the gear (planet between sun and ring gear); of asymmetric "
+        "teeth both fillets are then designed. Default: loaded as in `pair`; asymmetric teeth: only the fillet below "
+        "the loaded flank.",
     )
     objective: Literal["tension", "alternating"] = Field(
         default="tension",

@@ -44,7 +44,8 @@ def fillet_design(
     objective : {"tension", "alternating"}
         Maximum root stress, or half its range in teeth loaded on both flanks (idlers, planets).
     other : Pair, optional
-        The pair, with a load of its own among its keys, that loads the other flanks of the same gear: planet and ring.
+        The pair, with a load of its own among its keys, that loads the other flanks of the same gear: planet and ring,
+        or the same gears with driver and driven exchanged. Of asymmetric teeth both fillets are then designed.
     clearance, minimum_radius, generated, searches, waves
         As in ``[fillet_design]`` of a case file.
     effects, tolerance, progress, cache

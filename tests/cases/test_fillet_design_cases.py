@@ -247,3 +247,67 @@ def test_three_searches_verify_each_other(objective, cache):
     gain = next(one for one in found.values if one.name == "I.a.gain")
     assert 0.2 < gain.si < 0.4
     assert 0.0 < gain.si_error < 0.03
+
+
+ASYMMETRIC = {"pressure_angle": "28 deg", "coast_pressure_angle": "20 deg", "rack": {"tip_radius": 0.2}}
+
+
+def asymmetric(**design):
+    """The same with two flanks, and a pair that loads the coast flanks."""
+    document = tomllib.loads(TEXT)
+    for gear in document["gear"].values():
+        gear.update(ASYMMETRIC)
+    document["pair"]["J"] = {"driver": "b", "driven": "a", "load": "700 N"}
+    document["fillet_design"] |= {"pair": "I", **design}
+    return document
+
+
+@pytest.mark.dear
+def test_both_fillets_of_asymmetric_teeth_come_with_points_that_a_case_reads_back(cache, monkeypatch):
+    monkeypatch.setattr("fegear.design.fillet.fillet_search._ROUNDS", 2)  # near the least, in a tenth of the time
+    document = asymmetric(other_pair="J", gear="b")
+    scene, plan = plan_of(document)
+    found = run_plan(scene, plan, cache=cache).outcomes[Task("fillet-design", "I")]
+    names = ("present", "full_rounded", "optimum")
+    largest, drive, coast = (
+        [value(found, f"root_stress_{one}{side}").si for one in names] for side in ("", "_drive", "_coast")
+    )
+    assert largest[2] < largest[1] < largest[0]
+    assert np.maximum(drive, coast) == pytest.approx(largest, rel=5e-3)
+    assert "fillets of both sides of gear b by 41 points: root stress with pair J" in found.answer.sentences[0]
+    text, tables = tomlkit.dumps(document), {one.name: one for one in found.tables}
+    applied = applied_fillet(text, Path("case.toml"), document, tables, "results/case")
+    again = tomllib.loads(applied.text)
+    assert {"fillet", "coast_fillet"} <= again["gear"]["b"].keys()
+    designed, best = build_scene(again, "case", Path()).gears["b"].tooth, found.data.design.best.tooth
+    for one, other in ((designed, best), (designed.back, best.back)):
+        assert one.form_radius == pytest.approx(other.form_radius, rel=1e-8)
+        assert one.fillet.points(0.5 * one.fillet.end) == pytest.approx(
+            other.fillet.points(0.5 * other.fillet.end), abs=1e-6
+        )
+    assert designed.turn == pytest.approx(best.turn, abs=1e-8)
+    assert any("gear.b.coast_fillet = {" in note for note in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("design", "said"),
+    [
+        ({"objective": "alternating"}, "fillet_design.other_pair = (not given): is required for alternating stress"),
+        ({"other_pair": "K"}, "fillet_design.other_pair"),
+        ({"gear": "c"}, "fillet_design.gear"),
+    ],
+)
+def test_refusals_of_asymmetric_teeth_name_their_key(design, said):
+    with pytest.raises(InputError, match="fillet_design") as refused:
+        plan_of(asymmetric(**design))
+    assert said in str(refused.value)
+
+
+def test_pairs_that_load_the_same_flanks_are_refused():
+    document = asymmetric(other_pair="J", gear="b")
+    document["gear"]["c"] = dict(document["gear"]["a"])
+    document["pair"]["J"] = {"driver": "c", "driven": "b", "load": "700 N"}
+    with pytest.raises(InputError, match="loads the drive flanks of gear b as pair I does"):
+        plan_of(document)
+    del document["fillet_design"]["other_pair"]
+    assert plan_of(document)[1].steps

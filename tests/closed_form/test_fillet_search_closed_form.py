@@ -48,7 +48,10 @@ class Bench:
         return Judged(np.asarray(self.stress(*numbers)), np.asarray(self.room(*numbers)))
 
 
-FAMILY = SimpleNamespace(spread=np.array([0.5, 0.02]), shape=lambda numbers: numbers)
+FAMILY = SimpleNamespace(
+    spread=np.array([0.5, 0.02]), lower=np.array([0.0, -math.inf]), upper=np.array([1.0, math.inf]),
+    shape=lambda numbers: numbers,
+)  # fmt: skip
 
 
 def least(stress, room=lambda a, b: [1.0], start=(0.5, 0.0), most=math.inf):
@@ -159,7 +162,7 @@ def test_the_best_of_the_searches_that_keep_their_limits_is_the_design():
         "driver", _stressed(150.0, 3.0), _stressed(99.0, 0.99), _stressed(120.0, 1.2), found, (0.1, 0.2)
     )
     assert design.first == "waves, other start"
-    assert (design.shape, design.kept, design.tried) == ("c", True, 60)
+    assert (design.shapes, design.kept, design.tried) == (("c",), True, 60)
     assert design.spread == pytest.approx(100.0 / 98.0 - 1.0)
     assert design.off_by == 0.01
     assert design.gain(design.present) == pytest.approx((1.0 - 0.66, 0.66 * (0.01 + 0.02)))
@@ -207,7 +210,7 @@ def test_a_design_is_searched_thrice_from_what_can_be_and_loaded_with_three_teet
 
 
 def test_starts_are_tried_in_turn_until_one_can_be():
-    family = SimpleNamespace(count=3, shape=lambda numbers: numbers)
+    family = SimpleNamespace(start=MovedEllipses(None, 1.0, count=3).start, shape=lambda numbers: numbers)
     assert fillet_design._start(Bench(None, None), family, 0.1, 0.3).tolist() == [0.1, 0.3, 0.0, 0.0]
 
     class Few(Bench):
@@ -222,13 +225,11 @@ def test_starts_are_tried_in_turn_until_one_can_be():
 
 
 def test_starts_that_a_rack_is_to_make_come_nearer_to_the_ellipse_until_one_can(monkeypatch):
-    family, bench, made = SimpleNamespace(count=3, shape=lambda numbers: numbers), Bench(None, None), {}
+    family = SimpleNamespace(start=MovedEllipses(None, 1.0, count=3).start, shape=lambda numbers: numbers)
+    bench, made = Bench(None, None), {}
     bench.limits = SimpleNamespace(generated=True, smallest_tool_radius=0.1)
 
-    def rack(numbers):
-        return SimpleNamespace(room=lambda radius: np.array([made["up to"] - numbers[1], 10.0 * radius]))
-
-    monkeypatch.setattr(fillet_design, "conjugate_rack", rack)
+    monkeypatch.setattr(bench, "rack_room", lambda numbers: made["up to"] - numbers[1], raising=False)
     for most, start in (
         (0.5, [0.2, 0.4]),
         (0.3, [0.1, 0.2]),

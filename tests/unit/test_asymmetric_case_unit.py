@@ -30,7 +30,7 @@ RELIEF = {"relief": True, "hertz": "load-dependent"}
 #: Results that take asymmetric teeth.
 KNOWN = {
     "geometry", "stiffness", "root-stress", "load-sharing", "transmission-error", "root-stress-history",
-    "load-distribution", "measured-flanks",
+    "load-distribution", "measured-flanks", "fillet-design",
 }  # fmt: skip
 #: The same of trains and of planetary sets.
 IN_TRAINS = {

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 Objective = Literal["tension", "alternating"]
 #: Roll positions of a search, and points of a fillet that are looked at for room and curvature.
 _POSITIONS, _LOOKED_AT, _CORNERS = 24, 193, 1201
+#: Room that a fillet gains for each module below the deepest place of a mating tip: a jump there would stop searches.
+_BELOW = 20.0
 #: Shares of the fillet's length at which its stress is followed.
 SHARES = np.linspace(0.02, 1.0, 65)
 #: Levels of settings of a search: of the mesh as a whole, and of the fillet's edges. These must follow any fillet: with
@@ -235,8 +237,12 @@ class FilletBench:
         radius, polar = np.hypot(x, y), np.arctan2(x, y)
         polar += self.gear.tooth.base_half_angle - tooth.base_half_angle  # as paths are seen
         share = (radius[-1] - radius) / (radius[-1] - radius[0])
-        paths = [np.interp(tooth.side * radius, *corner, left=polar[0] + 1.0) for corner in corners]
-        gap = (np.minimum.reduce(paths) - polar) * radius - self.limits.clearance * share
+        height = tooth.side * radius
+        gaps = [
+            (np.interp(height, *corner) - polar) * radius + _BELOW * np.maximum(corner[0][0] - height, 0.0)
+            for corner in corners
+        ]
+        gap = np.minimum.reduce(gaps) - self.limits.clearance * share
         sharp = 1.0 - self.limits.smallest_radius * np.abs(fillet.curvatures(u))
         made = [conjugate_rack(tooth).room(self.limits.smallest_tool_radius)] if self.limits.generated else []
         return np.concatenate([np.minimum(gap[:-1], 1.0), sharp, *made])

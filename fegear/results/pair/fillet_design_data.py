@@ -239,7 +239,8 @@ class FilletShown:
     def designed(self) -> list[DesignedFillet]:
         """Each designed fillet."""
         found, m = [], self.module
-        tools = self.design.tools or (None,) * len(self.design.shapes)
+        made = self.design.tools
+        tools = made if made and all(one.exists for one in made) else (None,) * len(self.design.shapes)
         for shape, (side, _), tool in zip(self.design.shapes, self.design.best.sides, tools, strict=True):
             x, y = np.array(shape.points).T * m
             curvature = side.fillet.curvatures(np.linspace(side.fillet.start, side.fillet.end, _MEASURED))
@@ -248,7 +249,7 @@ class FilletShown:
                 DesignedFillet(
                     key or "fillet", self._side(side, always=True), x, y, float(m / np.abs(curvature).max()),
                     2.0 * m * side.form_radius,
-                    m * tool.smallest_radius if tool is not None and tool.exists else None,
+                    None if tool is None else m * tool.smallest_radius,
                 )
             )  # fmt: skip
         return found
