@@ -7,6 +7,7 @@ import pytest
 from fegear.engine.named import Named
 from fegear.engine.value import Value
 from fegear.output.effects import effects_page, effects_table, sentence
+from fegear.studies import effects
 from fegear.studies.effects import Measured, Switched
 
 
@@ -50,3 +51,21 @@ def test_the_page_names_what_is_not_resolved():
     page = effects_page(scene, [found], [], effects_table([found]), {"hertz": None}, {"hertz": None}, {"hertz": ""})
     assert "not resolved (+- 1.2 and +- 2.5)" in str(page.sections)
     assert "none above the estimated error" in str(page.sections)
+
+
+def test_the_share_that_is_done_grows_from_nothing_by_one_run_after_the_other(monkeypatch, tmp_path):
+    monkeypatch.setattr(effects, "measure", lambda _scene: run(te(8.0, 0.1)))
+    path, told = tmp_path / "drive.toml", []
+    path.write_text("""results = ["transmission-error"]
+[gear.a]
+teeth = 23
+module = "3 mm"
+face_width = "20 mm"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "5 kN"
+""")
+    only = ("hertz", "corner_contact", "neighbour_coupling")
+    effects.effect_study(path, only=only, progress=lambda title, done: told.append((title, done)))
+    assert told == [("unchanged", 0.0), (only[0], 0.25), (only[1], 0.5), (only[2], 0.75)]

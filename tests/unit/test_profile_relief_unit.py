@@ -79,6 +79,9 @@ def test_crowning_is_a_parabola_about_the_middle():
 def test_tables_interpolate_and_are_held_beyond_their_ends():
     """A table of 31 to 33 mm that went on straight added 19.3 um of material below, where its first entry is 2.3."""
     linear = TabulatedRelief(np.array([0.2, 0.3, 0.5]), np.array([2e-6, 0.0, 4e-6]))
+    for kept in (linear.roll, linear.values):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[0] = 0.0
     np.testing.assert_allclose(linear.removal([0.1, 0.2, 0.25, 0.4, 0.6]), [2e-6, 2e-6, 1e-6, 2e-6, 4e-6], atol=1e-18)
     t = np.linspace(0.2, 0.5, 13)
     cubic = TabulatedRelief(t, (t - 0.35) ** 2, "cubic")
