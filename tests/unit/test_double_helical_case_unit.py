@@ -401,3 +401,11 @@ def test_harmonics_have_the_frequency_of_the_mesh_and_its_axial_acceleration():
     np.testing.assert_allclose(frequency, n * 200.0)
     np.testing.assert_allclose(acceleration, (2.0 * np.pi * frequency) ** 2 * motion * 1e-6, rtol=1e-9)
     assert motion[0] > 0.0
+
+
+def test_odd_teeth_of_double_helical_pairs_are_refused():
+    document = case(
+        pinion={"odd_tooth": [{"tooth": 0, "missing": True}]}, results=("mesh-stiffness-revolution",), width="solid"
+    )
+    with pytest.raises(FegearError, match=r"gear\.p\.odd_tooth = \(given\): is not available for double helical pairs"):
+        run(document)

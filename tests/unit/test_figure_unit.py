@@ -141,6 +141,16 @@ def test_a_menu_shows_one_view_and_paper_shows_them_beside_each_other(tmp_path):
     assert names == [f"own_{k}" for k in range(6)]
 
 
+def test_the_margin_has_room_for_the_longest_legend_of_all_views():
+    def view(count):
+        curves = tuple(Curve([0, 1], [0, k], f"curve {k}", f"series:{k}") for k in range(count))
+        return View(f"{count} curves", (Panel(Axis("x"), Axis("y", "N"), curves),))
+
+    few, many = (plotly_json(Figure("k", "t", "c", views=(view(2), view(n)))) for n in (2, 9))
+    assert [one["layout"]["meta"]["names"] for one in (few, many)] == [2, 9]
+    assert many["layout"]["margin"]["t"] > few["layout"]["margin"]["t"]
+
+
 def test_every_role_has_a_shade_on_either_ground_and_pages_know_the_pairs():
     pairs = [shade(role) for role in (*ROLES, "series:7", "ramp:0.000", "ramp:1.000", "ramp:0.333")]
     assert all(re.fullmatch("#[0-9A-F]{6}", colour) for pair in pairs for colour in pair)
