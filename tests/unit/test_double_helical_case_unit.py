@@ -407,5 +407,6 @@ def test_odd_teeth_of_double_helical_pairs_are_refused():
     document = case(
         pinion={"odd_tooth": [{"tooth": 0, "missing": True}]}, results=("mesh-stiffness-revolution",), width="solid"
     )
+    document["effects"]["odd_teeth"] = True
     with pytest.raises(FegearError, match=r"gear\.p\.odd_tooth = \(given\): is not available for double helical pairs"):
         run(document)
