@@ -25,7 +25,7 @@ def newmark(mass, damping, stiffness, te, force, step):
 
 @pytest.mark.dear
 def test_newmark_on_the_curves_of_a_pair_is_its_motion():
-    """Without loss of contact, near a third and half of the resonance: tangent about te, damping at the mean compliance."""
+    """Without loss of contact, near a third and half of the resonance: tangent, damping at the mean compliance."""
     pinion = fegear.Gear(23, "3 mm", profile_shift=0.3, bore_radius="15 mm", face_width="10 mm", name="pinion")
     wheel = fegear.Gear(57, "3 mm", profile_shift=-0.1, bore_radius="40 mm", face_width="10 mm", name="wheel")
     pair, speeds, zeta = fegear.Pair(pinion, wheel), (5000.0, 8000.0), 0.07
