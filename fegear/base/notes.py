@@ -88,6 +88,11 @@ def class_of(note: object) -> NoteClass:
     return note.kind if isinstance(note, Note) else NoteClass.INFORMATION
 
 
+def about(subject: str, clause: str) -> Note:
+    """A clause as a sentence on its subject, of the clause's class."""
+    return Note(f"{subject}: {clause}.", class_of(clause), getattr(clause, "margin", 0.0))
+
+
 #: Notes that stand open on a page, a terminal and in the window; the others are folded or counted.
 OPEN = 2
 #: Subjects that a merged note names.

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import shown, shows
+from fegear.contact.fitted_line import linear
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
+    from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.fitted_line import Fitted
     from fegear.fem.plane.influence import Side
     from fegear.geometry.pair import GearPair, Member
 
@@ -26,6 +29,28 @@ def reach_of_places(peaks: Array, peak: float) -> tuple[float, float]:
     """
     change = np.sign(peak) * (peaks - peak)
     return max(-float(change.min()), 0.0), max(float(change.max()), 0.0)
+
+
+def gains_of_places(found: FittedCurve, angle: Array, displaced: Array) -> Array:
+    """Measured / computed strain that grids at other places would give, by the least squares of a trace, shape (G,).
+
+    A displaced grid changes the curve as a whole, not only its peak: with the peak's change a grid within its
+    tolerance was said to disagree.
+
+    Parameters
+    ----------
+    found : FittedCurve
+        The trace beside the strain computed where the grid should be.
+    angle : ndarray, shape (P,)
+        Rotation of the gear, ascending [rad].
+    displaced : ndarray, shape (P, G)
+        Strain computed at each place.
+    """
+    free: tuple[Fitted, ...] = ("offset", "scale") if "offset" in found.fit else ("scale",)
+    still = np.zeros(found.samples)
+    return np.array(
+        [linear(found.computed, np.interp(found.angle, angle, one), still, free).scale for one in displaced.T]
+    )
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.base.notes import NoteClass, class_of
+from fegear.base.printed import figures
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.gauges import check_gauge, gauge_of
 from fegear.case.built.trace_levels import change_along
@@ -108,6 +110,32 @@ def test_levels_are_told_apart_and_the_gain_is_found_at_each(history, tmp_path):
     table = next(one for one in outcome.tables if one.name == "gauge_torques_g")
     assert len(table.columns) == 11
     assert any(one.key == "gauge_torques_g" for one in outcome.figures)
+
+
+@pytest.mark.parametrize("too_high", [1.5, -1.5])
+def test_a_torque_that_reads_too_much_is_said_with_how_much(history, tmp_path, too_high):
+    """At the torque read the strain is that of the torque that was there."""
+    written(tmp_path, history, staircase(*TORQUES) - too_high, sensor=lambda torque: torque + too_high)
+    outcome = ran(case({"file": "t.csv", "fit": FIT}), tmp_path)
+    found, gain = outcome.data.over_torque.torque_zero
+    assert found == pytest.approx(too_high, abs=0.15)
+    assert gain == pytest.approx(1.02, abs=5e-3)
+    (said,) = (one for one in outcome.remarks if "over 3 torques" in one)
+    assert class_of(said) is NoteClass.FAILS
+    assert f"check the zero of the torque: a torque that reads {figures(abs(found), 2)} N m too " in said
+    assert said.endswith(f"too {'high' if too_high > 0.0 else 'low'} would explain it, measured / computed strain then "
+                         f"{gain:.3f}.")  # fmt: skip
+    assert "; measured / computed strain is not linear over torque." in outcome.answer.sentences[0]
+    assert outcome.answer.rank == NoteClass.FAILS
+
+
+def test_a_gain_that_no_zero_of_the_torque_explains_names_none(history, tmp_path):
+    """It falls and rises again."""
+    written(tmp_path, history, staircase(*TORQUES), gain=lambda torque: 1.0 - 0.1 * (np.abs(torque - 16.0) < 2.0))
+    outcome = ran(case({"file": "t.csv", "fit": FIT}), tmp_path)
+    assert not outcome.data.over_torque.linear
+    assert outcome.data.over_torque.torque_zero is None
+    assert any(one.endswith("(load, scatter); check the zero of the torque.") for one in outcome.remarks)
 
 
 def test_plateaus_that_the_pair_does_not_have_are_named(history, tmp_path):

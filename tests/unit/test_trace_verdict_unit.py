@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.fitted_curve import fit_curve
-from fegear.contact.gauge_strain import reach_of_places
+from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
@@ -21,8 +21,8 @@ _PHASE = 2.0 * math.pi * np.arange(101) / 100.0
 #: Transmission error over a base pitch of 8 mm under two torques.
 X, LIGHT = 8e-3 * _PHASE / (2.0 * math.pi), 1e-6 * (np.sin(_PHASE) + 0.6 * np.cos(2.0 * _PHASE))
 HEAVY = 1e-6 * (3.0 * np.sin(_PHASE + 1.0) + 0.8 * np.sin(2.0 * _PHASE))
-#: Computed peak with places of the grid that change it by 1e-5 to either side.
-PEAK = ComputedPeak(9e-4, 0.0, 1e-4 * np.array([-1.0, 0.0, 1.0]), 9e-4 + 1e-5 * np.array([1.0, 0.0, -1.0]), 0.01)
+#: Computed peak with places of the grid that change the strain by 1/90 to either side.
+PEAK = ComputedPeak(9e-4, 0.0, 1e-4 * np.array([-1.0, 0.0, 1.0]), 1.0 + np.array([1.0, 0.0, -1.0]) / 90.0, 0.01)
 
 
 def strain(sign=1.0, sense=1.0, shift=0.0, noise=4e-6):
@@ -96,14 +96,33 @@ def test_a_difference_of_shape_makes_no_verdict_milder():
 def test_the_limit_by_the_place_is_that_of_the_side_on_which_the_difference_lies():
     """Near the maximum over the fillet a grid elsewhere sees less, never more."""
     low, high = (fit_curve(TURNS, ratio * strain(), ANGLE, STRAIN, ("offset", "scale")) for ratio in (0.95, 1.05))
-    peak = replace(PEAK, places=9e-4 + np.array([9e-6, 0.0, -9e-5]))
+    peak = replace(PEAK, gains=np.array([1.01, 1.0, 0.875]))
     below, above = (verdict(one, peak) for one in (low, high))
-    assert "agrees with the computed one: 5.0 % below it (limit 10 %: placement 10 %" in below
-    assert "; a grid 0.05 mm nearer to the tip or a torque or gauge factor 5.0 % lower would explain it; RMS" in below
+    assert "agrees with the computed one: 5.0 % below it (limit 13 %: placement 12 %" in below
+    assert "; a grid 0.04 mm nearer to the tip or a torque or gauge factor 5.0 % lower would explain it; RMS" in below
     assert "does not agree with the computed one: 5.0 % above it (limit 1.4 %: placement 1.0 %" in above
     assert "; check load and gauge factor (5.0 % higher would explain it), then whether the grid is within" in above
     assert reach_of_places(np.array([-7.0, -10.0, -10.5]), -10.0) == (3.0, 0.5)
     assert reach_of_places(np.array([10.0]), 10.0) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("fit", [("offset", "scale"), ("offset", "scale", "shift"), ("scale",)])
+def test_a_grid_displaced_by_its_tolerance_or_less_agrees_also_where_its_peak_changes_less_than_its_curve(fit):
+    """The measured side is the scale of the whole curve, so the limit is, too; the place found is the one it had."""
+    beside = 0.08 * (1.0 - np.exp(-(((ANGLE - 0.05) / 0.06) ** 2)))  # zero at the peak
+    displaced = STRAIN[:, None] * (1.0 - beside[:, None] * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]))
+    assert displaced.max(axis=0) == pytest.approx(np.full(5, STRAIN.max()), rel=2e-3)
+    place = np.mod(TURNS + math.pi, 2.0 * math.pi) - math.pi
+    noise = np.random.default_rng(4).normal(0.0, 4e-6, TURNS.size)
+    for k in (1, 3, 4):
+        measured = np.interp(place, ANGLE, displaced[:, k], left=0.0, right=0.0) + noise
+        found = fit_curve(TURNS, measured, ANGLE, STRAIN, fit)
+        gains = gains_of_places(found, ANGLE, displaced)
+        assert gains[2] == pytest.approx(1.0, abs=1e-12)
+        assert gains[k] == pytest.approx(found.gain, abs=4e-3)
+        peak = ComputedPeak(9e-4, 0.0, 1e-4 * np.array([-1.0, -0.5, 0.0, 0.5, 1.0]), gains, 0.01)
+        assert abs(found.gain - 1.0) > 0.015
+        assert abs(found.gain - 1.0) < peak.limits(2.0 * found.gain_scatter).together(found.gain - 1.0)
 
 
 def test_a_verdict_that_hangs_on_an_effect_that_is_off_is_not_given():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.base.notes import about
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
@@ -356,11 +357,11 @@ _SHEET = Sheet(
         lambda seen: [f"Gauge {seen.name}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
-        figure="gauge_{name}",
+        figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
     ),
     remarks=(
-        Remark(lambda seen: f"Gauge {seen.name}: {seen.data.verdict}.", when="verdict"),
-        Remark("Gauge {name}: {d.linearity}.", when="linearity"),
+        Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.verdict), when="verdict"),
+        Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.linearity), when="linearity"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark(
             lambda seen: f"Gauge {seen.name}: peak strain has an estimated error of {percent(_part(seen))} (tolerance "

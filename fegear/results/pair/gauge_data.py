@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.notes import Note, class_of
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.gauge_strain import GaugeHistory, reach_of_places
+from fegear.contact.gauge_strain import GaugeHistory, gains_of_places, reach_of_places
 from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Otherwise, verdict
 
@@ -185,26 +186,35 @@ class GaugeData(BesideTrace):
         return reach_of_places(self.history.peak_of_places(self.at), float(self.peak_strain[self.at]))
 
     @property
-    def linearity(self) -> str:
+    def linearity(self) -> Note:
         """How measured / computed strain changes over torque; empty where no verdict is given or the shapes differ."""
         if self.over_torque is None or not self.estimated or self.otherwise.better:
-            return ""
+            return Note("")
         return self.over_torque.said
+
+    @property
+    def urgency(self) -> float:
+        """A verdict at one torque is worth little where the strain is not linear over torque."""
+        return min(super().urgency, float(class_of(self.linearity)))
 
     @property
     def near_contact(self) -> bool:
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
 
-    def _verdict(self, *, brief: bool) -> str:
+    def _verdict(self, *, brief: bool) -> Note:
         if self.compared is None or not self.estimated:
-            return ""
+            return Note("")
         peak, error = float(self.peak_strain[self.at]), self.peak_error
-        return verdict(
+        judged = verdict(
             self.compared,
             ComputedPeak(
                 peak, 0.0 if error is None else float(error[self.at]), self.history.displacement,
-                self.history.peak_of_places(self.at), self.load_tolerance, self.gains, self.sharper, self.including,
+                gains_of_places(self.compared, self.history.angle, self.history.displaced[:, self.at]),
+                self.load_tolerance, self.gains, self.sharper, self.including,
             ),
             self.otherwise, brief=brief,
         )  # fmt: skip
+        if not brief or self.over_torque is None or not self.linearity or self.over_torque.linear:
+            return judged
+        return Note(f"{judged}; measured / computed strain is not linear over torque", judged.kind)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
+from fegear.base.notes import Note, NoteClass, class_of, exceeding, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.contact.measured_error import FittedError, MeasuredError, OrderLine
@@ -237,28 +238,29 @@ class TraceBeside:
         return f"once per revolution {' and '.join(said)}: runout of gear, shaft or encoder, not part of the comparison"
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Note:
         """Measured against computed, a clause without a subject; empty in drafts."""
         return self._verdict(brief=False)
 
     @property
-    def judged(self) -> str:
+    def judged(self) -> Note:
         """The same without what its limit is made of."""
         return self._verdict(brief=True)
 
-    def _verdict(self, *, brief: bool) -> str:
+    def _verdict(self, *, brief: bool) -> Note:
+        """Failing unless both agree."""
         if not self.estimated:
-            return ""
+            return Note("")
         fitted, computed = self.fitted, self.computed_peak_to_peak
         if self.otherwise.mate_teeth:
-            return (
+            return failing(
                 f"the mesh order of the trace is {self.otherwise.mate_teeth}, the number of teeth of the other gear: "
                 "check shaft"
             )
         if better := self.otherwise.said(fitted, computed, "the peak-to-peak value"):
-            return better
+            return failing(better)
         if fitted.gain <= 0.0:
-            return "measured and computed curve go against each other; check positive, reverse and fit"
+            return failing("measured and computed curve go against each other; check positive, reverse and fit")
         parts = {
             "torque": self.load_tolerance, "computation": (self.computed_error or 0.0) / computed,
             "scatter": _CERTAIN * fitted.gain_scatter,
@@ -268,12 +270,13 @@ class TraceBeside:
         within, by = abs(off) <= together, f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
         said = f"measured transmission error, fitted over the whole curve, is {by} the computed one"
         if within and parts["computation"] > _JUDGES:  # so wide a band would pass nearly everything
-            return (
+            return exceeding(
                 f"{said}; this cannot be judged: the computed one is known to ±{percent(parts['computation'])} only; "
                 'set width = "solid" or reduce accuracy.tolerance'
             )
         made_of = ", ".join(f"{name} {percent(part)}" for name, part in parts.items())
         limit = f"limit {percent(together)}" + ("" if brief else f": {made_of}")
+        kind = NoteClass.FAILS
         if fitted.likeness < _ALIKE:  # a gain of another shape proves nothing
             said = (
                 f"the curves differ in shape (correlation {fitted.likeness:.3f}, limit {_ALIKE:g}): check relief, "
@@ -286,15 +289,16 @@ class TraceBeside:
                 f"computed one{reason}"
             )
         elif within:
+            kind = NoteClass.INFORMATION
             said = f"measured transmission error agrees with the computed one: {by} it ({limit})"
         else:
             said = (
                 f"measured transmission error does not agree with the computed one: {by} it ({limit}); check torque, "
                 "relief and the unit of the trace"
             )
-        if brief or not fitted.fits:
-            return said
-        return f"{said}; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
+        if not brief and fitted.fits:
+            said += f"; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
+        return Note(said, kind)
 
 
 @dataclass(frozen=True)
@@ -318,6 +322,20 @@ class MeasuredErrorData:
     def last(self) -> TraceBeside:
         """Of the largest load."""
         return self.traces[-1]
+
+    @property
+    def readings(self) -> list[tuple[str, str]]:
+        """What had to be understood in the files, and at which torques [N m]; the same of all torques said once."""
+        torques: dict[str, list[str]] = {}
+        for one in self.traces:
+            if one.reading:
+                torques.setdefault(one.reading, []).append(f"{one.torque:.5g}")
+        return [("" if len(at) == len(self.traces) else f", {', '.join(at)} N m", said) for said, at in torques.items()]
+
+    @property
+    def urgency(self) -> float:
+        """The smaller, the sooner a reader has to act: the class of the verdict at the largest load."""
+        return float(class_of(self.last.judged))
 
     @property
     def several(self) -> bool:

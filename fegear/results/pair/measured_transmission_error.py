@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.base.notes import about
 from fegear.base.printed import figures
 from fegear.case.built.encoders import Encoders, encoders_of, pair_of_encoders
 from fegear.engine.citation import Citation, citing
@@ -224,16 +225,15 @@ _SHEET = Sheet(
             "Encoders {name}: largest order besides the mesh harmonics: {v[largest_other_order]}, amplitude "
             "{v[largest_other_amplitude]}."
         )],
-        figure="measured_te_{name}",
+        figure="measured_te_{name}", rank=lambda seen: seen.data.urgency,
     ),
     remarks=(
         Remark(
-            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.verdict}.", each="traces",
+            lambda seen: about(f"Encoders {seen.name}, {seen.one.torque:.5g} N m", seen.one.verdict), each="traces",
             when=lambda seen: bool(seen.one.verdict),
         ),
         Remark(
-            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: file read with {seen.one.reading}.",
-            each="traces", when=lambda seen: bool(seen.one.reading),
+            lambda seen: f"Encoders {seen.name}{seen.one[0]}: file read with {seen.one[1]}.", each="readings",
         ),
         Remark(
             lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.found.spikes} samples are spikes "

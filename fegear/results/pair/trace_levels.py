@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.notes import Note, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.measured_strain import turns_of
@@ -150,28 +151,61 @@ class OverTorque:
         return len(self.levels) > 1
 
     @property
-    def said(self) -> str:
+    def linear(self) -> bool:
+        """Whether the gain is the same at all torques, within what scatter and torque may change of it."""
+        return not bool((np.abs(self._changes) > self._limits).any())
+
+    @property
+    def torque_zero(self) -> tuple[float, float] | None:
+        """How much too high the torque reads [N m], and the gain without that, where this makes a change; else None.
+
+        A strain p that grows with the torque T is p (1 - t p' / p) at a torque that is t less than it reads.
+        """
+        torque = np.array([one.mean_torque for one in self.levels])
+        peak = np.array([one.computed_peak * one.mean_torque / one.torque for one in self.levels])
+        if self.linear or np.ptp(torque) <= 0.0:
+            return None
+        slope = np.gradient(np.append(0.0, peak), np.append(0.0, torque))[1:]
+        gains, bands = np.array([one.gain_at_mean for one in self.levels]), self.bands
+        weight = 1.0 / np.hypot(bands, 1e-3 * np.abs(gains))
+        matrix = np.stack([np.ones_like(torque), -slope / peak], axis=1)
+        gain, of_slope = np.linalg.lstsq(matrix * weight[:, None], gains * weight)[0]
+        rest = np.abs(gains - matrix @ np.array([gain, of_slope]))
+        if gain <= 0.0 or (rest > np.hypot(bands, self.load_tolerance * np.abs(gains))).any():
+            return None
+        return float(of_slope / gain), float(gain)
+
+    @property
+    def said(self) -> Note:
         """How the gain changes over torque, a sentence without a subject; empty for a single torque."""
         if not self.several or min(one.gain for one in self.levels) <= 0.0:
-            return ""
+            return Note("")
         by_gain = sorted(self.levels, key=lambda one: one.gain_at_mean)
         ends = " to ".join(f"{one.gain_at_mean:.3f} ({_torque(one.torque)})" for one in (by_gain[0], by_gain[-1]))
+        start = f"measured / computed strain over {len(self.levels)} torques is {ends}"
         changes, limits = self._changes, self._limits
-        beyond = np.abs(changes) > limits
-        if not beyond.any():
+        if self.linear:
             i = self._largest
-            judged = (
-                f"linear: the largest change from the nominal torque is {percent(abs(self.change))} at "
+            return Note(
+                f"{start}, linear: the largest change from the nominal torque is {percent(abs(self.change))} at "
                 f"{_torque(self.levels[i].torque)}, within ±{percent(limits[i])}"
             )
-        else:
-            i = int(np.argmax(np.abs(changes) / limits))
-            judged = (
-                f"not linear: at {_torque(self.levels[i].torque)} it is {percent(abs(changes[i]))} "
-                f"{'above' if changes[i] > 0.0 else 'below'} that at the nominal torque, beyond ±{percent(limits[i])} "
-                "(load, scatter); check the zero of the torque and of the bridge"
-            )
-        return f"measured / computed strain over {len(self.levels)} torques is {ends}, {judged}"
+        i = int(np.argmax(np.abs(changes) / limits))
+        return failing(
+            f"{start}, not linear: at {_torque(self.levels[i].torque)} it is {percent(abs(changes[i]))} "
+            f"{'above' if changes[i] > 0.0 else 'below'} that at the nominal torque, beyond ±{percent(limits[i])} "
+            f"(load, scatter); {self._to_check}"
+        )
+
+    @property
+    def _to_check(self) -> str:
+        """What to look at where the gain is not the same at all torques."""
+        check = "check the zero of the torque" + ("" if "offset" in self.levels[self.at].found.fit else
+                                                  " and of the bridge")  # fmt: skip
+        if (zero := self.torque_zero) is None:
+            return check
+        reads = f"reads {figures(abs(zero[0]), 2)} N m too {'high' if zero[0] > 0.0 else 'low'}"
+        return f"{check}: a torque that {reads} would explain it, measured / computed strain then {zero[1]:.3f}"
 
     @property
     def off_nominal(self) -> str:

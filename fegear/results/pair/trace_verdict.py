@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fegear.base.arrays import Array
+from fegear.base.notes import Note, NoteClass, class_of, exceeding, failing
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
@@ -85,8 +86,9 @@ class ComputedPeak:
     ----------
     strain, error : float
         Computed, and its estimated error.
-    displacement, places : ndarray, shape (G,)
-        Of grids within the placement tolerance, towards the tip [m], and the peak there; zero is among them.
+    displacement, gains : ndarray, shape (G,)
+        Of grids within the placement tolerance, towards the tip [m], and the measured / computed strain that such a
+        grid would give; zero, with the gain one, is among them.
     load_tolerance : float
         Relative uncertainty of load and gauge factor.
     neglected : mapping of str to float
@@ -98,7 +100,7 @@ class ComputedPeak:
     strain: float
     error: float = 0.0
     displacement: Array = field(default_factory=lambda: np.zeros(1))
-    places: Array = field(default_factory=lambda: np.zeros(0))
+    gains: Array = field(default_factory=lambda: np.ones(1))
     load_tolerance: float = 0.0
     neglected: Mapping[str, float] = field(default_factory=dict)
     sharper: str = ""
@@ -107,8 +109,8 @@ class ComputedPeak:
     def limits(self, scatter: float) -> Limits:
         """How far a measured strain with a scatter (two standard errors, relative) may differ."""
         size = abs(self.strain)
-        lower, upper = reach_of_places(self.places, self.strain) if self.places.size else (0.0, 0.0)
-        known = Limits(lower / size, upper / size, self.load_tolerance, self.error / size, scatter)
+        lower, upper = reach_of_places(self.gains, 1.0)
+        known = Limits(lower, upper, self.load_tolerance, self.error / size, scatter)
         return replace(known, neglected=abs(self.missing))
 
     @property
@@ -117,10 +119,10 @@ class ComputedPeak:
         return sum(self.neglected.values())
 
     def place_of(self, gain: float) -> float | None:
-        """The smallest displacement at which the peak is so many times the computed one [m]; None: not within reach."""
-        if self.places.size < 2:
+        """The smallest displacement that would give this gain [m]; None: not within reach."""
+        if self.gains.size < 2:
             return None
-        off = self.places / self.strain - gain
+        off = self.gains - gain
         at = np.flatnonzero(off[:-1] * off[1:] <= 0.0)
         if not at.size:
             return None
@@ -200,14 +202,19 @@ class BesideTrace:
         return None if self.compared is None else thinned(self.compared)
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Note:
         """Measured against computed strain at the nominal load; empty without a trace and in drafts."""
         return self._verdict(brief=False)
 
     @property
-    def judged(self) -> str:
+    def judged(self) -> Note:
         """The same without what its limit is made of."""
         return self._verdict(brief=True)
+
+    @property
+    def urgency(self) -> float:
+        """The smaller, the sooner a reader has to act: the class of the verdict."""
+        return float(class_of(self.judged))
 
     @property
     def drifts(self) -> str:
@@ -234,7 +241,7 @@ class BesideTrace:
         """How the figure draws the trace; empty where it is drawn as measured."""
         return drawn_as(self.compared)
 
-    def _verdict(self, *, brief: bool) -> str:
+    def _verdict(self, *, brief: bool) -> Note:
         """Without a trace, and in drafts, empty."""
         raise NotImplementedError
 
@@ -253,8 +260,8 @@ def thinned(found: FittedCurve) -> FittedCurve:
 
 def verdict(
     found: FittedCurve, peak: ComputedPeak, otherwise: Otherwise | None = None, *, brief: bool = False
-) -> str:  # fmt: skip
-    """Measured against computed strain, in one or two sentences without a subject.
+) -> Note:  # fmt: skip
+    """Measured against computed strain, in one or two sentences without a subject; failing unless they agree.
 
     The limit has placement, load, computation and the noise of the trace: not its residual, with which a difference of
     shape would make the verdict milder.
@@ -273,9 +280,9 @@ def verdict(
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
     if better := otherwise.said(found, size):
         as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"
-        return better + as_given
+        return failing(better + as_given)
     if found.gain <= 0.0:
-        return "measured and computed strain have opposite signs; check fillet, sign and shift of the trace"
+        return failing("measured and computed strain have opposite signs; check fillet, sign and shift of the trace")
     with_them = found.gain * (1.0 + peak.missing) - 1.0
     known = replace(limits, neglected=0.0)
     if missing := limits.neglected > _COUNTS * known.together(off):  # too much to be an uncertainty: judged either way
@@ -284,12 +291,13 @@ def verdict(
     within, by = abs(off) <= together, _by(off)
     either = missing and (within or abs(with_them) <= known.together(with_them) or off * with_them < 0.0)
     if within and limits.model > _JUDGES:  # so wide a band would pass nearly everything
-        return (
+        return exceeding(
             f"measured strain is {by} the computed one; this cannot be judged: the computed strain is known to "
             f"±{percent(limits.model)} only{f'; {peak.sharper}' if peak.sharper else ''}"
         )
     limit = f"limit {percent(together)}" + ("" if brief else f": {limits.parts(off)}")
     effects = " and ".join(peak.neglected)
+    kind = NoteClass.FAILS
     if found.likeness < _ALIKE:  # a gain of another shape proves nothing
         or_fit = "" if "shift" in found.fit else ", or fit shift"
         judged = (
@@ -299,11 +307,13 @@ def verdict(
     elif reason := otherwise.of_ratio(found.gain, together):
         judged = f"measured strain is {figures(found.gain)} times the computed one ({limit}){reason}"
     elif either:
+        kind = NoteClass.NEGLECTED
         judged = (
             f"measured strain is {by} the one computed without {effects} and {_by(with_them)} that with "
             f"{'it' if len(peak.neglected) == 1 else 'them'}: this cannot be judged; {peak.including}"
         )
     elif within:
+        kind = NoteClass.INFORMATION
         judged = f"measured strain agrees with the computed one: {by} it ({limit}){_explained(peak, limits, off)}"
     else:
         also = f", {_by(with_them)} it with {effects}" if missing else ""
@@ -315,10 +325,11 @@ def verdict(
         judged += f"; {saturation}" if (saturation := _saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
         steps = "; the torque was not steady from turn to turn" if unsteady_named(found) else ""
-        return judged + drifts + steps
+        return Note(judged + drifts + steps, kind)
     if not found.fits:
-        return judged
-    return f"{judged}; RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
+        return Note(judged, kind)
+    residual = f"RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
+    return Note(f"{judged}; {residual}", kind)
 
 
 def _by(off: float) -> str:

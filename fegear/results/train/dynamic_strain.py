@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
+from fegear.base.notes import Note, about
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
+from fegear.contact.gauge_strain import gains_of_places
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -125,15 +127,15 @@ class DynamicStrain(BesideTrace):
         """Whether other meshes, or fluctuating torques, excite the train."""
         return not self.alone
 
-    def _verdict(self, *, brief: bool) -> str:
+    def _verdict(self, *, brief: bool) -> Note:
         found = self.found
         if self.compared is None or (self.sharper and found.peak_error is None):
-            return ""
+            return Note("")
         return verdict(
             self.compared,
             ComputedPeak(
-                found.peak, found.peak_error or 0.0, found.displacement, found.peak_of_places, self.load_tolerance,
-                sharper=self.sharper,
+                found.peak, found.peak_error or 0.0, found.displacement,
+                gains_of_places(self.compared, found.angle, found.displaced), self.load_tolerance, sharper=self.sharper,
             ),
             self.otherwise, brief=brief,
         )  # fmt: skip
@@ -275,7 +277,7 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
-        Remark(lambda seen: f"Gauge {seen.name}, in motion: {seen.data.verdict}.", when="verdict"),
+        Remark(lambda seen: about(f"Gauge {seen.name}, in motion", seen.data.verdict), when="verdict"),
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
         Remark("Gauge {name}, in motion: {d.unsteady}.", when="unsteady"),
