@@ -256,7 +256,8 @@ const fegearGlance = (() => {
   function dim() {
     for (const kept of plots.values()) kept.figure.classList.toggle("stale", dimmed && awaited.figures.has(kept.key));
     for (const [name, parts] of cells) parts[0].parentElement.classList.toggle("stale", dimmed && awaited.numbers.has(`${pair}.${name}`));
-    $("answer")?.classList.toggle("stale", dimmed);
+    $("answer")?.classList.toggle("stale", dimmed || fegear.isMoving()); // sentences come when nothing moves
+    for (const one of document.querySelectorAll(".mesh-told, .mesh-scale")) one.classList.toggle("stale", dimmed);
     document.getElementById("maps")?.classList.toggle("stale", dimmed && !fegear.isMoving()); // the map is made anew when all is at rest
   }
   return {
@@ -284,7 +285,7 @@ const fegearGlance = (() => {
       for (const key of [...specs.keys()]) if (owners.has(key) && !tasks.includes(owners.get(key))) specs.delete(key);
       awaited = { figures: new Set(specs.keys()), numbers: new Set(numbers.keys()) };
       clearTimeout(dimming);
-      if (!fegear.isMoving()) dimming = setTimeout(() => { dimmed = true; dim(); }, AWHILE); // what moves would flicker
+      if (fegear.isMoving()) dim(); else dimming = setTimeout(() => { dimmed = true; dim(); }, AWHILE); // figures that move would flicker
     },
     hands(content) {
       const before = Object.keys(pairs).length;

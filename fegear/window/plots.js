@@ -2,7 +2,7 @@
 // Small plots: one panel of a figure as an SVG, quick enough to be drawn anew at every step of a value that moves.
 const fegearPlots = (() => {
   const SVG = "http://www.w3.org/2000/svg";
-  const ROOM = { left: 46, right: 8, top: 6, bottom: 30 }; // about what is drawn [px]
+  const ROOM = { left: 46, right: 8, top: 6, bottom: 30, large: 34 }; // about what is drawn [px]; `large`: below it, in large type
   const MOST_TICKS = 6, DASHES = { dash: "6 4", dot: "2 3", dashdot: "6 3 2 3" };
 
   const node = (tag, attributes, parent) => {
@@ -44,7 +44,10 @@ const fegearPlots = (() => {
     return power * (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10);
   }
   function ticks([low, high], most) {
-    const by = step(high - low, most), found = [];
+    const found = [];
+    let by = step(high - low, most);
+    const inside = () => Math.floor(high / by + 1e-9) - Math.ceil(low / by - 1e-9) + 1;
+    for (let more = 2; inside() < 2 && more < 17; more *= 2) by = step(high - low, more * most); // one number alone is no scale
     for (let i = Math.ceil(low / by - 1e-9); i * by <= high + 1e-9 * by; i += 1) found.push(i * by);
     return [found, Math.max(0, -Math.floor(Math.log10(by) + 1e-9))];
   }
@@ -65,8 +68,9 @@ const fegearPlots = (() => {
   }
   const plain = (text) => text.replace(/<[^>]*>/g, "");
 
-  const letter = () => (document.documentElement.classList.contains("large-type") ? 7.5 : 5.4); // about its width [px]
-  const axis = () => (document.documentElement.classList.contains("large-type") ? 6.2 : 5.4); // of an axis' title
+  const enlarged = () => document.documentElement.classList.contains("large-type");
+  const letter = () => (enlarged() ? 7.5 : 5.4); // about its width [px]
+  const axis = () => (enlarged() ? 6.2 : 5.4); // of an axis' title
   function fitting(text, most) { // words from the end are left away, but for the unit
     const [, words, unit] = /^(.*?)\s*(\[[^\]]*\])?$/.exec(text), kept = words.split(" ");
     while (kept.length > 1 && kept.join(" ").length + (unit?.length ?? 0) > most) kept.pop();
@@ -149,7 +153,7 @@ const fegearPlots = (() => {
     kept.draw = (spec, panel = 1, { held = false, pinned = null, marks = [], words = "", darker = {} } = {}) => {
       const { width, height } = kept.room ?? svg.getBoundingClientRect();
       if (width < 40 || height < 40) return false;
-      kept.box = { x0: ROOM.left, x1: width - ROOM.right, y0: height - ROOM.bottom, y1: ROOM.top };
+      kept.box = { x0: ROOM.left, x1: width - ROOM.right, y0: height - (enlarged() ? ROOM.large : ROOM.bottom), y1: ROOM.top };
       shade = fegearFigure.theme() === "dark" ? (colour) => (typeof colour === "string" && darker[colour.slice(0, 7)] ? darker[colour.slice(0, 7)] + colour.slice(7) : colour) : (colour) => colour;
       kept.ranges = rangesOf(spec, panel, held && kept.ranges);
       if (pinned) { // A never leaves the axes, whatever the figure says of its own

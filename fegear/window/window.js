@@ -332,6 +332,22 @@ const fegear = (() => {
   };
 
   // ---- a small picture, enlarged: the whole figure, which follows as well --------------------------------------------
+  const LARGER = 1.4; // type of an enlarged figure, for a room
+  /** Makes all type of a figure larger, and the room about its panels with it. */
+  function larger(layout, look) {
+    const grow = (one) => {
+      for (const [name, value] of Object.entries(one ?? {})) {
+        if (name.endsWith("font") && value.size) value.size *= LARGER;
+        if (value && typeof value === "object") grow(value);
+      }
+    };
+    look.layout.font = { size: 12, ...look.layout.font };
+    grow(look);
+    grow(layout);
+    const before = layout.margin;
+    layout.margin = Object.fromEntries(Object.entries(before).map(([side, room]) => [side, Math.round(LARGER * room)]));
+    layout.height += layout.margin.t - before.t + layout.margin.b - before.b;
+  }
   let enlarged = null;
   async function enlarge(key, words) {
     await plotly;
@@ -353,8 +369,9 @@ const fegear = (() => {
     dialog.setAttribute("aria-label", spec.heading);
     dialog.querySelector("h2").textContent = spec.heading;
     dialog.querySelector("p").textContent = spec.caption;
-    const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, darker);
-    await draw(dialog.querySelector(".plot"), { key, ...shaded }, shadesOf(JSON.stringify(template), mode, darker), again);
+    const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, darker), look = shadesOf(JSON.stringify(template), mode, darker);
+    if (document.documentElement.classList.contains("large-type")) larger(shaded.layout, look);
+    await draw(dialog.querySelector(".plot"), { key, ...shaded }, look, again);
   }
 
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time

@@ -199,8 +199,42 @@ def asked_and_answered(browser) -> None:
         assert top >= bottom - 0.5
         assert browser.run(place.format("glance", "bottom")) <= browser.run("innerHeight") + 0.5
         assert browser.run("document.querySelector('#question p').textContent").endswith("?")
+    browser.run("document.getElementById('to-report').click()")
+    browser.run("document.getElementById('to-answers').click()")
+    said = "getComputedStyle(document.getElementById('question'), '::after').content"
+    assert "hidden until" in browser.run(said)  # not an empty page
+    browser.run("document.getElementById('to-report').click()")
+    assert browser.run(said) == "none"
     browser.run("document.getElementById('to-exercise').click()")
     browser.until("document.getElementById('question').hidden")
+
+
+def in_large_type(browser) -> None:
+    """With unsaved changes every button stays within the page; axes keep a scale; enlarged figures grow, too."""
+    size = "parseFloat(getComputedStyle(document.querySelector('#enlarged .xtick text')).fontSize)"
+    drawn = "document.querySelector('#enlarged[open] .xtick text') !== null"
+    sizes = []
+    for large in (False, True):
+        if large:
+            browser.run("document.getElementById('to-large').click()")
+            browser.until("document.documentElement.classList.contains('large-type')")
+        browser.click("document.querySelector('[data-picture=te] button')")
+        browser.until(drawn)
+        sizes.append(browser.run(size))
+        browser.click(button("Close"))
+        browser.until(f"!({drawn})")
+    assert sizes[1] == pytest.approx(1.4 * sizes[0])
+    assert browser.run("document.querySelector('.headbar .unsaved').textContent") == "changed, not saved"
+    for width in (1024, 1280, 1300):
+        browser.size(width, 800)
+        browser.until("document.documentElement.scrollWidth <= innerWidth")
+        assert browser.run("document.querySelector('.views summary').getBoundingClientRect().right") <= width
+    # Heights of numbers at the axis of ordinates: two at least, else there is no scale.
+    numbers = "[...one.querySelectorAll('text[text-anchor=end]')].length"
+    browser.until(f"[...document.querySelectorAll('svg.small-plot')].every(one => {numbers} >= 2)")
+    browser.run("document.getElementById('to-large').click()")
+    browser.size(1300, 900)
+    browser.until("!document.documentElement.classList.contains('large-type')")
 
 
 def test_a_value_stepped_by_keyboard_changes_the_results_and_one_that_is_refused_leaves_them(browser, serve, tmp_path):
@@ -520,6 +554,7 @@ def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves
     browser.click("document.querySelector('[data-picture=te] button')")
     browser.until("document.querySelector('#enlarged[open] .main-svg') !== null")
     browser.click(button("Close"))
+    in_large_type(browser)
     before = path.read_text()
     browser.run("document.querySelector('.choice').open = true")
     browser.click("[...document.querySelectorAll('.choice label')].find(one => one.textContent === 'Mesh stiffness')")
