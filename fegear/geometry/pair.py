@@ -295,6 +295,8 @@ class GearPair:
         if self.asymmetric:
             one, other, back = self.driver.tooth, self.driven.tooth, self.from_the_back
             arc = free_arc(one, other, self.centre_distance / self.driver.module) * self.driver.module
+            if abs(arc) < _ROUND_OFF * self.centre_distance:
+                return 0.0
             return arc * math.cos(back.working_pressure_angle) * math.cos(back.driver.base_helix_angle)
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
         if abs(turn) < _ROUND_OFF:  # the centre distance that leaves none: no backlash, not -8e-15 mm

@@ -251,6 +251,21 @@ def test_a_pair_of_equal_flanks_is_the_usual_pair(distance):
             assert getattr(one, name) == pytest.approx(getattr(usual, name), rel=1e-12, abs=1e-12), name
 
 
+@pytest.mark.parametrize("teeth", [(24, 24), (17, 40), (22, 41), (31, 23)])
+def test_a_pair_at_its_tight_distance_has_no_backlash_at_all(teeth):
+    """Not -1.7e-15 mm, as a run printed."""
+    for x in (-0.05, 0.1, 0.25):
+        pair = pair_of([AsymmetricTooth(z, rack(25.0, 18.0, (0.2, 0.25)), x) for z in teeth])
+        assert pair.normal_backlash == 0.0
+        assert (
+            pair_of(
+                [AsymmetricTooth(z, rack(25.0, 18.0, (0.2, 0.25)), x) for z in teeth],
+                pair.centre_distance * (1.0 + 1e-9),
+            ).normal_backlash
+            > 0.0
+        )  # a nanometre is one
+
+
 def test_a_pair_turned_round_drives_on_its_other_flanks():
     teeth = [AsymmetricTooth(z, rack(30.0, 20.0, (0.15, 0.3)), x) for z, x in ((22, 0.3), (41, -0.1))]
     distance = pair_of(teeth).centre_distance + 0.05

@@ -1,5 +1,7 @@
 """Result ``stiffness-study``: formulas over finite elements of random pairs, against single pairs by other ways."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -49,7 +51,16 @@ def test_quantiles_are_those_of_the_rows(found):
     first, second = found.answer.sentences[:2]
     assert first.startswith("Stiffness c' of one tooth pair by formula / FE, 12 random pairs")
     assert second.startswith("Mean mesh stiffness c_gamma by formula / FE, 12 random pairs")
-    assert [figure.key for figure in found.figures] == ["stiffness_spread"]
+    assert all(len(number.split(".")[1]) == 3 for number in re.findall(r"\d+\.\d+", first + second))  # to compare
+    (figure,) = found.figures
+    assert figure.key == "stiffness_spread"
+    ratio = table["ratio_to_fe"][np.isfinite(table["ratio_to_fe"])]
+    for panel in figure.panels:
+        low, high = panel.x.limits  # about what is drawn, by the names of the sentences
+        assert min(1.0, ratio.min()) - 0.15 < low < min(1.0, ratio.min())
+        assert max(1.0, ratio.max()) < high < max(1.0, ratio.max()) + 0.15
+        assert "ISO 6336-1" in {curve.name for curve in panel.items if hasattr(curve, "name")}
+    assert figure.panels[1].title == "mean mesh stiffness c_γ"
 
 
 def test_a_pair_of_the_study_has_the_stiffness_of_a_run_and_of_a_solved_gear(found):

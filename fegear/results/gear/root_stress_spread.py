@@ -34,7 +34,7 @@ WORDS = {
 }
 
 
-#: Ratios that the picture shows; what lies beyond stands at its edges.
+#: Ratios that the picture shows at most; what lies beyond stands at its edges.
 _SHOWN = (0.5, 1.5)
 
 
@@ -143,7 +143,10 @@ class Population:
         return f"{points} loads on {len(gears)} gears, uniformly distributed over {bounds_in_words(self.table)}"
 
 
-def spread_chart(name: str, title: str, caption: Text, quantity: str, error: Callable[[Seen], float]) -> Chart:
+def spread_chart(
+    name: str, title: str, caption: Text, quantity: str, error: Callable[[Seen], float],
+    limits: tuple[float, float] = _SHOWN,
+) -> Chart:  # fmt: skip
     """Cumulative distributions of formula over finite elements, of what has `SomeLoads` as ``loads``: a panel each.
 
     Parameters
@@ -154,6 +157,8 @@ def spread_chart(name: str, title: str, caption: Text, quantity: str, error: Cal
         Name of the axis of ratios.
     error : callable
         Relative error of the finite elements.
+    limits : tuple of float
+        Of the axis of ratios, within 0.5 to 1.5.
     """
 
     def marks(seen: Seen) -> tuple[Zone | Mark, ...]:
@@ -162,7 +167,7 @@ def spread_chart(name: str, title: str, caption: Text, quantity: str, error: Cal
 
     line = Line("share", x="ratio", each=Family("spreads", most=None), look={"dash": "steps", "markers": False})
     panel = Over(
-        Axis(quantity, limits=_SHOWN), (line,),
+        Axis(quantity, limits=limits), (line,),
         Axis("fraction of points with a smaller ratio", "%", limits=(0.0, 100.0)), marks, title="{one.title}",
         each="loads",
     )  # fmt: skip

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.printed import figures, percent
+from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
@@ -140,8 +140,9 @@ class ShownStiffness:
     def loads(self) -> list[SomeLoads]:
         """Cumulative distributions of each quantity."""
         return [
-            SomeLoads(words, {
-                name: spread(self.ratios(quantity, name)) for name in dict.fromkeys(map(str, self.rows.formula))
+            SomeLoads(words.replace("c_gamma", "c_γ"), {
+                _FORMULAS.get(name, name): spread(self.ratios(quantity, name))
+                for name in dict.fromkeys(map(str, self.rows.formula))
             })
             for quantity, words in _QUANTITIES.items()
         ]  # fmt: skip
@@ -211,13 +212,20 @@ def _closest(seen: Seen) -> Iterator[str]:
         known = [one for one in seen.data.quantiles if one.quantity == quantity]
         known.sort(key=lambda one: abs(math.log(one.median)))
         said = ", ".join(
-            f"{_FORMULAS.get(one.formula, one.formula)} {figures(one.median)} ({figures(one.percentile_5)} to "
-            f"{figures(one.percentile_95)})" for one in known
+            f"{_FORMULAS.get(one.formula, one.formula)} {one.median:.3f} ({one.percentile_5:.3f} to "
+            f"{one.percentile_95:.3f})" for one in known
         )  # fmt: skip
         yield (
             f"{words[0].upper()}{words[1:]} by formula / FE, {seen.data.pairs} random pairs, median (5 % to 95 % of "
             f"the pairs): {said}."
         )
+
+
+def _limits(ratio: Array) -> tuple[float, float]:
+    """Axis about 1 and all known ratios, in whole tenths, within what a spread shows."""
+    known = ratio[np.isfinite(ratio)]
+    low, high = min(1.0, float(known.min())), max(1.0, float(known.max()))
+    return max(0.5, math.floor(10.0 * low - 0.2) / 10.0), min(1.5, math.ceil(10.0 * high + 0.2) / 10.0)
 
 
 def _spread(seen: Seen) -> tuple[Figure, ...]:
@@ -226,7 +234,7 @@ def _spread(seen: Seen) -> tuple[Figure, ...]:
         "stiffness_spread", "Distribution of the errors of the stiffness formulas",
         f"{seen.data.pairs} random pairs at {seen.asked.line_load * 1e-3:.6g} N/mm. Right of 1: stiffness "
         f"overestimated. Grey: estimated error of the finite elements, {percent(off)} at 95 % of the pairs.",
-        "stiffness, formula / FE", lambda _seen: off,
+        "stiffness, formula / FE", lambda _seen: off, limits=_limits(seen.data.rows.ratio_to_fe),
     )  # fmt: skip
     return tuple(chart.figures(seen))
 

@@ -110,7 +110,8 @@ def _answer(seen: Seen) -> Iterator[str]:
         stated = "" if off is None else f" ± {off * 1e-6:.1g}"
         yield (
             f"Pair {seen.name}, crack of tooth {one.tooth} of gear {one.gear}: K_I up to {one.k_1_max * 1e-6:.4g}"
-            f"{stated} MPa·√m, with K_II {one.k_2_there * 1e-6:.3g}; minimum K_I {one.k_1_min * 1e-6:.3g}."
+            f"{stated} MPa·√m, with K_II {one.k_2_there * 1e-6:.3g} MPa·√m; minimum K_I {one.k_1_min * 1e-6:.3g} "
+            "MPa·√m."
         )
 
 
