@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _SAME = 1e-3
 #: Least length of a piece of a section, over the shaft's.
 _PIECE = 1e-9
+#: A body thinner than this share of the root circle's radius is the shaft itself.
+_THIN = 0.03
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,9 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
     """Give a shaft the bodies of its gears.
 
     Below a body the shaft reaches to the radius at which the gear is held, where the body begins: of a gear that is
-    pressed on that is its surface, of teeth that are cut into it a circle inside.
+    pressed on that is its surface. Teeth that are cut into a shaft have no seat inside of it: their body begins at its
+    surface, and there is none of a pinion whose root circle lies there. A core that ended at the circle at which the
+    solved gear is held would be a neck between the body and the thick shaft beside it.
 
     Parameters
     ----------
@@ -79,11 +83,38 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
             continue
         if outer.max() > 2.0 * found.seat * (1.0 + _SAME):
             said.append(f"{place.gear} is treated as integral with its shaft, solid up to its root circle")
+            if gear.body is None:
+                surface = 0.5 * float(outer.max())
+                if surface > gear.root_radius * (1.0 - _THIN):
+                    shaft = _filled(shaft, low, high, 2.0 * gear.root_radius)
+                    continue
+                found = replace(found, rings=((surface, *found.rings[0][1:]),))
         elif outer.min() < 2.0 * found.seat * (1.0 - _SAME):
             said.append(f"{place.gear} is treated as solid between shaft and bore_radius")
         shaft = _filled(shaft, low, high, 2.0 * found.seat)
         bodies[place.gear] = GearOnShaft(found, place.at, gear.material.young_modulus)
     return StiffenedShaft(replace(shaft, gears=tuple(bodies.values())), bodies, tuple(said))
+
+
+def cut_into(scene: Scene, gear: str) -> float | None:
+    """Radius of the hole below teeth that are cut into a shaft of the case [m]; None of other gears.
+
+    They are where the shaft is thicker than the gear's bore, as for `stiffened`; a body with rim and web never is.
+    """
+    made = scene.gears[gear]
+    if made.tooth.internal or made.body is not None:
+        return None
+    for part in scene.case.shaft.values():
+        for place in part.gears:
+            if place.gear == gear:
+                bare, half = part.build(), 0.5 * made.face_width
+                low, high = (min(max(place.at + end, 0.0), bare.length) for end in (-half, half))
+                if not high - low > _PIECE * bare.length:
+                    return None
+                outer, inner = bare.diameters(np.linspace(low, high, 17)[1:-1])
+                thicker = outer.max() > 2.0 * made.bore_radius * (1.0 + _SAME)
+                return 0.5 * float(inner.max()) if thicker else None
+    return None
 
 
 def strained(scene: Scene, name: str) -> Shaft:

@@ -27,8 +27,23 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
     body = Body(rim, part.web, bored and part.body is None, fixed)
     if rim is None or part.rim_thickness is not None or part.body is not None:
         return body
+    from fegear.case.built.gears_on_shafts import cut_into
+
+    hole = cut_into(scene, gear)
+    if hole is not None:  # the material goes on below the bore, down to the hole of the shaft
+        rim = made.root_radius - hole if hole > 0.0 else None
+        body = Body(rim, part.web, bored=False, fixed=fixed)
+    if rim is None:
+        return body
     backup = rim / (made.tip_radius - made.root_radius)
+    source = "bore_radius" if hole is None else "the hole of its shaft"
     told = f"{rim * 1e3:.4g} mm, {backup:.3g} of the tooth depth"
+    if not backup > LEAST_RIM and hole is not None:
+        raise InputError(
+            f"gear.{gear}.rim_thickness", "not specified",
+            f"the hole of its shaft leaves a rim of {told}; Y_B of ISO 6336-3 requires more than {LEAST_RIM:g}",
+            "reduce sections.inner of the shaft, or specify rim_thickness",
+        )  # fmt: skip
     if not backup > LEAST_RIM:
         raise InputError(
             f"gear.{gear}.bore_radius", f"{made.bore_radius * 1e3:.6g} mm",
@@ -36,7 +51,7 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
             "reduce bore_radius, or specify the rim_thickness below the teeth",
         )  # fmt: skip
     if backup < SOLID_RIM or part.web_thickness is not None:
-        said.append(assuming(f"Gear {gear}: rim thickness {told} from bore_radius used (rim_thickness)."))
+        said.append(assuming(f"Gear {gear}: rim thickness {told} from {source} used (rim_thickness)."))
     return body
 
 

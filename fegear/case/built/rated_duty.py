@@ -223,7 +223,10 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
         )
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore is not None:
-        return () if scene.gears[gear].support is not None else thin_rim_remarks(gear, scene.gears[gear])
+        from fegear.case.built.gears_on_shafts import cut_into
+
+        solid = scene.gears[gear].support is not None or cut_into(scene, gear) is not None
+        return () if solid else thin_rim_remarks(gear, scene.gears[gear])
     held = f"fixed at half the root radius, {bore:.6g} mm"
     return (assuming(f"Gear {gear}: bore_radius not specified; gear body {held}."),)
 

@@ -59,6 +59,8 @@ class SolidGearToSolve:
         K: neighbours -K..K.
     name : str
         Of the gear, for messages.
+    cut : bool
+        Whether its teeth are cut into a shaft, for messages: its bore is no rim.
     """
 
     gear: Gear
@@ -66,6 +68,7 @@ class SolidGearToSolve:
     tolerance: float
     reach: int
     name: str = field(default="", compare=False)
+    cut: bool = field(default=False, compare=False)
 
 
 def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
@@ -164,7 +167,10 @@ def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
         for key, rack in scene.case.rack.items():
             if rack.pinion == name and is_wide_rack(scene, key):
                 reach = max(reach, math.ceil(rack_inputs(scene, key).pair.total_contact_ratio))
-    return SolidGearToSolve(scene.gears[name], solid_settings_of(scene, name), accuracy.tolerance, reach, name)
+    from fegear.case.built.gears_on_shafts import cut_into
+
+    settings, cut = solid_settings_of(scene, name), cut_into(scene, name) is not None
+    return SolidGearToSolve(scene.gears[name], settings, accuracy.tolerance, reach, name, cut)
 
 
 def check_solid_gear(scene: Scene, name: str) -> None:

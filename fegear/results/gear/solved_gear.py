@@ -135,7 +135,7 @@ def _present_solid(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcom
     body = asked.gear.body
     tooth = None if body is None or body.holes is None else body.holes.tooth
     remarks = solid_support_remarks(asked.name, influence, tooth)
-    if body is None:
+    if body is None and not asked.cut:
         remarks += thin_rim_remarks(asked.name, asked.gear)
     return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
 
