@@ -108,5 +108,5 @@ def test_a_gear_solved_with_its_width_says_it_too_unless_it_has_a_body(bore, bod
         fine=SimpleNamespace(support=None, uneven=None, body=None, unknowns=0), settings=solid_settings(0.1), width=3.0,
         error={}, seconds={},
     )  # fmt: skip
-    said = _present_solid(influence, SimpleNamespace(gear=gear, name="a")).remarks
+    said = _present_solid(influence, SimpleNamespace(gear=gear, name="a", cut=False)).remarks
     assert any("underestimated" in text for text in said) == noted
