@@ -45,6 +45,11 @@ class EncodersPart(Part):
                            "none: `um`, `arcsec`, `urad`.")  # fmt: skip
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     te_column: str = Field(default="te", description="Name of the column of the transmission error.")
+    mate_column: str | None = Field(
+        default=None,
+        description="Column of the rotation of the other shaft, in place of `te_column`: the transmission error is the "
+        "difference of both angles, by the base radii. Requires `offset` in `fit`.",
+    )
     torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
     torque_column: str = Field(
         default="torque",
@@ -77,7 +82,23 @@ class EncodersPart(Part):
         if self.torque_column in (self.angle_column, self.te_column):
             other = "angle" if self.torque_column == self.angle_column else "transmission error"
             raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
+        if self.mate_column is not None:
+            self._check_mate()
         torques = [trace.torque for trace in self.traces if trace.torque is not None]
         if len(set(torques)) < len(torques):
             raise refuse("contains one torque twice", "specify one trace for each torque", key="traces")
         return self
+
+    def _check_mate(self) -> None:
+        """The angle of the other shaft gives the transmission error with its sign: nothing else describes it."""
+        if self.mate_column in (self.angle_column, self.torque_column):
+            other = "angle" if self.mate_column == self.angle_column else "torque"
+            raise refuse(f"is the column of the {other}", "specify another column", key="mate_column")
+        for key in ("te_column", "te_at", "te", "positive"):
+            if key in self.model_fields_set:
+                raise refuse("contradicts mate_column", "remove either", key=key)
+        if "offset" not in self.fit:
+            raise refuse(
+                'requires "offset" with mate_column: two encoders have no common zero', 'add "offset"',
+                value=list(self.fit), key="fit",
+            )  # fmt: skip

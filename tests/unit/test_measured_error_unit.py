@@ -298,9 +298,32 @@ def test_lead_angles_of_the_driven_shaft_are_the_same_measurement(computed, tmp_
         assert other[name] == pytest.approx(plain[name], rel=1e-5)
 
 
+@pytest.mark.parametrize("shaft", ["driver", "driven"])
+@pytest.mark.parametrize("mate_sense", [1.0, -1.0])
+def test_the_angles_of_both_shafts_are_the_same_measurement(computed, shaft, mate_sense, tmp_path):
+    """Each from its own zero, starting again with every revolution, counted in either sense by the mate's encoder."""
+    written(tmp_path, "high.csv", computed, 1, shaft)
+    plain = encoders_of(build_scene(changed(shaft=shaft), "case", tmp_path), "rig").traces[0]
+    pair = computed.pair
+    own, mate = (gear.base_radius for gear in (pair.driver, pair.driven)[:: 1 if shaft == "driver" else -1])
+    lag = plain.te if shaft == "driver" else -plain.te
+    turned = mate_sense * (plain.angle * own - lag) / mate + 2.1
+    rows = zip(*(np.mod(np.degrees(one), 360.0) for one in (plain.angle + 0.0, turned)), strict=True)
+    (tmp_path / "high.csv").write_text("a [deg],b [deg]\n" + "".join(f"{a:.9f},{b:.9f}\n" for a, b in rows))
+    keys = {"shaft": shaft, "angle_column": "a", "mate_column": "b", "fit": ["offset", "scale", "shift"]}
+    found = encoders_of(build_scene(changed(**keys), "case", tmp_path), "rig").traces[0]
+    np.testing.assert_allclose(found.angle, plain.angle, atol=1e-9)
+    np.testing.assert_allclose(found.te, plain.te - plain.te.mean(), atol=2e-11)
+    with pytest.raises(InputError, match=r'column "a": turns .* times as far as "b"; the teeth require'):
+        encoders_of(build_scene(changed(**{**keys, "angle_column": "b", "mate_column": "a"}), "case", tmp_path), "rig")
+
+
 @pytest.mark.parametrize(
     ("encoders", "rule"),
     [
+        ({"mate_column": "b", "fit": ["scale"]}, 'requires "offset" with mate_column'),
+        ({"mate_column": "angle"}, "is the column of the angle"), ({"mate_column": "b"}, "requires a column b"),
+        ({"mate_column": "b", "te_at": "driven"}, "te_at = driven: contradicts mate_column; remove either"),
         ({"traces": []}, "must not be empty"), ({"traces": [{}]}, "is required"),
         ({"fit": ["scale", "scale"]}, "twice"),
         ({"te_column": "angle"}, "is the column of the angle"), ({"te_column": "SG"}, "requires a column SG"),

@@ -25,6 +25,8 @@ _SAME_LOAD = 1e-6
 _ABOUT = 0.03
 #: Largest transmission error of a pair [m].
 _LARGEST = 5e-3
+#: Difference of the ratio of two encoders from that of the teeth from which on they are not those of the pair.
+_OTHER_RATIO = 0.01
 
 
 @dataclass(frozen=True)
@@ -161,27 +163,57 @@ class _Columns:
 
 def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> _Columns:
     """Columns of one file."""
-    along = part.te_at == "line-of-action"
+    along, angles = part.te_at == "line-of-action", part.mate_column is not None
+    measured, word = (part.mate_column, "mate_column") if part.mate_column else (part.te_column, "te_column")
     columns = {
-        part.angle_column: "angle", part.te_column: "length" if along else "angle", part.torque_column: "torque",
+        part.angle_column: "angle", measured: "length" if along and not angles else "angle",
+        part.torque_column: "torque",
     }  # fmt: skip
-    given = {part.angle_column: part.angle, part.te_column: part.te, part.torque_column: part.torque}
+    given = {
+        part.angle_column: part.angle, measured: part.angle if angles else part.te, part.torque_column: part.torque,
+    }  # fmt: skip
     units = {name: unit for name, unit in given.items() if unit}
     found = read_columns(scene.file(file, key), key, columns, units, gaps=True)
-    for column, word in ((part.angle_column, "angle_column"), (part.te_column, "te_column")):
-        found.require(column, key, file, word)
-    angle, te = found[part.angle_column], found[part.te_column]
-    if not along:
-        te = te * (pair.driver if part.te_at == "driver" else pair.driven).base_radius
+    for column, of in ((part.angle_column, "angle_column"), (measured, word)):
+        found.require(column, key, file, of)
+    angle, te = found[part.angle_column], found[measured]
+    for what, values in (("angle", angle), ("angle" if angles else "transmission error", te)):
+        if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
+            raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
+    if angles:
+        angle, te = _of_both_shafts(part, pair, -angle if part.reverse else angle, te, key)
+    else:
+        if not along:
+            te = te * (pair.driver if part.te_at == "driver" else pair.driven).base_radius
+        angle, te = -angle if part.reverse else angle, -te if part.positive == "lead" else te
     largest = float(np.ptp(te))
     if largest > _LARGEST:
         raise InputError(
-            key, f"range of {largest * 1e3:.4g} mm", f"is above {_LARGEST * 1e3:g} mm", "check the unit and te_at"
-        )
-    for what, values in (("angle", angle), ("transmission error", te)):
-        if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
-            raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
-    return _Columns(
-        -angle if part.reverse else angle, -te if part.positive == "lead" else te, found.get(part.torque_column),
-        found.reading,
-    )  # fmt: skip
+            key, f"range of {largest * 1e3:.4g} mm", f"is above {_LARGEST * 1e3:g} mm",
+            "check the unit of the angles" if angles else "check the unit and te_at",
+        )  # fmt: skip
+    return _Columns(angle, te, found.get(part.torque_column), found.reading)
+
+
+def _of_both_shafts(
+    part: EncodersPart, pair: GearPair, angle: Array, mate: Array, key: str
+) -> tuple[Array, Array]:  # fmt: skip
+    """Rotation of the shaft along the trace [rad], and the lag of the driven gear along the line of action [m].
+
+    Either angle may restart with every revolution; the sense in which the mate's encoder counts is that in which the
+    shafts turn with each other. The zeros of two encoders have nothing in common: the mean of the lag is zero.
+    """
+    own, other = (np.unwrap(one) for one in (angle, mate))
+    turned, mate_turned = (float(one[-1] - one[0]) for one in (own, other))
+    gears = [pair.driver, pair.driven] if part.shaft == "driver" else [pair.driven, pair.driver]
+    ratio = gears[1].base_radius / gears[0].base_radius
+    if abs(turned) > _OTHER_RATIO and abs(abs(mate_turned / turned) * ratio - 1.0) > _OTHER_RATIO:
+        raise InputError(
+            key, f'column "{part.mate_column}"',
+            f'turns {abs(mate_turned / turned):.5g} times as far as "{part.angle_column}"; the teeth require '
+            f"{1.0 / ratio:.5g}", "check shaft, both columns and their units",
+        )  # fmt: skip
+    other = other if mate_turned * turned >= 0.0 else -other
+    ahead = own * gears[0].base_radius - other * gears[1].base_radius
+    lag = ahead if part.shaft == "driver" else -ahead
+    return own, np.asarray(lag - lag.mean())
