@@ -218,7 +218,7 @@ class FilletBench:
         return np.concatenate(found)
 
     def room(self, tooth: InvoluteSide) -> Array:
-        """What is left of the clearance [modules] and of the smallest radius (relative), (2 P,); negative: broken.
+        """What is left of the clearance [modules], of smallest radius and rise (relative), (2 P,); negative: broken.
 
         With `Limits.generated` also what is left of the tool's outline, relative, (P,). Of both fillets one behind the
         other.
@@ -244,6 +244,8 @@ class FilletBench:
         ]
         gap = np.minimum.reduce(gaps) - self.limits.clearance * share
         sharp = 1.0 - self.limits.smallest_radius * np.abs(fillet.curvatures(u))
+        rise = np.gradient(height) / np.hypot(np.gradient(x), np.gradient(y))  # one that comes back is no fillet
+        sharp = np.minimum(sharp, rise)
         made = [conjugate_rack(tooth).room(self.limits.smallest_tool_radius)] if self.limits.generated else []
         return np.concatenate([np.minimum(gap[:-1], 1.0), sharp, *made])
 
