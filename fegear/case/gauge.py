@@ -36,8 +36,8 @@ class MeasuredStrainPart(Part):
     fit: list[Literal["offset", "scale", "shift", "drift", "runout"]] = Field(
         default_factory=list,
         description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load), "
-        "`shift` (zero of the angle), `drift` (of the bridge, linear over the turns; needs `offset`) and `runout` "
-        "(once per turn, from the samples outside the mesh; needs `offset`). Default: nothing.",
+        "`shift` (zero of the angle); with `offset` also `drift` (linear over the turns) and `runout` (once per turn, "
+        "outside the mesh).",
     )
     reverse: bool = Field(
         default=False, description="The measured angle is counted against the direction of rotation of the gear."

@@ -128,7 +128,7 @@ def test_help_shows_every_option_whole(columns):
     ("typed", "offered"),
     [
         ("fegear ru", {"run"}),
-        ("fegear run one.toml --results stif", {"stiffness"}),
+        ("fegear run one.toml --results stif", {"stiffness", "stiffness-study"}),
         ("fegear run one.toml --results stiffness,load-s", {"stiffness,load-sharing"}),
         ("fegear effects one.toml --effect cont", {"contact_loss"}),
     ],

@@ -218,7 +218,7 @@ def test_units_are_those_that_the_conventions_read():
 
     known = {"mm", "um", "degree", "rad", "N", "N^2", "N.m", "s", "MPa", "GPa", "N/mm", "N/um", "um/N", "um.mm/N",
              "MPa.mm/N", "MPa/N", "Hz", "kHz", "rpm", "arcsec", "N/(mm.um)", "mm-1", "m/s", "m/s^2", "W", "kW", "h",
-             "degC", "mPa.s", "K", "kg/mm", "kg", "kg.m^2", "N/(N.m)", "%", "um/m"}  # fmt: skip
+             "degC", "mPa.s", "K", "kg/mm", "kg", "kg.m^2", "N/(N.m)", "%", "um/m", "arcmin"}  # fmt: skip
     # It knows no roots either: one is the unit of a symbol in a list of factors, of no variable; stress intensity has
     # no other spelling, so such readers take it as it stands.
     known |= {"MPa^(1/2)", "MPa.m^(1/2)"}
