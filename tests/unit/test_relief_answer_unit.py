@@ -18,20 +18,22 @@ CLASS = "f_Hα of class 5, assumed"
 LOAD = np.array([1000.0, 2000.0])
 
 
-def left(values, most=None, finer=0):
+def left(values, most=None, finer=0, load=LOAD):
     numbers = (np.array(values, dtype=float) * 1e-6, np.zeros(2), None if most is None else np.array(most) * 1e-6)
-    return LeftOverRange(0.05 * LOAD, LOAD, np.ones(2), *numbers, finer=finer)
+    return LeftOverRange(0.05 * load, load, np.ones(2), *numbers, finer=finer)
 
 
-def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6)):
+def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8):
     """With linear reliefs to be ground."""
     rows = tuple(
         Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
         for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
     )  # fmt: skip
     left_over = {
-        "no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), linear, finer),
-        "parabolic tip relief": left((1.1, 2.5), parabolic), "linear tip relief for one load": left((3.9, 0.8)),
+        "no relief": left((3.7, 7.0), load=load),
+        "linear tip relief": left((1.2, 2.4), linear, finer, load),
+        "parabolic tip relief": left((1.1, 2.5), parabolic, load=load),
+        "linear tip relief for one load": left((3.9, single), load=load),
     }  # fmt: skip
     data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
     asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2)
@@ -84,6 +86,38 @@ WITHIN = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length at most "
 def test_the_second_sentence_says_what_tolerances_may_leave_and_which_would_do(linear, parabolic, finer, grade, words):
     within = said(linear, parabolic, finer, grade)[1]
     assert within == (WITHIN if grade else WITHIN.replace(f" ({CLASS})", "")) + words
+
+
+@pytest.mark.parametrize(
+    ("finer", "words"),
+    [
+        (2, "relief requires ± 2.5 µm (f_Hα of class 3) and ± 10 % of the length."),
+        (None, "no finer class makes relief pay at every torque."),
+    ],
+)
+def test_where_tolerances_take_more_than_the_gain_at_every_torque_the_first_sentence_says_so(finer, words):
+    first, grind, single = said((4.3, 7.04), (4.2, 4.5), finer)
+    assert first == (
+        f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length the transmission error is smaller without relief "
+        f"at every torque: 7 µm at 100 N m, with relief at most 7.04 µm; {words}"
+    )
+    assert grind.startswith("Pair I: without deviations grind 6 µm from d 60.0 mm on gear p and ")
+    assert "only gives" in single
+    assert said((4.3, 6.99), (4.2, 4.5), finer)[0].startswith("Pair I: grind ")
+
+
+@pytest.mark.parametrize(
+    ("span", "single", "told"), [(10, 0.8, True), (9.9, 0.8, False), (200, 0.8, True), (200, 2.4, False)]
+)
+def test_small_torques_that_limit_the_relief_are_named_with_the_remedy(span, single, told):
+    sentences = said((3.3, 4.5), (3.5, 5.0), load=np.array([2000.0 / span, 2000.0]), single=single)
+    limits = [one for one in sentences if "limit the relief" in one]
+    small = f"{100 / span:.4g}"
+    words = (
+        f"Pair I: torques down to {small} N m limit the relief: 2.4 µm at 100 N m, {single} µm with tip relief for "
+        "that torque only; set weights that emphasise the larger torques."
+    )
+    assert limits == ([words] if told else [])
 
 
 def test_without_tolerances_nothing_is_said_of_them():

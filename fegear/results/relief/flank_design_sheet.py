@@ -27,7 +27,14 @@ from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, left_words, told_apart, within_words
+from fegear.results.relief.relief_over_range import (
+    OVER_RANGE,
+    RANGE_CHART,
+    left_words,
+    lost_words,
+    told_apart,
+    within_words,
+)
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -179,13 +186,17 @@ def _grind(seen: Seen) -> Iterator[str]:
     within = best.over_most if words and best.over_most is not None and best.over_most.size == torque.size else None
     ends = tuple(dict.fromkeys(i % torque.size for i in (-1, 0)))
     left = left_words(none, after, within, torque, ends)
-    yield f"Pair {seen.name}: grind {', '.join(words) or 'nothing'}: transmission error {left}, peak to peak."
-    if within is not None:
+
+    def allowed(classes: int) -> str:
+        return _allowed(seen, ground, classes)
+
+    lost = "" if within is None else lost_words(none, within, torque, design.finer, allowed)
+    if lost:
+        yield f"Pair {seen.name}: {lost}."
+    do = f"{'without deviations ' if lost else ''}grind {', '.join(words) or 'nothing'}"
+    yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    if within is not None and not lost:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
-
-        def allowed(classes: int) -> str:
-            return _allowed(seen, ground, classes)
-
         yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
     if least is not best:
         why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"

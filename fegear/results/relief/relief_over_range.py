@@ -29,9 +29,13 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair
+    from fegear.results.relief.grinding import Grinding
 
 #: Tip relief over its tolerance below which grinding cannot be told from not grinding.
 _FAINT = 0.25
+
+#: Largest over smallest torque from which a range is wide: its small torques may govern the relief of all.
+_WIDE = 10.0
 
 
 @dataclass(frozen=True)
@@ -114,9 +118,19 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     at = tuple(dict.fromkeys(i % best.torque.size for i in ends))
     left = left_words(none.peak_to_peak, best.peak_to_peak, best.most if ground else None, best.torque, at)
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
+    lost = ""
+    if ground and best.most is not None:
+        places = np.array(every) % best.torque.size
+        of_places = (none.peak_to_peak[places], best.most[places], best.torque[places])
+        lost = lost_words(*of_places, best.finer, _allowed(seen, rows))
+    if lost:
+        yield f"Pair {seen.name}: {lost}."
+        do = f"without deviations {do}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
-    yield from said_of_tolerances(seen, shape, every)
+    yield from said_of_tolerances(seen, shape, every, lost=bool(lost))
     single = d.over_range.get(f"{shape} tip relief for one load")
+    if single and len(every) > 1:
+        yield from _said_of_small_torques(seen, best, single)
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
@@ -134,8 +148,61 @@ def told_apart(one: float, other: float) -> tuple[str, str]:
     return (first, second) if first != second else (figures(one * 1e6), figures(other * 1e6))
 
 
-def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...]) -> Iterator[str]:
-    """What tolerances may leave of a shape at any of these torques, and which would do where it does not pay."""
+def _said_of_small_torques(seen: Seen, best: LeftOverRange, single: LeftOverRange) -> Iterator[str]:
+    """That small torques of a wide range limit the relief, where one for the largest torque clearly leaves less."""
+    small, large = int(np.argmin(best.torque)), int(np.argmax(best.torque))
+    if best.torque[large] < _WIDE * best.torque[small]:
+        return
+    if single.peak_to_peak[large] >= CLEARLY * best.peak_to_peak[large]:
+        return
+    remaining, possible = told_apart(best.peak_to_peak[large], single.peak_to_peak[large])
+    yield (
+        f"Pair {seen.name}: torques down to {figures(best.torque[small], 4)} N m limit the relief: {remaining} µm at "
+        f"{figures(best.torque[large], 4)} N m, {possible} µm with tip relief for that torque only; set weights that "
+        "emphasise the larger torques."
+    )
+
+
+def _allowed(seen: Seen, rows: Sequence[Grinding]) -> Callable[[int], str]:
+    """Tolerances of the ground gears that are so many classes finer, in words."""
+
+    def allowed(classes: int) -> str:
+        return allowed_words([one.finer(classes) if classes else one for one in seen.asked.tolerances], rows)
+
+    return allowed
+
+
+def lost_words(none: Array, most: Array, torque: Array, finer: int | None, allowed: Callable[[int], str]) -> str:
+    """That no relief leaves less at every torque within the tolerances, and which would do; empty where it does not.
+
+    Parameters
+    ----------
+    none, most : ndarray, shape (L,)
+        Peak-to-peak transmission error without relief, and at most within the tolerances [m].
+    torque : ndarray, shape (L,)
+        [N m].
+    finer, allowed
+        As in `within_words`.
+    """
+    if finer == 0 or not np.all(most > none):
+        return ""
+    i = int(np.argmax(torque))
+    less, more = told_apart(none[i], most[i])
+    at = " at every torque" if torque.size > 1 else ""
+    said = (
+        f"within {allowed(0)} the transmission error is smaller without relief{at}: {less} µm at "
+        f"{figures(torque[i], 4)} N m, with relief at most {more} µm"
+    )
+    if finer is None:
+        return f"{said}; no finer class makes relief pay{at}"
+    return f"{said}; relief requires {allowed(finer)}"
+
+
+def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: bool = False) -> Iterator[str]:
+    """What tolerances may leave of a shape at any of these torques, and which would do where it does not pay.
+
+    `lost`: it has been said already that it does not pay at any of them, and which would do.
+    """
     d = seen.data
     none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
     rows = [row for row in d.grinding if row.shape == shape and row.words]
@@ -144,11 +211,9 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...]) -> Iterat
     places = np.array(every) % best.torque.size
     i = int(places[np.argmax(best.most[places] / none.peak_to_peak[places])])
 
-    def allowed(classes: int) -> str:
-        return allowed_words([one.finer(classes) if classes else one for one in seen.asked.tolerances], rows)
-
-    within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, allowed)
-    yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
+    if not lost:
+        within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, _allowed(seen, rows))
+        yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 else ""
     for row in rows:
         off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
