@@ -42,6 +42,11 @@ class MeasuredStrainPart(Part):
     reverse: bool = Field(
         default=False, description="The measured angle is counted against the direction of rotation of the gear."
     )
+    shaft: Literal["driver", "driven"] | None = Field(
+        default=None,
+        description="Shaft whose rotation is in the angle column, if the encoder is on the shaft of the mate. Default: "
+        "that of the gear of the gauge.",
+    )
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:

@@ -166,6 +166,8 @@ ROWS = {
     "GaugePart.pair": (GAUGE, "gauge.g.pair", "I"),
     "GaugePart.member": (GAUGE, "gauge.g.member", "driver"),
     "GaugePart.tangent_angle": (GAUGE, "gauge.g.tangent_angle", "30 deg"),
+    "MeasuredStrainPart.shaft": (
+        joined(shipped("strain_gauges"), {"accuracy": {"tolerance": 0.03}}), "gauge.tension.measured.shaft", "driver"),
     "EncodersPart.pair": (
         joined(shipped("measured_transmission_error"), {"accuracy": {"tolerance": 0.03}}), "encoders.rig.pair", "test"),
     "DesignPart.pair": (DESIGN, "design.pair", "I"),

@@ -138,6 +138,20 @@ def test_a_gain_that_no_zero_of_the_torque_explains_names_none(history, tmp_path
     assert any(one.endswith("(load, scatter); check the zero of the torque.") for one in outcome.remarks)
 
 
+@pytest.mark.parametrize("restarts", [True, False])
+def test_the_angle_may_be_that_of_the_mate(tmp_path, restarts):
+    """31 of its turns are 20 of the gear's turns the other way round: gauge on a, 20 teeth, encoder on b, 31 teeth."""
+    turned = np.arange(0.0, 3.0 * 360.0, 0.5)
+    said = np.mod(turned, 360.0) if restarts else turned
+    rows = "".join(f"{a:.2f},{100.0 + k % 7}\n" for k, a in enumerate(said))
+    (tmp_path / "t.csv").write_text("angle [deg],strain [um/m]\n" + rows)
+    of_mate, of_gear = (
+        read(case({"file": "t.csv", "fit": FIT, "shaft": shaft}), tmp_path).angle for shaft in ("driven", "driver")
+    )
+    assert of_mate == pytest.approx(np.radians(turned) * 31.0 / 20.0, abs=1e-9)
+    assert of_gear == pytest.approx(np.radians(turned), abs=1e-9)
+
+
 def test_plateaus_that_the_pair_does_not_have_are_named(history, tmp_path):
     """And those of which a longer run is compared: a staircase up and down again."""
     written(tmp_path, history, staircase(8.0, 16.0, 24.0, 16.0, 8.0, turns=2))

@@ -106,6 +106,9 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
     if part.torque_column != _TORQUE:
         found.require(part.torque_column, key, part.file, "torque_column")
     angle, strain, torque = found[part.angle_column], found[part.strain_column], found.get(part.torque_column)
+    if part.shaft is not None:  # of which the mate turns several times, or a part of a turn, for one of the gear
+        of = scene.pairs[pair].driver if part.shaft == "driver" else scene.pairs[pair].driven
+        angle = np.unwrap(angle) * abs(of.teeth / teeth)
     angle, reading = -angle if part.reverse else angle, [found.reading] if found.reading else []
     levels: tuple[StrainLevel, ...] = ()
     if torque is not None and scene.case.pair[pair].all_loads(scene.pairs[pair]):
