@@ -108,14 +108,13 @@ def _fillet(tooth: Tooth, root_parameter: float, nodes: int) -> Sections:
     return _cut(tooth.fillet, (mid + half * g)[None], (half * w)[None])
 
 
-def _involute(tooth: Tooth, load: LoadLine, nodes: int) -> Sections:
-    """Sections from the start of the involute up to each load, shape (N, nodes).
+def involute_sections(tooth: Tooth, load: LoadLine, start: float, nodes: int = NODES) -> Sections:
+    """Sections of the involute from the roll angle `start` [rad] up to each load, shape (N, nodes).
 
     1/x^3 has a pole where the flanks would meet, at the roll angle t_p, which a slender tip comes near. With
     t = t_p - (t_p - t_0) exp(-lambda s) the pole is moved to infinity and Gauss quadrature in s keeps its accuracy.
     """
     g, w = _gauss(nodes)
-    start = tooth.involute.start
     pole = float(roll_of_polar_angle(tooth.base_half_angle))
     stretch = np.log((pole - start) / (pole - np.maximum(load.roll, start)))[:, None]
     gap = (pole - start) * np.exp(-0.5 * stretch * (1.0 + g))
@@ -135,7 +134,7 @@ def sections(tooth: Tooth, load: LoadLine, root_parameter: float, nodes: int = N
     nodes : int
         Gauss nodes on the fillet (more below a thin waist), and as many on the involute.
     """
-    low, high = _fillet(tooth, root_parameter, nodes), _involute(tooth, load, nodes)
+    low, high = _fillet(tooth, root_parameter, nodes), involute_sections(tooth, load, tooth.involute.start, nodes)
     shape = (load.roll.size, low.height.shape[1])
     return Sections(
         *(

@@ -34,7 +34,7 @@ from fegear.base.arrays import Array
 from fegear.base.errors import RangeError
 from fegear.formulas import beam, hertz
 from fegear.formulas.outcome import ComplianceSource, ToothCompliance
-from fegear.formulas.root_section import load_line
+from fegear.formulas.root_section import LoadLine, load_line
 from fegear.geometry.gear import Gear
 
 
@@ -46,13 +46,34 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     RangeError
         If a radius is off the involute, or the body lies outside the range of Sainsot's fit.
     """
-    tooth, nu, e = gear.external_tooth, gear.material.poisson_ratio, gear.material.young_modulus
+    tooth = gear.external_tooth
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
-    i = beam.integrals(beam.sections(tooth, load, tooth.trochoid.start, nodes), load.y)
+    return on_body(gear, load, beam.sections(tooth, load, tooth.trochoid.start, nodes), beam.root_half_angle(tooth))
+
+
+def on_body(gear: Gear, load: LoadLine, cut: beam.Sections, theta: float) -> ToothCompliance:
+    """Compliance of a cantilever with the sections `cut` below each load, on Sainsot's body.
+
+    Parameters
+    ----------
+    gear : Gear
+    load : LoadLine
+        N loads.
+    cut : Sections
+        Shape (N, M).
+    theta : float
+        Half the tooth's angle on the root circle [rad].
+
+    Raises
+    ------
+    RangeError
+        If the body lies outside the range of Sainsot's fit.
+    """
+    tooth, nu, e = gear.external_tooth, gear.material.poisson_ratio, gear.material.young_modulus
+    i = beam.integrals(cut, load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)
     flexibility = 1.0 / gear.plane_modulus
     moment = c * c * i.bending_2 - 2.0 * c * s * load.x * i.bending_1 + (s * load.x) ** 2 * i.bending_0
-    theta = beam.root_half_angle(tooth)
     arm = (load.apex - tooth.root_radius * math.cos(theta)) / (2.0 * theta * tooth.root_radius)
     ratio = gear.root_radius / gear.bore_radius
     return ToothCompliance(

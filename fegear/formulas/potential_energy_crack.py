@@ -12,7 +12,6 @@ beyond it). Arms stay those of the whole tooth, and so does the body (Sainsot, V
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,18 +48,22 @@ def cracked_tooth_compliance(
     RangeError
         If nothing of a section is left, or as for a tooth without a crack.
     """
-    tooth, whole = gear.external_tooth, potential_energy.tooth_compliance(gear, radius, nodes)
+    tooth = gear.external_tooth
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
-    cut = beam.sections(tooth, load, tooth.trochoid.start, nodes)
+    cut = without_dead_material(beam.sections(tooth, load, tooth.trochoid.start, nodes), tip)
+    return potential_energy.on_body(gear, load, cut, beam.root_half_angle(tooth))
+
+
+def without_dead_material(cut: beam.Sections, tip: tuple[float, float]) -> beam.Sections:
+    """Sections of a tooth with a crack that ends at `tip` (x, y) [modules].
+
+    Raises
+    ------
+    RangeError
+        If nothing of a section is left.
+    """
     x, y = tip
     left = np.where(cut.height > y, 0.5 * (cut.half_thickness + np.minimum(cut.half_thickness, x)), cut.half_thickness)
     if not left.min() > 0.0:
         raise RangeError("depth", x, "must leave material in every beam section", "reduce the depth of the crack")
-    i = beam.integrals(beam.Sections(cut.height, left, cut.weight), load.y)
-    c, s = np.cos(load.angle), np.sin(load.angle)
-    flexibility = 1.0 / gear.plane_modulus
-    moment = c * c * i.bending_2 - 2.0 * c * s * load.x * i.bending_1 + (s * load.x) ** 2 * i.bending_0
-    shear = 2.4 * (1.0 + gear.material.poisson_ratio) / gear.material.young_modulus
-    return replace(
-        whole, bending=flexibility * moment, shear=shear * c * c * i.area, axial=flexibility * s * s * i.area
-    )
+    return beam.Sections(cut.height, left, cut.weight)
