@@ -42,6 +42,29 @@ def test_where_both_solutions_agree_by_chance_the_error_is_what_they_usually_dif
     assert error == pytest.approx(np.array([[2.5, 3.5], [2.5, 7.5]]))
 
 
+@pytest.mark.parametrize(
+    ("internal", "order", "expected"),
+    [(False, 4, [3.0, 6.0, 9.0]), (True, 4, [3.0, 0.0, 3.0]), (False, 3, [3.0, 0.0, 3.0])],
+    ids=["external", "ring", "third order"],
+)
+def test_on_external_gears_two_differences_that_cancel_count_each(internal, order, expected):
+    """Both orders differ by 3 at the start of the flank, by 0 in its middle and by -3 at its end."""
+    samples = np.linspace(10.0, 12.0, _SAMPLES)
+    falling = SimpleNamespace(neighbour=lambda _k, p, q, *_width: 1.5 * (11.0 - p[:, None]) + 1.5 * (11.0 - q))
+    none = SimpleNamespace(
+        flank=SimpleNamespace(order=order, arc=np.linspace(0.0, 5.0 * EDGE, 6)),
+        tooth=SimpleNamespace(internal=internal),
+        neighbour=lambda _k, p, q, *_width: np.zeros((p.size, q.size)),
+    )
+    known = Estimate(none, falling, WIDE, 2.0 * WIDE)
+    known.__dict__.update(_samples=samples, _turned=0.0)
+    object.__setattr__(known, "_of_edges", lambda *_asked: 0.0)
+    at = samples[[0, _SAMPLES // 2, -1]]
+    _, difference = known._neighbour_difference(1, at, at)
+    share = 0.144 if order == 4 else 0.5
+    assert np.diagonal(difference) == pytest.approx(share * np.array(expected))
+
+
 def test_a_mixture_of_pressures_is_a_concentrated_load_up_to_its_sixth_moment():
     """Semi-elliptic pressures by Gauss's rule: on a half-plane two mixtures move each other like two points.
 
