@@ -142,7 +142,7 @@ class Bench:
     def _tell_exercise(self, before: View) -> None:
         """Have all pages ask the same, and hide or show the answers: a class sees what its lecturer does, no more."""
         now, earlier = (
-            {"exercise": one.exercise, "revealed": one.revealed, "question": one.question}
+            {"exercise": one.exercise, "revealed": one.revealed, "question": one.question, "words": one.words}
             for one in (self.view, before)
         )
         if now != earlier:

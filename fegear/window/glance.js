@@ -36,6 +36,30 @@ const fegearGlance = (() => {
     ],
   };
   let hiding = false;
+  /** The button by which a lecturer writes another question in the place of the one that is asked; an empty one is none. */
+  function ownQuestion(asked) {
+    const own = Object.assign(made("button", "button", "Own question"), { type: "button" });
+    own.onclick = () => {
+      const words = asked.querySelector("p");
+      words.contentEditable = "plaintext-only";
+      words.setAttribute("role", "textbox");
+      words.setAttribute("aria-label", "Own question; Enter to ask it");
+      words.onkeydown = (event) => {
+        event.stopPropagation();
+        if (event.key === "Escape") words.textContent = view.words ?? "";
+        if (event.key === "Enter" || event.key === "Escape") { event.preventDefault(); words.blur(); }
+      };
+      words.onblur = () => {
+        words.onblur = words.onkeydown = null;
+        for (const name of ["contenteditable", "role", "aria-label"]) words.removeAttribute(name);
+        keep({ words: words.textContent.trim() });
+        ask();
+      };
+      words.focus();
+      getSelection().selectAllChildren(words);
+    };
+    return own;
+  }
   /** The question of an exercise, and room for the student's own answer, which stands beside the computed one later. */
   function ask() {
     const host = $("question"), asked = $("asked");
@@ -47,12 +71,13 @@ const fegearGlance = (() => {
       answer.setAttribute("aria-label", "Your answer");
       answer.addEventListener("keydown", (event) => event.stopPropagation());
       const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
-      next.onclick = () => { keep({ question: (view.question ?? 0) + 1 }); ask(); };
-      asked.append(made("p"), answer, next);
+      next.onclick = () => { keep({ question: (view.question ?? 0) + 1, words: "" }); ask(); };
+      asked.append(made("p"), answer, next, ownQuestion(asked));
     }
     const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")];
     const all = QUESTIONS[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"];
-    const question = all[Math.abs(view.question ?? 0) % all.length], another = words.textContent !== question;
+    if (words.isContentEditable) return; // it is being written
+    const question = view.words || all[Math.abs(view.question ?? 0) % all.length], another = words.textContent !== question;
     words.textContent = question;
     if (another || (!view.revealed && !hiding)) answer.value = ""; // another exercise
     hiding = !view.revealed;

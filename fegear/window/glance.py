@@ -169,6 +169,10 @@ def _short(value: Value) -> str:
     return plain_number(float(rounded(value.value, value.error, _READ).partition(" ")[0]), _READ)
 
 
+#: Characters of a question of the lecturer's own: what has room in its line.
+LONGEST_QUESTION = 300
+
+
 class View(NamedTuple):
     """How a page was left.
 
@@ -194,6 +198,8 @@ class View(NamedTuple):
         Whether they have been asked for since; not kept for the next time.
     question : int
         Number of the question that is asked.
+    words : str
+        A question of the lecturer's own in its place; empty for none.
     """
 
     pictures: tuple[str, ...] = ()
@@ -206,6 +212,7 @@ class View(NamedTuple):
     digits: bool = False
     revealed: bool = False
     question: int = 0
+    words: str = ""
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""
@@ -214,6 +221,8 @@ class View(NamedTuple):
             new["pictures"] = tuple(one for one in told["pictures"] if isinstance(one, str) and one in PICTURES)
         if new.get("measure") not in MEASURES:
             new.pop("measure", None)
+        if "words" in new:
+            new["words"] = " ".join(new["words"].split())[:LONGEST_QUESTION].rstrip()
         return self._replace(**new)
 
 

@@ -20,7 +20,7 @@ const fegearPieces = (() => {
       return socket;
     };
     document.addEventListener("beforeinput", (event) => { // pasted, dropped or typed: before the browser lays it out
-      const { data, target } = event, kept = (target.value?.length ?? 0) - (target.selectionEnd - target.selectionStart);
+      const { data, target } = event, kept = target.value === undefined ? target.textContent.length : target.value.length - (target.selectionEnd - target.selectionStart);
       if (!data || kept + data.length <= most) return;
       event.preventDefault();
       emitEvent("unwritten");

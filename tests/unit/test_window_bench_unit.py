@@ -10,7 +10,7 @@ from fegear.window import bench as benches
 from fegear.window.beginnings import gallery
 from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
-from fegear.window.glance import View, read_view
+from fegear.window.glance import LONGEST_QUESTION, View, read_view
 from fegear.window.job_queue import Compute, Design, Export, Said, Stop
 
 CASE = """
@@ -110,7 +110,7 @@ def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_d
         return [content for what, content in bench.heard if what == "exercise"]
 
     def page(**said):
-        return {"exercise": True, "revealed": False, "question": 0} | said
+        return {"exercise": True, "revealed": False, "question": 0, "words": ""} | said
 
     hidden, shown = page(), page(revealed=True)
     bench.see_otherwise({"large": True})
@@ -132,6 +132,10 @@ def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_d
     bench.heard.clear()
     bench.see_otherwise({"exercise": True, "question": 2})  # the next question is that of all pages
     assert told() == [page(question=2)]
+    bench.see_otherwise({"words": "  Why is\nC " + "so " * 200})  # one of the lecturer's own, on one line
+    assert told()[-1]["words"].startswith("Why is C so so ")
+    assert LONGEST_QUESTION - 3 <= len(told()[-1]["words"]) <= LONGEST_QUESTION
+    assert read_view(None).words == bench.view.words  # it is still there the next time
 
 
 def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp_path):
