@@ -207,14 +207,16 @@ def rows_of(table, sign):
         for c in table.columns
         if c.si.dtype.kind in "fiu" and "seconds" not in c.name and c.name not in FROM_AN_END
     }
-    if "z" in found and "along" in found:  # from the left end of a shaft
+    shaft = table.name.startswith("shaft_stress_")
+    if "z" in found and ("along" in found or shaft):  # from the left end of a shaft
         found["z"] = found["z"] - 0.5 * (found["z"].min() + found["z"].max())
     found = {name: seen(table, name, one, sign) for name, one in found.items()}
     if sign < 0 and "z_first" in found:
         found["z_first"], found["z_last"] = found["z_last"], found["z_first"]
         if not table.name.startswith("contact_pattern"):  # a line's ends; those are outermost places
             found["x_first"], found["x_last"] = found["x_last"], found["x_first"]
-    places = [np.round(found[name] / (np.abs(found[name]).max() or 1.0), 9) for name in ROWS if name in found]
+    rows = (*ROWS, "equivalent") if shaft else ROWS  # both sides of a step stand at one place
+    places = [np.round(found[name] / (np.abs(found[name]).max() or 1.0), 9) for name in rows if name in found]
     order = np.lexsort(places[::-1]) if {"z", "face_position"} & found.keys() else slice(None)
     return {name: one[order] for name, one in found.items()}
 

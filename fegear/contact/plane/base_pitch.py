@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import distinct
 from fegear.contact.plane.transmission_error import TransmissionError
 
 if TYPE_CHECKING:
@@ -54,4 +55,4 @@ def roll_positions(engagement: Engagement, count: int, changes: Sequence[float] 
     x = np.concatenate([np.linspace(start, start + pitch, count + 1), beside])
     inside = (x > start + 0.5 * BESIDE * pitch) & (x < start + (1.0 - 0.5 * BESIDE) * pitch)
     ends = np.array([start + BESIDE * pitch, start + (1.0 - BESIDE) * pitch])
-    return np.unique(np.concatenate([x[inside], ends]))
+    return distinct(ends, x[inside], within=0.1 * BESIDE)

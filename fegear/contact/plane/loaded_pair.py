@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, distinct
 from fegear.contact.error_over_pitch import ErrorOverPitch
 from fegear.contact.fourier import FourierSeries
 from fegear.contact.loaded_teeth import (
@@ -26,7 +26,7 @@ from fegear.contact.loaded_teeth import (
     silent,
 )
 from fegear.contact.pair_spec import PairSpec
-from fegear.contact.plane.base_pitch import mean_secant_stiffness, roll_positions, secant_stiffness
+from fegear.contact.plane.base_pitch import BESIDE, mean_secant_stiffness, roll_positions, secant_stiffness
 from fegear.contact.plane.compliance import RootStressInfluence
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.independent_errors import independent_errors
@@ -151,8 +151,10 @@ class LoadedPair:
         """The same, and both sides of each change of contact under every load, so that curves are straight between."""
         if self._quick is not None or not self.exact:
             return self._positions
-        changes = np.unique(np.concatenate([te.points.breaks for te in exact]))
-        return roll_positions(self.engagement, POSITIONS, changes.tolist())
+        known = self.engagement.breaks
+        # the same place found anew for every load, to its last digits
+        every = distinct(known, *(te.points.breaks for te in exact), within=4.0 * BESIDE)
+        return roll_positions(self.engagement, POSITIONS, every[~np.isin(every, known)].tolist())
 
     def _off_path(self, found: PairHistory) -> Array:
         return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)
