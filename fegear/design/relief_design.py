@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import cast
 
 import numpy as np
@@ -24,7 +24,7 @@ from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.design.tip_relief.tolerated import within_tolerances
+from fegear.design.tip_relief.tolerated import Decisive, within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 
@@ -141,6 +141,8 @@ class ReliefDesign:
     within : mapping of shape to ndarray, shape (L, 2)
         Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
         empty without tolerances, or with a film.
+    decisive : mapping of shape to tuple of Decisive or None
+        Which tolerance decides the largest of these at each load; empty as `within`.
     finer : int or None
         By how many classes the tolerances would have to be finer for the shape to be ground to leave no more than no
         relief at any of these loads that counts: 0 where they do, None where none does.
@@ -160,6 +162,7 @@ class ReliefDesign:
     within: Mapping[Shape, Array]
     tables_leave: float
     finer: int | None = 0
+    decisive: Mapping[Shape, tuple[Decisive | None, ...]] = field(default_factory=dict)
 
     @property
     def shapes(self) -> list[Shape]:
@@ -237,11 +240,12 @@ def design_relief(
         if label != "diagonal only"
     }
     within: dict[Shape, Array] = {}
+    decisive: dict[Shape, tuple[Decisive | None, ...]] = {}
     if film is None and task.tip_tolerances is not None:
-        within = {
-            shape: within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
-            for shape, one in ground.items()
-        }
+        for shape, one in ground.items():
+            within[shape], decisive[shape] = within_tolerances(
+                plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads
+            )
     report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
@@ -250,6 +254,7 @@ def design_relief(
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     design = ReliefDesign(
         task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
+        decisive=decisive,
     )  # fmt: skip
     return replace(design, finer=_classes_finer(plain, design))
 
@@ -266,7 +271,7 @@ def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:
 
     def finer(classes: int) -> Array:
         allowed = both[0].finer(classes), both[1].finer(classes)
-        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
+        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[0][:, 1]
 
     finest = min(one.finest for one in both)
     return classes_finer(design.within[shape][counts, 1], none[counts], finer, finest)

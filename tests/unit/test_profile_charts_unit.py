@@ -1,6 +1,7 @@
 """Profile charts of tip reliefs, and what reliefs leave when they are off by their tolerances."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -43,7 +44,7 @@ def left(engagement, tips, load):
 
 
 def test_without_tolerances_a_relief_leaves_what_it_leaves(engagement, tips):
-    found = within_tolerances(engagement, tips, (EXACT, EXACT), [0.5 * LOAD, LOAD])
+    found, _ = within_tolerances(engagement, tips, (EXACT, EXACT), [0.5 * LOAD, LOAD])
     for (least, most), load in zip(found, (0.5 * LOAD, LOAD), strict=True):
         assert least == most == pytest.approx(left(engagement, tips, load), rel=1e-12)
 
@@ -52,7 +53,7 @@ def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(en
     before = 0.0
     for size in (1e-6, 3e-6):
         allowed = TipTolerance(size, 0.2e-3, 0.0)
-        ((least, most),) = within_tolerances(engagement, tips, (allowed, allowed), [LOAD])
+        ((least, most),), _ = within_tolerances(engagement, tips, (allowed, allowed), [LOAD])
         assert least <= left(engagement, tips, LOAD) <= most
         assert most >= before
         before = most
@@ -64,8 +65,23 @@ def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(en
 
 def test_a_gear_without_relief_stays_without(engagement, tips):
     bare = replace(tips[1], amount=0.0)
-    found = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(5e-6, None, 0.0)), [LOAD])
+    found, (decisive,) = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(5e-6, None, 0.0)), [LOAD])
+    assert decisive.member == "driver"
     assert found[0, 1] == pytest.approx(left(engagement, (tips[0], UNMODIFIED), LOAD), rel=1e-9)
+
+
+def test_the_tolerance_that_decides_is_the_one_whose_removal_reduces_the_maximum_most(engagement, tips):
+    given = TipTolerance(4e-6, 0.3e-3, 0.0), TipTolerance(1e-6, 0.1e-3, 0.0)
+    _, (decisive,) = within_tolerances(engagement, tips, given, [LOAD])
+    without = {}
+    for member, number in product(("driver", "driven"), ("amount", "length")):
+        i = ("driver", "driven").index(member)
+        allowed = [given[0], given[1]]
+        allowed[i] = replace(given[i], **{number: 0.0})
+        ((_, without[member, number]),), _ = within_tolerances(engagement, tips, tuple(allowed), [LOAD])
+    assert (decisive.member, decisive.number) == min(without, key=without.get)
+    assert decisive.most == pytest.approx(min(without.values()), rel=0.01)
+    assert within_tolerances(engagement, [replace(tip, amount=0.0) for tip in tips], given, [LOAD])[1] == (None,)
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0])

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.design.held_relief import Robustness
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.design.tip_relief.tolerated import Decisive
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.grinding import TIP, Grinding
-from fegear.results.relief.relief_over_range import LeftOverRange, said_of_range
+from fegear.results.relief.relief_over_range import LeftOverRange, decisive_words, said_of_range, said_of_undefined
+from fegear.results.relief.relief_robustness import as_designed
 
 CLASS = "f_Hα of class 5, assumed"
 LOAD = np.array([1000.0, 2000.0])
@@ -134,3 +138,35 @@ def test_tolerances_are_named_once_or_by_gear_and_of_ground_gears_only():
     assert allowed_words((given, graded), (p, w)) == (
         "± 3 µm on gear p, ± 6 µm (f_Hα of class 6) on gear w and ± 0.4 mm of length"
     )
+
+
+@pytest.mark.parametrize(("less", "said_so"), [(2.6e-6, True), (3.2e-6, False)])
+def test_the_tolerance_that_matters_most_is_named_unless_it_hardly_reduces_the_maximum(less, said_so):
+    words = decisive_words(3.26e-6, 150.0, Decisive("driven", "length", less), {"driver": "p", "driven": "w"})
+    assert words == (
+        "the tolerance of the length on gear w matters most: without it at most 2.6 instead of 3.3 µm at 150 N m"
+        if said_so else ""
+    )  # fmt: skip
+    assert not decisive_words(3.26e-6, 150.0, Decisive("driven", "length", less), {"driver": "p"})
+    assert not decisive_words(3.26e-6, 150.0, None, {"driven": "w"})
+
+
+def test_an_amount_below_its_error_has_no_defined_optimum():
+    row = Grinding("p", "driver", "", TIP, "linear", 10e-6, 390e-6, amount_from=4e-6, amount_to=60e-6)
+    well = Grinding("w", "driven", "", TIP, "linear", 10e-6, 9e-6)
+    bare = Grinding("w", "driven", "", TIP, "linear", 10e-6)
+    assert list(said_of_undefined(Seen(None, None, "I"), [row, well, bare])) == [
+        "Pair I: no defined optimum on gear p: 10 µm has an estimated error of 390 µm; 4 to 60 µm are equally good."
+    ]
+    flat = replace(row, amount_from=10e-6, amount_to=10e-6)
+    (only,) = said_of_undefined(Seen(None, None, "I"), [flat])
+    assert only.endswith("error of 390 µm.")
+
+
+def test_the_robustness_states_the_value_at_the_design_load_of_the_design():
+    one = np.ones(1)
+    found = Robustness(one, 0.0 * one, 0.0 * one, np.full((1, 1, 1), 2.8499e-6), 2.8499e-6)
+    te = SimpleNamespace(peak_to_peak=2.850962e-6, effective_error=1e-6)
+    assert as_designed(found, te, "peak_to_peak").nominal == 2.850962e-6
+    assert as_designed(found, te, "effective_error").nominal == 1e-6
+    assert as_designed(found, None, "peak_to_peak") is found

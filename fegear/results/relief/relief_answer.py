@@ -9,7 +9,7 @@ import numpy as np
 from fegear.base.printed import figures
 from fegear.engine.sheet.answer import Answer
 from fegear.geometry.pair import MEMBER_WORDS
-from fegear.results.relief.relief_over_range import said_of_range, said_of_tolerances
+from fegear.results.relief.relief_over_range import said_of_range, said_of_tolerances, said_of_undefined
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,6 +57,7 @@ def _grind(seen: Seen) -> Iterator[str]:
         best, i = seen.data.over_range[f"{shape} tip relief"], seen.data.at_design_load
         within = "" if best.most is None else f" (within tolerances at most {_microns(best.most[i])} µm)"
         yield f"Pair {seen.name}: grind {' and '.join(amounts)} ({shape} tip relief): {changed}{within}."
+        yield from said_of_undefined(seen, [row for row in seen.data.grinding if row.shape == shape and row.words])
         yield from said_of_tolerances(seen, shape, (i,))
     else:
         yield f"Pair {seen.name}: no tip relief reduces the excitation: {changed}."

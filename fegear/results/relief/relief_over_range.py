@@ -20,15 +20,16 @@ from fegear.results.relief.allowed_words import allowed_words
 from fegear.results.relief.left_errors import left_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.tip_relief.grindable import TipReliefPair
+    from fegear.design.tip_relief.tolerated import Decisive
     from fegear.engine.sheet.seen import Seen
-    from fegear.geometry.pair import GearPair
+    from fegear.geometry.pair import GearPair, Member
     from fegear.results.relief.grinding import Grinding
 
 #: Tip relief over its tolerance below which grinding cannot be told from not grinding.
@@ -49,6 +50,8 @@ class LeftOverRange:
     finer : int or None
         By how many classes the tolerances would have to be finer for it to leave no more than no relief anywhere: 0
         where they do, None where none does.
+    decisive : tuple of Decisive or None, length L
+        Which tolerance decides the maximum within the tolerances at each torque; empty where this is not known.
     """
 
     torque: Array = shown("N.m", "torque on the driver", label="torque on the driver")
@@ -66,6 +69,7 @@ class LeftOverRange:
         name="te_mean_over_scatter", default=None,
     )  # fmt: skip
     finer: int | None = 0
+    decisive: tuple[Decisive | None, ...] = ()
 
     @property
     def errors(self) -> Array | None:
@@ -80,6 +84,7 @@ def left_over_range(
     load = np.array(design.task.over_loads)
     weights = design.task.over_weights
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
+    decisive = {f"{shape} tip relief": one for shape, one in design.decisive.items()}
     finer = {f"{design.shapes[0]} tip relief": design.finer} if design.ground else {}
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
     searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
@@ -88,6 +93,7 @@ def left_over_range(
             load * pair.driver.base_radius, load, weights / weights.max(),
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
             within.get(label), _errors(found, shifted, searched.get(label)), finer=finer.get(label, 0),
+            decisive=decisive.get(label, ()),
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
@@ -127,6 +133,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         yield f"Pair {seen.name}: {lost}."
         do = f"without deviations {do}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    yield from said_of_undefined(seen, rows)
     yield from said_of_tolerances(seen, shape, every, lost=bool(lost))
     single = d.over_range.get(f"{shape} tip relief for one load")
     if single and len(every) > 1:
@@ -214,6 +221,11 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
     if not lost:
         within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, _allowed(seen, rows))
         yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
+    if best.decisive:
+        gears = {row.member: row.gear for row in rows}
+        decides = decisive_words(best.most[i], best.torque[i], best.decisive[i], gears)
+        if decides:
+            yield f"Pair {seen.name}: {decides}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 else ""
     for row in rows:
         off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
@@ -223,6 +235,42 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
                 f"Pair {seen.name}: {amount} µm on gear {row.gear} is below a quarter of its tolerance "
                 f"(± {allowed_off} µm) and cannot be ground; omit it{weights}."
             )
+
+
+def said_of_undefined(seen: Seen, rows: Sequence[Grinding]) -> Iterator[str]:
+    """Which amounts have no defined optimum: their estimated error exceeds them."""
+    for row in rows:
+        if row.amount_error > abs(row.amount):
+            equal = ""
+            if row.amount_to > row.amount_from:
+                low, high = told_apart(row.amount_from, row.amount_to)
+                equal = f"; {low} to {high} µm are equally good"
+            yield (
+                f"Pair {seen.name}: no defined optimum on gear {row.gear}: {figures(row.amount * 1e6, 2)} µm has an "
+                f"estimated error of {figures(row.amount_error * 1e6, 2)} µm{equal}."
+            )
+
+
+def decisive_words(most: float, torque: float, decisive: Decisive | None, gears: Mapping[Member, str]) -> str:
+    """Which tolerance decides the maximum; empty where the best of them hardly reduces it.
+
+    Parameters
+    ----------
+    most : float
+        Maximum peak-to-peak transmission error within all tolerances [m].
+    torque : float
+        [N m].
+    decisive : Decisive or None
+    gears : mapping of member to str
+        Names of the ground gears.
+    """
+    if decisive is None or decisive.member not in gears or decisive.most >= CLEARLY * most:
+        return ""
+    more, less = told_apart(most, decisive.most)
+    return (
+        f"the tolerance of the {decisive.number} on gear {gears[decisive.member]} matters most: without it at most "
+        f"{less} instead of {more} µm at {figures(torque, 4)} N m"
+    )
 
 
 def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int]) -> str:

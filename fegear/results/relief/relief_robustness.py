@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.design import RobustnessPart
     from fegear.case.reading import Scene
+    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.charts import Metric
     from fegear.design.held_relief import Robustness
     from fegear.design.load_range import LoadRange
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from fegear.results.relief.relief_data import ReliefData
 
 
-NO_RELIEF = "no relief"
+NO_RELIEF, OWN_RELIEF = "no relief", "relief of the case"
 
 
 @dataclass(frozen=True)
@@ -90,15 +91,22 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
     states |= {f"{shape} tip relief": g.applied(design.designed) for shape, g in design.ground.items()}
     if inputs.own_relief:
         own = designed.pair.engagement
-        states["relief of the case"] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+        states[OWN_RELIEF] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     states[NO_RELIEF] = replace(design.designed, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED)
     found: dict[str, Robustness] = {}
     for label, state in states.items():
-        found[label] = robustness(
-            state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric
+        found[label] = as_designed(
+            robustness(state, design.task.load, factors, asked.spacing_errors, asked.relief_errors, inputs.metric),
+            design.te.get("present relief" if label == OWN_RELIEF else label) if design.task.film is None else None,
+            inputs.metric,
         )
         work.progress(len(found) / len(states))
     return RobustnessData(found, recommended([f"{shape} tip relief" for shape in design.shapes], states))
+
+
+def as_designed(found: Robustness, te: TransmissionError | None, metric: Metric) -> Robustness:
+    """With the value at the design load that the relief's other sentences state: the grid's may round otherwise."""
+    return found if te is None else replace(found, nominal=float(getattr(te, metric)))
 
 
 def recommended(shapes: Sequence[str], candidates: Iterable[str]) -> str:
@@ -137,7 +145,7 @@ def _worst_in_words(seen: Seen) -> Iterator[str]:
     label, every = seen.data.recommended, seen.data.candidates
     found, none = every[label], every[NO_RELIEF]
     at = np.unravel_index(int(found.values.argmax()), found.values.shape)
-    nominal, worst = (figures(size * 1e6, 2) for size in (found.nominal, found.worst))
+    nominal, worst = (figures(size * 1e6, 2) for size in (found.nominal, max(found.worst, found.nominal)))
     yield (
         f"Pair {seen.name}, {label}: {nominal} µm at the design load, at most {worst} µm ({_combination(found, at)}); "
         f"without relief {figures(none.nominal * 1e6, 2)} µm and at most {figures(none.worst * 1e6, 2)} µm."
