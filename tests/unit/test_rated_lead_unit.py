@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,13 @@ from fegear.case.built.rated_pair import pair_to_rate
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
-from fegear.design.flanks.lead_correction import LeadCorrection
+from fegear.design.flanks.lead_correction import LeadCorrection, LevelLead
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.results.rating.rating import given, rated
+from fegear.results.shafts.gearbox_data import MeshAtGlance, Safety
+from fegear.results.shafts.gearbox_overview import _levelled
 from fegear.results.shafts.lead_correction import _ground_lead, _leads
-from fegear.results.shafts.rated_lead import SafetyOfLead, rated_lead, rated_with
+from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 
 LEADS = ((0.0, 3e-6), (-4e-6, 0.0), (-4e-6, 3e-6), (0.0, 0.0))
 
@@ -50,6 +53,26 @@ def test_safety_factors_are_those_of_a_fresh_case_with_the_lead(driven):
         assert found.factor == pytest.approx(fresh["K_Hbeta"].value, rel=1e-12)
         assert found.contact == pytest.approx(min(fresh.contact_safety), rel=1e-12)
         assert found.bending == pytest.approx(min(fresh.bending_safety), rel=1e-12)
+
+
+def test_gearbox_and_lead_correction_rate_the_same_lead_alike_with_manufacturing_deviations():
+    """A lead that evens out the flanks to 1.1 leaves more in the rating: f_ma stays, and K_Halpha rises."""
+    case, none = drafted(), math.nan
+    case["gear"]["pinion"]["lead"] = {"slope": "0 um", "crowning": "3 um"}
+    scene = scene_of(case)
+    lead, present = rated_lead(scene, "I"), present_lead(scene, "I")
+    assert present == (0.0, 3e-6)
+    now = rated_with(lead, row(*present))
+    safety = Safety(now.contact, now.bending, (1.0, 1.4), now.factor)
+    one = MeshAtGlance(safety, none, none, 0.9, "I", 1e-5, (1e-5,), 2.0, now.contact, 1.0, now.bending, 1.4, none, 0.9)
+    of_gearbox = _levelled(replace(one, lead=LevelLead(-4e-6, 2.0, 1.1, 2e-6)), lead, present)
+    of_lead = rated_with(lead, row(-4e-6, 5e-6))
+    assert (of_gearbox.contact, of_gearbox.bending) == (of_lead.contact, of_lead.bending)
+    assert 1.1 < of_gearbox.face_load_factor == of_lead.factor < now.factor
+    assert now.contact < of_gearbox.contact < now.contact * math.sqrt(now.factor / 1.1)
+    case["pair"]["I"]["operation"]["face_load_factor"] = 1.3
+    fixed = replace(one, safety=replace(safety, face_load_factor=1.3), lead=LevelLead(-4e-6, 2.0, 1.1))
+    assert _levelled(fixed, rated_lead(scene_of(case), "I"), present) is None  # no rating says what the lead brings
 
 
 def test_what_the_case_says_of_the_flanks_stays_and_what_is_not_rated_has_no_safety_factors():

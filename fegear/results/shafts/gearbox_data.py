@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fegear.base.notes import Note
+from fegear.base.notes import Note, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.contact.wide.on_shafts import LoadedShafts
@@ -67,6 +67,8 @@ class MeshAtGlance:
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
     lead : LevelLead or None
         Helix slope, with crowning where that helps, against the shafts, and what it is worth; None where nothing gains.
+    levelled : Safety or None
+        As `safety` with `lead` in addition to the present lead; None where the rating does not follow it.
     remaining : float
         Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
     """
@@ -86,6 +88,7 @@ class MeshAtGlance:
     te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
     margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
     lead: LevelLead | None = None
+    levelled: Safety | None = None
     remaining: float = math.nan
 
     @property
@@ -173,6 +176,13 @@ class GearboxData:
                 found.append(one)
                 named.add(one.part)
         return tuple(found[:_FIRST])
+
+    def said_of_lives(self) -> Iterator[Note]:
+        """Bearings whose life is too short, the least margin first, with what to change."""
+        for one in self.bearings:
+            if (change := self._of_bearing(one)) is not None:
+                finding = f"basic rating {change.finding} required on shaft {one.shaft}"
+                yield failing(f"Bearing {one.bearing}: {finding}; {change.remedy}.", one.margin)
 
     def _improvements(self) -> Iterator[Change]:
         """What limits the load although it suffices: least safety, shortest life, and loads over the face to even."""
@@ -298,37 +308,58 @@ def _limit(one: MeshAtGlance, safety: Safety) -> tuple[str, str, float, float, f
 def _least_safe(one: MeshAtGlance, safety: Safety) -> Change:
     """The safety factor with the least margin, and what raises it."""
     symbol, what, value, least, power = _limit(one, safety)
-    gain, remedy = _gain(one), _levelled(one)
-    if gain <= _GAIN:
-        gain, remedy = _MORE, f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors"
+    if _gain(one) <= _GAIN:
+        wider = value * _MORE**power
+        remedy = f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors: {symbol} about {wider:.2f}"
+    else:
+        remedy = _levelled(one) + _rated(one, safety)
     return Change(
         one.margin, f"pair {one.pair}",
         f"{symbol} {value:.2f} of {figures(least)} ({what}), minimum safety: {percent(one.margin, whole=True)} of the "
         "load",
-        f"{remedy}: {symbol} about {value * gain**power:.2f}", urgent=False,
+        remedy, urgent=False,
     )  # fmt: skip
 
 
-def _against_tilt(one: MeshAtGlance, *, gained: bool = True) -> str:
-    """What evens out the load of a misaligned mesh."""
+def _rated(one: MeshAtGlance, safety: Safety) -> str:
+    """What the rating makes of the lead correction; empty where it does not follow it."""
+    if (after := one.levelled) is None:
+        return ""
+    symbol = _limit(one, safety)[0]
+    value = after.contact if symbol == "S_H" else after.bending
+    factors = f"K_Hβ {after.face_load_factor:.2f} in place of {safety.face_load_factor:.2f} of the rating"
+    return f": {symbol} {value:.2f} at {factors}"
+
+
+def _against_tilt(one: MeshAtGlance, rated: str = "", *, gained: bool = True) -> str:
+    """What evens out the load of a misaligned mesh, with what the lead correction makes of the rating."""
     cause = CAUSES[one.main_cause]
     share, every = figures(one.by_cause[one.main_cause] * 1e6), figures(one.over_face * 1e6)
     of_all = f"{CAUSE_WORDS[cause]} {share} µm, all causes {every} µm"
-    return f"{_levelled(one, gained=gained)}, or {REMEDIES[cause]} ({of_all})"
+    return f"{_levelled(one, gained=gained)}{rated}, or {REMEDIES[cause]} ({of_all})"
 
 
 def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
-    """A safety below its minimum: an even load where that helps, more face width where not."""
-    symbol, what, value, least, power = _limit(one, safety)
+    """A safety below its minimum: an even load where that helps, more face width where that does not suffice."""
+    symbol, what, value, least, _ = _limit(one, safety)
     finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {percent(one.margin, whole=True)} of the load"
-    factor = safety.face_load_factor
-    wider = f"{figures(1.0 / one.margin, 2)} times the face width at equal K factors, or a larger centre distance"
     level = max(_CORRECTED, one.lead.after) if one.lead is not None and _gain(one) > _GAIN else _CORRECTED
-    if factor > max(_WORTH, level) and one.over_face:
-        better = value * (factor / level) ** power
-        rated = f"in place of {factor:.2f} of the rating"
-        wider = f"{_against_tilt(one, gained=False)}: {symbol} about {better:.2f} at K_Hβ {figures(level)} {rated}"
-    return Change(one.margin, f"pair {one.pair}", finding, wider)
+    after = one.levelled
+    if after is None and not (safety.face_load_factor > max(_WORTH, level) and one.over_face):
+        return Change(one.margin, f"pair {one.pair}", finding, _wider(one.margin))
+    # without its rating nothing says that a lead correction suffices: manufacturing deviations remain
+    remedy = _against_tilt(one, _rated(one, safety), gained=False)
+    left = one.margin if after is None else min(after.margins)
+    if after is None:
+        remedy += f", against K_Hβ {safety.face_load_factor:.2f} of the rating; or {_wider(left)}"
+    elif left < 1.0:
+        remedy += f"; with the lead correction still {_wider(left)}"
+    return Change(one.margin, f"pair {one.pair}", finding, remedy)
+
+
+def _wider(margin: float) -> str:
+    """What takes the load that a mesh with this margin lacks."""
+    return f"{figures(1.0 / margin, 3)} times the face width at equal K factors, or a larger centre distance"
 
 
 def safeties(found: Iterator[tuple[object, dict[str, tuple[float, float]]]], ending: str) -> tuple[float, float]:

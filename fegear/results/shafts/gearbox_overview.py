@@ -48,6 +48,7 @@ from fegear.results.shafts.loaded_shafts import (
     needs_gears_of_meshes,
     shafts_of,
 )
+from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 from fegear.results.shafts.shaft_deflection import overlooked
 from fegear.shafts.designations import designation_of
 from fegear.shafts.gearbox import CAUSES
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
     from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
+    from fegear.results.shafts.rated_lead import RatedLead
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
 
@@ -87,6 +89,10 @@ class GearboxInputs:
     drawn : DrawnGearbox
     rated : tuple of PairToRate or None
         Of every mesh; None where the case lacks what a rating needs.
+    releaded : tuple of RatedLead or None
+        Of every mesh, to rate it with another lead of its driver.
+    leads : tuple of tuple of float
+        Present slope and crowning of the driver of every mesh [m].
     wide, loaded : tuple of bool
         Of every mesh, whether its flanks are loaded over the face, and whether it has a transmission error.
     lives, speeds, designations : tuple of tuple
@@ -102,6 +108,8 @@ class GearboxInputs:
     shafts: LoadedShaftsInputs
     drawn: DrawnGearbox
     rated: tuple[PairToRate | None, ...]
+    releaded: tuple[RatedLead | None, ...]
+    leads: tuple[tuple[float, float], ...]
     wide: tuple[bool, ...]
     loaded: tuple[bool, ...]
     lives: tuple[tuple[LifeRating | None, ...], ...]
@@ -159,6 +167,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
     return GearboxInputs(
         inputs_of_shafts(scene, name), drawn_gearbox(scene),
         tuple(None if reasons[pair] else pair_to_rate(scene, pair) for pair in meshes),
+        tuple(None if reasons[pair] else rated_lead(scene, pair) for pair in meshes),
+        tuple(present_lead(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         lives, speeds, tuple(tuple(_designation(part[one]) for one in row) for row in names), checks_of(scene),
         required, tuple(why),
@@ -201,7 +211,11 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
     shafts = loaded_shafts(upstream)
     states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
     leads = _leads(inputs, upstream, shafts, work)
-    meshes = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
+    found = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
+    meshes = [
+        replace(one, levelled=_levelled(one, releaded, present))
+        for one, releaded, present in zip(found, inputs.releaded, inputs.leads, strict=True)
+    ]
     bearings = bearings_at_glance(
         shafts, inputs.lives, inputs.speeds, inputs.designations, inputs.checks, inputs.required
     )
@@ -223,6 +237,20 @@ def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
         for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
     ]
+
+
+def _levelled(one: MeshAtGlance, releaded: RatedLead | None, present: tuple[float, float]) -> Safety | None:
+    """Safeties with the slope and crowning against the shafts in addition to the present lead of the driver.
+
+    None where K_Hbeta of the rating does not change: given in the case, or by the same row of the standard's table.
+    """
+    if one.safety is None or one.lead is None or releaded is None:
+        return None
+    slope, crowning = present[0] + one.lead.slope, present[1] + one.lead.crowning
+    found = rated_with(releaded, SafetyOfLead(one.pair, "", slope, crowning, one.lead.after))
+    if not found.factor < one.safety.face_load_factor:
+        return None
+    return Safety(found.contact, found.bending, one.safety.required, found.factor)
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
@@ -288,8 +316,27 @@ def _check(scene: Scene, _name: str) -> None:
 def _sentences(seen: Seen) -> Iterator[str]:
     """Why it cannot be built, the weakest mesh and bearing, what to change first or to improve where all suffices."""
     data: GearboxData = seen.data
-    if data.failures:
-        yield f"Cannot be built: {data.changes[0].finding}."
+    changes = [
+        f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
+        for number, one in enumerate(data.changes)
+    ]
+    state = [f"Cannot be built: {data.changes[0].finding}."] if data.failures else []
+    rated, misaligned, weakest = _states(data)
+    if any(one.margin < 1.0 for one in data.changes):
+        # an answer has five sentences, fewer beside another result's: what fails must be among the first two
+        first, *others = *state, *rated, *weakest, *misaligned
+        yield first
+        yield " ".join(changes)
+        yield from others
+    else:
+        yield from (*rated, *misaligned, *weakest, *changes[:1])
+        if changes[1:]:
+            yield " ".join(changes[1:])
+
+
+def _states(data: GearboxData) -> tuple[list[str], list[str], list[str]]:
+    """Sentences on the safeties and the misalignment of the weakest mesh, and on the weakest bearing and shaft."""
+    safety: list[str] = []
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
     known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
@@ -303,7 +350,7 @@ def _sentences(seen: Seen) -> Iterator[str]:
         said = ", ".join(known)
         if rated and first.safety is not None:
             said += f" at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
-        yield f"Pair {first.pair}{many}: {said}."
+        safety.append(f"Pair {first.pair}{many}: {said}.")
         known, many = [], ""
     modified = ""
     if abs(first.remaining - first.over_face) > _MODIFIED:
@@ -315,18 +362,11 @@ def _sentences(seen: Seen) -> Iterator[str]:
         )
     if math.isfinite(first.te_peak_to_peak):
         known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
-    yield f"Pair {first.pair}{many}: {', '.join(known)}."
     weakest = "; ".join(one for one in (_weakest_bearing(data), _weakest_shaft(data)) if one)
-    if weakest:
-        yield f"{weakest[0].upper()}{weakest[1:]}."
-    changes = [
-        f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
-        for number, one in enumerate(data.changes)
-    ]
-    alone = 0 if data.failures else 1  # an answer has five sentences
-    yield from changes[:alone]
-    if changes[alone:]:
-        yield " ".join(changes[alone:])
+    return (
+        safety, [f"Pair {first.pair}{many}: {', '.join(known)}."],
+        [f"{weakest[0].upper()}{weakest[1:]}."] if weakest else [],
+    )  # fmt: skip
 
 
 def _weakest_bearing(data: GearboxData) -> str:
@@ -435,6 +475,7 @@ _SHEET = Sheet(
         lambda _seen: [neglecting(_NOTCHES)],
         lambda seen: [_ESTIMATED] if any(one.lead is not None for one in seen.data.meshes) else [],
         lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),
+        lambda seen: seen.data.said_of_lives(),
         lambda seen: overlooked(seen.asked.checks.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),
     ),
 )  # fmt: skip

@@ -29,7 +29,7 @@ from fegear.results.shafts.loaded_shafts import (
     needs_gears_of_meshes,
     shafts_of,
 )
-from fegear.results.shafts.rated_lead import SafetyOfLead, rated_lead, rated_with
+from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,11 +107,8 @@ class GroundLead:
 def _inputs(scene: Scene, name: str) -> LeadInputs:
     shafts = inputs_of_shafts(scene, name)
     drivers = tuple(scene.case.pair[mesh.pair].driver for mesh in shafts.gearbox.meshes)
-    counts = scene.case.effects.relief  # a lead that does not count is none that the correction adds to
-    leads = [scene.case.gear[gear].lead if counts else None for gear in drivers]
-    slopes, crownings = (
-        tuple(0.0 if lead is None else float(getattr(lead, key)) for lead in leads) for key in ("slope", "crowning")
-    )
+    leads = [present_lead(scene, mesh.pair) for mesh in shafts.gearbox.meshes]
+    slopes, crownings = tuple(slope for slope, _ in leads), tuple(crowning for _, crowning in leads)
     rows = tuple(rated_lead(scene, mesh.pair) for mesh in shafts.gearbox.meshes)
     return LeadInputs(shafts, drivers, slopes, crownings, rows)
 

@@ -71,6 +71,12 @@ class SafetyOfLead:
                            default=math.nan)  # fmt: skip
 
 
+def present_lead(scene: Scene, pair: str) -> tuple[float, float]:
+    """Helix slope and crowning of the driver [m]; a lead that does not count is none that a correction adds to."""
+    lead = scene.case.gear[scene.case.pair[pair].driver].lead if scene.case.effects.relief else None
+    return (0.0, 0.0) if lead is None else (float(lead.slope), float(lead.crowning))
+
+
 def rated_lead(scene: Scene, pair: str) -> RatedLead | None:
     """What the rating of a mesh takes; None where it is not rated, or its load is shared with other meshes."""
     from fegear.case.built.rated_pair import pair_to_rate
