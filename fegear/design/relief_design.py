@@ -23,8 +23,8 @@ from fegear.design.oil_film import OilFilm
 from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
-from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.design.tip_relief.tolerated import Decisive, within_tolerances
+from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
+from fegear.design.tip_relief.tolerated import within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 

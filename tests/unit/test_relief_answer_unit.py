@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.design.held_relief import Robustness
-from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.design.tip_relief.tolerated import Decisive
+from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words

@@ -11,6 +11,7 @@ from fegear.design.charts import ReliefChart, unit_length
 from fegear.design.flanks import flank_tolerance, lead_correction, tip_bench, tip_chart, tip_design, tip_search
 from fegear.design.flanks.tip_bench import TipReader, TipTrials
 from fegear.design.load_range import LoadRange
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -198,6 +199,24 @@ def test_the_worst_within_tolerances_is_of_all_ends_of_both_gears():
     )
     assert bare[0, 0] == 0.0
     assert bare[0, 1] == pytest.approx(0.5 * PAIR.path_length)
+
+
+@pytest.mark.parametrize(("driven", "decides"), [(2e-6, ("driven", "amount")), (1e-9, ("driver", "amount"))])
+def test_the_tolerance_of_flanks_that_decides_is_the_one_without_which_least_is_left_at_most(driven, decides):
+    numbers = np.array([5e-6, 1e-3, 8e-6, 2e-3, 0, 0, 0, 0, 0])
+    tips = TipTolerance(1e-6, 1e-4, 0.0), TipTolerance(driven, 3e-4, 0.0)
+    high = [6e-6, 1.1e-3, 8e-6 + driven, 2.3e-3]
+    given = flank_tolerance.FlankTolerance(tips)
+
+    def left(n):
+        return 2.0 * (n[0] * (1.0 + n[1]) + 2.0 * n[2] * (1.0 + 3.0 * n[3]) - 1e-8)
+
+    (one,) = flank_tolerance.decisive_tips(Trials(np.array([1.0])), PAIR, numbers, given, np.array([left(high)]))
+    without = [left([*high[:i], numbers[i], *high[i + 1 :]]) for i in range(4)]
+    assert (one.member, one.number) == decides
+    assert one.most == pytest.approx(min(without))
+    none = flank_tolerance.decisive_tips(Trials(np.array([1.0])), PAIR, 0.0 * numbers, given, np.ones(1))
+    assert none == (None,)
 
 
 # ---- readings --------------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from fegear.base.arrays import Array
 from fegear.design.flanks.forms import NUMBERS
 from fegear.design.flanks.trials import FlankTrials
 from fegear.design.preferred import CLASS_STEP
-from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.design.tip_relief.tip_tolerance import TIP_NUMBERS, Decisive, TipTolerance
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.relief import EndRelief
 
@@ -119,6 +119,37 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
     return worst
 
 
+def decisive_tips(
+    trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance, most: Array
+) -> tuple[Decisive | None, ...]:
+    """Which tolerance of the tip reliefs decides what is left at most under each load; None where none is ground.
+
+    Parameters
+    ----------
+    trials, pair, numbers, tolerance
+        As in `within_tolerances`.
+    most : ndarray, shape (L,)
+        Largest peak-to-peak transmission error within all tolerances [m].
+    """
+
+    def left(given: FlankTolerance) -> Array:
+        worst = within_tolerances(trials, pair, numbers, given)
+        return np.array([trials.of_numbers(one).peak_to_peak[0, i] for i, one in enumerate(worst)])
+
+    part = most / left(tolerance)
+    found: list[Decisive | None] = [None] * trials.loads.size
+    for at, (member, number) in enumerate(product(MEMBERS, TIP_NUMBERS)):
+        if numbers[2 * (at // 2)] == 0.0:
+            continue
+        tips = list(tolerance.tips)
+        tips[at // 2] = tips[at // 2].without(number)
+        without = part * left(FlankTolerance((tips[0], tips[1]), tolerance.lead))
+        for i, least in enumerate(found):
+            if least is None or without[i] < least.most:
+                found[i] = Decisive(member, number, float(without[i]))
+    return tuple(found)
+
+
 def _most(trials: FlankTrials, worst: Array, choices: Array, where: slice, *, alike: bool = False) -> Array:
     """Put the choice that leaves most under each load in place of some numbers; `alike`: all rows of `worst` are."""
     found = worst.copy()
@@ -140,6 +171,8 @@ def _tips(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankT
         gear = pair.gear(member)
         off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else [tip]
         each.append([(one.amount, gear.base_radius * (one.end - one.start)) for one in (tip, *off)])
+    # A number without a tolerance gives some of them twice.
+    each = [list(dict.fromkeys(one)) for one in each]
     return np.array([[*driver, *driven] for driver, driven in product(*each)])
 
 

@@ -13,11 +13,12 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest
-from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
+from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tips, within_tolerances
 from fegear.design.flanks.tip_bench import Read, TipReader, tip_reader, tip_trials, without_tips
 from fegear.design.flanks.tip_search import best_tips
 from fegear.design.load_range import LoadRange, proportions
 from fegear.design.preferred import classes_finer, preferred
+from fegear.design.tip_relief.tip_tolerance import Decisive
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.relief import Shape
@@ -93,6 +94,8 @@ class TipDesign(ReadOnlyArrays):
     finer : int or None
         By how many classes these would have to be finer for the shape to be ground to leave no more than no relief
         under any load that it is designed for: 0 where they do, None where none does.
+    decisive : tuple of Decisive or None
+        Which tolerance decides `most` of the shape to be ground under each load.
     """
 
     task: TipDesignTask
@@ -102,6 +105,7 @@ class TipDesign(ReadOnlyArrays):
     left: Mapping[str, Read]
     most: Mapping[Shape, Array]
     finer: int | None = 0
+    decisive: tuple[Decisive | None, ...] = ()
 
     @property
     def shapes(self) -> list[Shape]:
@@ -170,7 +174,11 @@ def design_tips(
         report(0.5 + 0.5 * (number + 1) / len(task.grind))
     design = TipDesign(task, reader.points, found, single, left, most)
     shape = design.shapes[0]
-    return replace(design, finer=_classes_finer(reader.shaped(POWERS[shape]), pair, design, shape))
+    of_shape, numbers = reader.shaped(POWERS[shape]), found[shape].relief.numbers
+    return replace(
+        design, finer=_classes_finer(of_shape, pair, design, shape),
+        decisive=decisive_tips(of_shape.plain, pair, numbers, task.tolerance, most[shape]),
+    )  # fmt: skip
 
 
 def _classes_finer(reader: TipReader, pair: GearPair, design: TipDesign, shape: Shape) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.design.preferred import CLASS_STEP, FINEST
 from fegear.geometry.gear import Gear
+from fegear.geometry.pair import Member
 from fegear.geometry.relief import EndRelief
 
 #: Length of a tip relief without a tolerance of its own may be off by this part of it.
@@ -19,6 +21,9 @@ OF_LENGTH = 0.1
 _SHORTEST = 0.02
 #: Amounts below this are none [m].
 NOTHING = 1e-9
+TipNumber = Literal["amount", "length"]
+#: Numbers of a tip relief in the order of `TipTolerance.off`.
+TIP_NUMBERS: tuple[TipNumber, ...] = ("amount", "length")
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,10 @@ class TipTolerance:
         origin = "" if grade is None else f"f_Hα of class {grade}"
         return replace(self, amount=self.amount / CLASS_STEP**classes, origin=origin, grade=grade)
 
+    def without(self, number: TipNumber) -> TipTolerance:
+        """The same with one number exactly as drawn."""
+        return replace(self, amount=0.0) if number == "amount" else replace(self, length=0.0)
+
     def length_of(self, gear: Gear, tip: EndRelief) -> float:
         """By how much the length of a relief may be off [m]."""
         return OF_LENGTH * gear.base_radius * (tip.end - tip.start) if self.length is None else self.length
@@ -73,3 +82,21 @@ class TipTolerance:
             return np.zeros_like(at), np.full_like(at, self.form)
         ends = [self.off(gear, tip, *off).removal(at) for off in product((-1, 1), repeat=2)]
         return np.min(ends, axis=0), np.max(ends, axis=0) + self.form
+
+
+@dataclass(frozen=True)
+class Decisive:
+    """The tolerance without which the largest transmission error is smallest.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    number : {"amount", "length"}
+        Of the member's tip relief.
+    most : float
+        Largest peak-to-peak transmission error with this number as drawn and all others inside their tolerances [m].
+    """
+
+    member: Member
+    number: TipNumber
+    most: float

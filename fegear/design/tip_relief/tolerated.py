@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,33 +12,13 @@ from fegear.base.arrays import Array
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.relief_bench import bench
-from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
-from fegear.geometry.pair import MEMBERS, Member
+from fegear.design.tip_relief.tip_tolerance import NOTHING, TIP_NUMBERS, Decisive, TipTolerance
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Relief
 
 #: Combinations that are the worst by the grid and are looked at with every kink: lengths of a relief that is not in
 #: contact change nothing, so that three are one. By the first only, the largest was up to 0.4 % too small.
 _NEAREST = 6
-#: Numbers of a tip relief in the order of `TipTolerance.off`.
-_NUMBERS: tuple[Literal["amount", "length"], ...] = ("amount", "length")
-
-
-@dataclass(frozen=True)
-class Decisive:
-    """The tolerance without which the largest transmission error is smallest.
-
-    Parameters
-    ----------
-    member : {"driver", "driven"}
-    number : {"amount", "length"}
-        Of the member's tip relief.
-    most : float
-        Largest peak-to-peak transmission error with this number as drawn and all others inside their tolerances [m].
-    """
-
-    member: Member
-    number: Literal["amount", "length"]
-    most: float
 
 
 def within_tolerances(
@@ -94,5 +73,5 @@ def within_tolerances(
             at: float(seen[offs[:, at] == 0, i].max()) * part for at in range(offs.shape[1]) if np.any(offs[:, at])
         }
         at = min(without, key=lambda one: without[one], default=None)
-        decisive.append(None if at is None else Decisive(MEMBERS[at // 2], _NUMBERS[at % 2], float(without[at])))
+        decisive.append(None if at is None else Decisive(MEMBERS[at // 2], TIP_NUMBERS[at % 2], float(without[at])))
     return found, tuple(decisive)

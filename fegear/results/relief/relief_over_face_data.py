@@ -186,11 +186,14 @@ class TipsShown:
         if task.over is not None:
             weights = np.ones(load.size) if task.over.weights is None else np.array(task.over.weights)
         most = {f"{shape} tip relief": one[chosen] for shape, one in design.most.items()}
-        finer = {f"{design.shapes[0]} tip relief": design.finer}
+        best = f"{design.shapes[0]} tip relief"
+        finer = {best: design.finer}
+        decisive = {best: tuple(one for one, there in zip(design.decisive, chosen, strict=True) if there)}
         return {
             label: LeftOverRange(
                 load * self.data.pair.driver.base_radius, load, weights / weights.max(), read.peak_to_peak[chosen],
                 read.series.amplitude[0][chosen], most.get(label), read.error[chosen], finer=finer.get(label, 0),
+                decisive=decisive.get(label, ()),
             )
             for label, read in design.left.items()
         }  # fmt: skip

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.tip_relief.grindable import TipReliefPair
-    from fegear.design.tip_relief.tolerated import Decisive
+    from fegear.design.tip_relief.tip_tolerance import Decisive
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import GearPair, Member
     from fegear.results.relief.grinding import Grinding
