@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.case.built.gears_on_shafts import cut_into, stiffened
+from fegear.case.built.gears_on_shafts import stiffened
 from fegear.case.built.rated_body import gear_body
 from fegear.case.built.rated_duty import bore_remarks
 from fegear.case.built.solid_influence import solid_gear_to_solve
+from fegear.case.built.teeth_in_shafts import cut_into
 from fegear.case.reading import read_scene
 
 CASE = Path(__file__).parents[2] / "cases" / "two_stage_shafts.toml"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.case.built.teeth_in_shafts import PIECE, SAME
 from fegear.fem.revolved_body import RevolvedBody
 from fegear.shafts.gear_on_shaft import GearOnShaft
 from fegear.shafts.section import Section
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
     from fegear.shafts.beam import Shaft
 
-#: Diameters that differ by less than this share are one.
-_SAME = 1e-3
-#: Least length of a piece of a section, over the shaft's.
-_PIECE = 1e-9
 #: A body thinner than this share of the root circle's radius is the shaft itself.
 _THIN = 0.03
 
@@ -71,17 +68,17 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
         if gear.body is not None and gear.body.holes is not None:
             said.append(f"stiffening by {place.gear} is computed without the holes of its web")
         low, high = (min(max(place.at + end, 0.0), bare.length) for end in found.held)
-        if not high - low > _PIECE * bare.length:
+        if not high - low > PIECE * bare.length:
             said.append(f"{place.gear} is not seated on its shaft and does not stiffen it")
             continue
         outer, inner = bare.diameters(np.linspace(low, high, 17)[1:-1])
-        if inner.max() > 2.0 * found.seat * (1.0 - _SAME):
+        if inner.max() > 2.0 * found.seat * (1.0 - SAME):
             said.append(
                 f"{place.gear} is fixed at a radius of {found.seat * 1e3:.4g} mm, inside the bore of its shaft, and "
                 "does not stiffen it"
             )
             continue
-        if outer.max() > 2.0 * found.seat * (1.0 + _SAME):
+        if outer.max() > 2.0 * found.seat * (1.0 + SAME):
             said.append(f"{place.gear} is treated as integral with its shaft, solid up to its root circle")
             if gear.body is None:
                 surface = 0.5 * float(outer.max())
@@ -89,32 +86,11 @@ def stiffened(scene: Scene, name: str, bare: Shaft, senses: dict[str, int]) -> S
                     shaft = _filled(shaft, low, high, 2.0 * gear.root_radius)
                     continue
                 found = replace(found, rings=((surface, *found.rings[0][1:]),))
-        elif outer.min() < 2.0 * found.seat * (1.0 - _SAME):
+        elif outer.min() < 2.0 * found.seat * (1.0 - SAME):
             said.append(f"{place.gear} is treated as solid between shaft and bore_radius")
         shaft = _filled(shaft, low, high, 2.0 * found.seat)
         bodies[place.gear] = GearOnShaft(found, place.at, gear.material.young_modulus)
     return StiffenedShaft(replace(shaft, gears=tuple(bodies.values())), bodies, tuple(said))
-
-
-def cut_into(scene: Scene, gear: str) -> float | None:
-    """Radius of the hole below teeth that are cut into a shaft of the case [m]; None of other gears.
-
-    They are where the shaft is thicker than the gear's bore, as for `stiffened`; a body with rim and web never is.
-    """
-    made = scene.gears[gear]
-    if made.tooth.internal or made.body is not None:
-        return None
-    for part in scene.case.shaft.values():
-        for place in part.gears:
-            if place.gear == gear:
-                bare, half = part.build(), 0.5 * made.face_width
-                low, high = (min(max(place.at + end, 0.0), bare.length) for end in (-half, half))
-                if not high - low > _PIECE * bare.length:
-                    return None
-                outer, inner = bare.diameters(np.linspace(low, high, 17)[1:-1])
-                thicker = outer.max() > 2.0 * made.bore_radius * (1.0 + _SAME)
-                return 0.5 * float(inner.max()) if thicker else None
-    return None
 
 
 def strained(scene: Scene, name: str) -> Shaft:
@@ -133,7 +109,7 @@ def strained(scene: Scene, name: str) -> Shaft:
         if not gear.tooth.internal:
             half = 0.5 * gear.face_width
             low, high = (min(max(place.at + end, 0.0), shaft.length) for end in (-half, half))
-            if high - low > _PIECE * shaft.length:
+            if high - low > PIECE * shaft.length:
                 shaft = _filled(shaft, low, high, 2.0 * gear.root_radius, thinner=True)
     return shaft
 
@@ -145,7 +121,7 @@ def _body(gear: Gear, place: GearPlacePart, sense: int) -> RevolvedBody:
     if gear.body is not None:
         lean = gear.body.lean
         rings = [(gear.body.rim_radius, -half, half), (gear.body.hub_radius, *gear.body.web)]
-        if gear.body.hub_radius > gear.bore_radius * (1.0 + _PIECE):
+        if gear.body.hub_radius > gear.bore_radius * (1.0 + PIECE):
             rings.append((gear.bore_radius, *gear.body.hub))
     if sense > 0:  # toward end II is toward the left end of the shaft
         rings, lean = [(inner, -high, -low) for inner, low, high in rings], -lean
@@ -165,12 +141,12 @@ def _filled(shaft: Shaft, low: float, high: float, outer: float, *, thinner: boo
     found = []
     for section, start in zip(shaft.sections, shaft.steps, strict=False):
         end = start + section.length
-        cuts = [start, *(one for one in (low, high) if start + _PIECE < one < end - _PIECE), end]
+        cuts = [start, *(one for one in (low, high) if start + PIECE < one < end - PIECE), end]
         (d0, d1), (h0, h1) = section.ends
         for a, b in pairwise(cuts):
             s, t = (a - start) / section.length, (b - start) / section.length
             hole = h0 + (h1 - h0) * s, h0 + (h1 - h0) * t
-            inside = low - _PIECE < a and b < high + _PIECE
+            inside = low - PIECE < a and b < high + PIECE
             ends = d0 + (d1 - d0) * s, d0 + (d1 - d0) * t
             if inside:
                 ends = (min(ends[0], outer), min(ends[1], outer)) if thinner else (outer, outer)

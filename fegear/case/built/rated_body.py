@@ -27,7 +27,7 @@ def gear_body(scene: Scene, gear: str, said: list[str], *, fixed: bool = False) 
     body = Body(rim, part.web, bored and part.body is None, fixed)
     if rim is None or part.rim_thickness is not None or part.body is not None:
         return body
-    from fegear.case.built.gears_on_shafts import cut_into
+    from fegear.case.built.teeth_in_shafts import cut_into
 
     hole = cut_into(scene, gear)
     if hole is not None:  # the material goes on below the bore, down to the hole of the shaft

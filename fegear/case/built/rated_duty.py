@@ -223,7 +223,7 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
         )
         return (plane, *thin_rim_remarks(gear, scene.gears[gear]))
     if part.bore is not None:
-        from fegear.case.built.gears_on_shafts import cut_into
+        from fegear.case.built.teeth_in_shafts import cut_into
 
         solid = scene.gears[gear].support is not None or cut_into(scene, gear) is not None
         return () if solid else thin_rim_remarks(gear, scene.gears[gear])

@@ -167,7 +167,7 @@ def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
         for key, rack in scene.case.rack.items():
             if rack.pinion == name and is_wide_rack(scene, key):
                 reach = max(reach, math.ceil(rack_inputs(scene, key).pair.total_contact_ratio))
-    from fegear.case.built.gears_on_shafts import cut_into
+    from fegear.case.built.teeth_in_shafts import cut_into
 
     settings, cut = solid_settings_of(scene, name), cut_into(scene, name) is not None
     return SolidGearToSolve(scene.gears[name], settings, accuracy.tolerance, reach, name, cut)
