@@ -13,6 +13,7 @@ import base64
 import gzip
 import io
 import re
+import signal
 import threading
 import zipfile
 from concurrent.futures import Future
@@ -291,10 +292,15 @@ def begun(make: Callable[[], T]) -> Future[T]:
 
     The program never waits for the thread at its end: a stop that strikes while a module is loaded can leave Python's
     lock of imports taken, and a thread that loads one itself would then wait for ever.
+
+    Requests to stop wait for the main thread: while gmsh starts there, this one would end the program by them, for gmsh
+    has given their handlers back to the system. What is made must start no program, which would not hear them either.
     """
     made: Future[T] = Future()
 
     def work() -> None:
+        if hasattr(signal, "pthread_sigmask"):
+            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
         try:
             made.set_result(make())
         except BaseException as problem:  # noqa: BLE001  (raised by `result`)
