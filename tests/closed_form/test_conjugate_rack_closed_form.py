@@ -1,5 +1,6 @@
 """The rack of a fillet: an arc of the tool's tip radius where a rack has cut it, and what is cut where it is rolled."""
 
+import functools
 import math
 from types import SimpleNamespace
 
@@ -128,9 +129,17 @@ def test_a_fillet_that_no_rack_makes_has_no_room():
     assert conjugate_rack(TOOTH).room(0.25).min() == pytest.approx(0.0, abs=1e-5)
 
 
+def _bench(limits):
+    """As much of a bench as its limits ask for."""
+    corner = np.array([0.0, 99.0]), np.array([9.0, 9.0])
+    gear = SimpleNamespace(tooth=TOOTH)
+    made = SimpleNamespace(limits=limits, corner=corner, gear=gear, both=False, other=None)
+    made._room = functools.partial(FilletBench._room, made)
+    return made
+
+
 def test_a_search_looks_at_the_tool_only_where_a_rack_is_to_make_the_fillet():
-    plain = SimpleNamespace(limits=Limits(), corner=(np.array([0.0, 99.0]), np.array([9.0, 9.0])), other=None)
-    asked = SimpleNamespace(limits=Limits(generated=True, smallest_tool_radius=0.3), corner=plain.corner, other=None)
+    plain, asked = _bench(Limits()), _bench(Limits(generated=True, smallest_tool_radius=0.3))
     for tooth in (with_elliptic_tip(0.6), ellipse(0.02)):
         free, found = FilletBench.room(plain, tooth), FilletBench.room(asked, tooth)
         assert np.array_equal(found[: free.size], free)

@@ -163,7 +163,7 @@ def test_forces_and_energy_balance_and_the_response_is_the_derivative():
     bent = alone.under(forces)
     energy = 0.0
     for one in bent:
-        at, loads = one._all
+        at, loads = one.acting
         s, weight = one.loaded.shaft.quadrature(at)
         strain = one.loaded.shaft.strains(at, loads, s)
         energy += 0.5 * float(weight @ (strain**2 / one.loaded.shaft.section_compliance(s)).sum(axis=1))
@@ -172,7 +172,7 @@ def test_forces_and_energy_balance_and_the_response_is_the_derivative():
         energy += 0.5 * float((one.bearing_forces @ seat * one.bearing_forces).sum())
     work = 0.0
     for one in bent:
-        at, loads = one._all
+        at, loads = one.acting
         work += float((loads[2:] * one.at(at[2:])).sum())
     assert 0.5 * work == pytest.approx(energy, rel=1e-9)
 

@@ -75,7 +75,8 @@ def test_every_candidate_is_held_against_the_same_loads_and_errors(own, given, o
             designed=Engaged(),
             ground=ground,
             shapes=["parabolic", "linear"],
-            task=SimpleNamespace(load=70.0, over=None if over is None else SimpleNamespace(loads=over)),
+            task=SimpleNamespace(load=70.0, over=None if over is None else SimpleNamespace(loads=over), film=None),
+            te={},  # nothing is known of the design load, so that the grid's own value stays
         ),
         pair=SimpleNamespace(engagement=Engaged()),
     )
