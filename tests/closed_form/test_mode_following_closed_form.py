@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from fegear.base.errors import InputError
 from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 from fegear.dynamics.helical_pair.modal_indices import mode_table
-from fegear.dynamics.helical_pair.mode_following import SAME, follow_modes
+from fegear.dynamics.helical_pair.mode_following import SAME, _meetings, _State, follow_modes
 from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel, RigidGear
 from fegear.dynamics.train.modes import undamped_modes
 
@@ -167,3 +167,36 @@ def test_values_that_do_not_rise_are_refused():
     for values in ([1.0, 1.0], [2.0, 1.0], [], [1.0, math.nan]):
         with pytest.raises(InputError, match="must be finite and increasing"):
             follow_modes(pair, values)
+
+
+def two_modes(coupling, places, *, curved=False):
+    """States of the matrix [[1 + t, c], [c, 1 - t]]: Lambda^2 = 1 +- root(t^2 + c^2), shapes turned by a quarter.
+
+    Curved: the same distances without a turn, of a matrix that is diagonal all along.
+    """
+    trail = []
+    for t in places:
+        off, turn = math.hypot(t, coupling), 0.0 if curved else 0.5 * math.atan2(coupling, t)
+        vectors = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+        trail.append(_State(t, np.sqrt([1.0 + off, 1.0 - off]), vectors, np.empty(0), np.ones(2)))
+    return trail
+
+
+@pytest.mark.parametrize(
+    ("coupling", "low", "high", "curved", "found"),
+    [
+        (0.02, -20.0, 20.0, False, True),
+        (0.02, -2.0, 20.0, False, False),  # only after it are they four times as far apart
+        (0.02, -20.0, 3.0, False, False),  # only before it
+        (0.02, -20.0, 20.0, True, False),  # near each other, and each keeps its shape
+        (0.1, -5.0, 5.0, False, True),  # 0.1001 of 1.0488 is less than a tenth
+        (0.12, -5.0, 5.0, False, False),
+    ],
+)
+def test_veerings_are_narrow_exchange_shapes_and_are_seen_from_both_sides(coupling, low, high, curved, found):
+    places = coupling * np.array([low, 0.5 * low, -1.0, -0.3, 0.0, 0.2, 0.9, 0.5 * high, high])
+    trail = two_modes(coupling, np.unique(places), curved=curved)
+    crossings, veerings = _meetings(trail)
+    assert not crossings
+    gap = math.sqrt(1.0 + coupling) - math.sqrt(1.0 - coupling)
+    assert veerings == ([(0.0, 0, 1, pytest.approx(gap))] if found else [])

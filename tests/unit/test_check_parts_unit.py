@@ -104,6 +104,13 @@ def test_places_lie_in_the_middle_of_equal_steps_of_the_roll_and_two_half_widths
     assert (inside | at_ends).all()
 
 
+def test_on_a_flank_shorter_than_what_is_kept_off_its_ends_all_places_are_in_its_middle(known, checked, monkeypatch):
+    monkeypatch.setattr(check, "_ROOM", 1e4)
+    flank = known[1].fine.flank
+    arcs = flank.arc_of_radius(checked(3)[1]["radius"])
+    assert arcs == pytest.approx(0.5 * (flank.flank_start + flank.flank_end) * np.ones(3), rel=1e-9)
+
+
 def test_differences_are_relative_and_those_of_neighbours_to_the_tooth_s_own(checked):
     found, _ = checked(1, factor=1.01, beside=0.003)
     off = {one.quantity: one.difference for one in found.compared}

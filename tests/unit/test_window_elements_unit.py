@@ -22,6 +22,7 @@ from fegear.base.errors import InputError
 from fegear.output.export_formats import formats
 from fegear.results.gear.drawing import moving_pair
 from fegear.window import messages
+from fegear.window import page as page_module
 from fegear.window.bar import Bar, exports
 from fegear.window.beginnings import JOBS, examples
 from fegear.window.bench import LEVELS, Bench
@@ -586,6 +587,90 @@ def test_a_page_without_a_case_offers_what_to_begin_with(client, tmp_path):
     core.loop.run_until_complete(chosen())
     assert bench.desk is not None
     assert bench.desk.name == "pair"
+
+
+def page_of(client, bench, **more):
+    async def begun():
+        with client:
+            return Page(bench, **more)
+
+    page = core.loop.run_until_complete(begun())
+    run(core.loop)
+    return page
+
+
+def test_who_only_looks_on_sees_a_case_or_that_none_is_open_and_is_offered_nothing(client, tmp_path):
+    bench = Bench(None)
+    page_of(client, bench, looks=True)
+    assert [one.text for one in client.elements.values() if isinstance(one, ui.label)] == ["No case is open."]
+    assert not [one for one in client.elements.values() if "offer" in one.classes]
+    assert "fegearLook.begin()" in client.scripts
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    assert page_of(client, bench, looks=True)._bar is not None
+    client.scripts.clear()
+    page_of(client, bench)
+    assert "fegearLook.begin()" not in client.scripts
+
+
+#: What pages say, and what of the bench hears it.
+SAID = {
+    "relief": ("move_relief", {"gear": "a", "end": "tip", "index": 0, "start": 1.5, "amount": 2, "moving": True}),
+    "load": ("move_load", {"pair": "I", "key": "load", "text": "3 kN", "moving": False}),
+    "drop": ("drop_relief", {"gear": "a"}),
+    "name_driven": ("name_driven", {"pair": "I"}),
+    "design": ("design", {"pair": "I", "how": "ground"}),
+    "shows": ("show", {"pair": "I", "kind": "stress", "on": True}),
+    "sight": ("see", {"tasks": ["a"]}),
+    "stop": ("stop", {}),
+    "compute": ("compute", {}),
+}
+
+
+def test_what_a_page_says_reaches_what_it_is_about(client, tmp_path, monkeypatch):
+    bench, heard = Bench(None), []
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    for name in {"see_otherwise", "put", *(name for name, _ in SAID.values())}:
+        monkeypatch.setattr(bench, name, lambda *given, _name=name, **more: heard.append((_name, given, more)))
+    page = page_of(client, bench)
+    for kind, (name, parts) in SAID.items():
+        press(client.layout, kind, parts)
+        assert heard.pop() == (name, (), parts)
+    press(client.layout, "view", {"stress": "shear"})
+    press(client.layout, "view", ["stress"])
+    assert heard == [("see_otherwise", ({"stress": "shear"},), {}), ("see_otherwise", ({},), {})]
+    heard.clear()
+    monkeypatch.setattr("fegear.window.page.moved_crack", lambda *given: given)
+    press(client.layout, "crack", {"gear": "a", "place": 1, "depth": 0.2, "angle": 30.0, "moving": True})
+    assert heard == [("put", ((bench.desk, "a", 1, 0.2, 30.0),), {"moving": True})]
+    page._inputs = SimpleNamespace(move=lambda *given, **more: heard.append((given, more)))
+    press(client.layout, "value", {"field": "f", "text": "3", "moving": False})
+    assert heard[1:] == [(("f", "3"), {"moving": False})]
+    page._bar = SimpleNamespace(save=lambda: heard.append("saved"))
+    press(client.layout, "save")
+    assert heard.pop() == "saved"
+    for kind in ("save", "value", "crack", "untaken"):  # of a case that has just been closed
+        page._bar = page._inputs = bench.desk = None
+        press(
+            client.layout,
+            kind,
+            {"field": "f", "text": "3", "moving": False}
+            if kind == "value"
+            else {"gear": "a", "place": 1, "depth": 0.2, "angle": 30.0, "moving": True},
+        )
+    assert len(heard) == 2
+    assert client.said == []
+
+
+def test_a_page_is_called_as_the_case_on_the_desk(tmp_path):
+    assert page_module._title(SimpleNamespace(desk=None)) == ""
+    titled = Desk(TEXT, "c", tmp_path)
+    assert page_module._title(SimpleNamespace(desk=titled)) == "x"
+    assert page_module._title(SimpleNamespace(desk=Desk(TEXT.replace('title = "x"', ""), "c", tmp_path))) == "c"
+    titled.set(MODULE, '"3 kg"')
+    assert page_module._title(SimpleNamespace(desk=titled)) == "x"  # of what was right before
+    refused = Desk(TEXT.replace("3 mm", "3 kg"), "c", tmp_path)
+    assert refused.refusal is not None
+    assert page_module._title(SimpleNamespace(desk=refused)) == "c"
 
 
 # ---- messages --------------------------------------------------------------------------------------------------------
