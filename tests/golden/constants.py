@@ -14,7 +14,7 @@ its own. Only what is kept and still there is compared; after a change that is m
 import argparse
 import dataclasses
 import enum
-import importlib
+import importlib.util
 import inspect
 import json
 import re
@@ -26,7 +26,8 @@ ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
 #: Units and materials, keys, standards and closed forms, teeth by their standards, bearings and shafts, Python.
 ROOMS = ("base", "case", "formulas", "geometry", "shafts", "workbench")
-OTHERS = ("atlas", "contact", "design", "dynamics", "engine", "exchange", "fem", "output", "results", "studies")
+OTHERS = ("atlas", "commands", "contact", "design", "dynamics", "engine", "exchange", "fem", "output", "results",
+          "studies", "verify", *(("window",) if importlib.util.find_spec("nicegui") else ()))  # fmt: skip
 #: So many numbers are kept as they are.
 FEW = 12
 _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
