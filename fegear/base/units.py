@@ -64,7 +64,12 @@ DIMENSIONS: dict[str, Dimension] = {
     "time": Dimension("s", "20000 h"),
     "hardness": Dimension("HV", "700 HV"),
     "strain": Dimension("m/m", "400 um/m"),
+    "voltage": Dimension("V", "5 V"),
+    "bridge_output": Dimension("V/V", "0.8 mV/V"),
 }
+
+#: Dimensions whose units cancel, and the names that tell one of them from the other.
+_BARE, _VOLTS = ("strain", "bridge_output"), {"V", "mV", "uV"}
 
 #: Units of temperature with their size and the reading of their zero, both in degrees Celsius: the one quantity with
 #: an offset. The formulas of oils and scuffing are written in degrees Celsius, and so are temperatures inside fegear.
@@ -105,9 +110,11 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "viscosity": {"Pa*s": 1.0, "mPa*s": 1e-3},
     "kinematic_viscosity": {"mm^2/s": 1e-6, "cSt": 1e-6, "m^2/s": 1.0},
     "temperature": {"degC": 1.0},
-    "time": {"h": 3600.0, "min": 60.0, "s": 1.0},
+    "time": {"h": 3600.0, "min": 60.0, "s": 1.0, "ms": 1e-3},
     "hardness": {"HV": 1.0, "HBW": 1.0 / 0.95, "HB": 1.0 / 0.95},
     "strain": {"um/m": 1e-6, "ustrain": 1e-6, "mm/m": 1e-3, "m/m": 1.0, "ppm": 1e-6},
+    "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6},
+    "bridge_output": {"mV/V": 1e-3, "uV/V": 1e-6, "V/V": 1.0},
 }
 
 #: Every unit that is known, in words of pint; there are no prefixes but these. The radian is a dimension of its own
@@ -119,7 +126,7 @@ UNITS: dict[str, str] = {
     "ft": "12*inch", "foot": "ft", "feet": "ft",
     "rad": "[angle]", "mrad": "1e-3*rad", "urad": "1e-6*rad", "deg": f"{math.pi / 180.0!r}*rad", "degree": "deg",
     "degrees": "deg", "arcmin": "deg/60", "arcsec": "deg/3600", "rev": f"{_TURN!r}*rad", "turn": "rev", "U": "rev",
-    "s": "[time]", "min": "60*s", "h": "3600*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
+    "s": "[time]", "ms": "1e-3*s", "min": "60*s", "h": "3600*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
     "kg": "[mass]", "g": "1e-3*kg", "t": "1e3*kg", "lb": "0.45359237*kg",
     "N": "kg*m/s^2", "kN": "1e3*N", "MN": "1e6*N", "daN": "10*N", "kgf": "9.80665*N", "lbf": "4.4482216152605*N",
     "W": "N*m/s", "kW": "1e3*W", "MW": "1e6*W", "hp": f"{_HP!r}*W", "PS": f"{_PS!r}*W",
@@ -128,6 +135,7 @@ UNITS: dict[str, str] = {
     "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",
     "HV": "[hardness]", "HBW": "HV/0.95", "HB": "HBW",  # steel, ISO 18265: HBW = 0.95 HV
     "ustrain": "um/m", "microstrain": "um/m", "ppm": "um/m",
+    "V": "[voltage]", "mV": "1e-3*V", "uV": "1e-6*V",
     "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s", "St": "1e-4*m^2/s", "cSt": "1e-6*m^2/s",
 }  # fmt: skip
 
@@ -156,6 +164,9 @@ def _size(unit: str, dimension: str) -> float:
     unknown = [name for name in names(unit) if name not in UNITS]
     if unknown:
         raise UnreadableError(f"has the unknown unit {shown(unknown[0])}", _choices(dimension))
+    volts = not _VOLTS.isdisjoint(names(unit))
+    if dimension in _BARE and volts != (dimension == "bridge_output"):  # to pint both are plain numbers
+        raise UnreadableError(f"is not {_kind(dimension)}", _choices(dimension))
     quantity = registry().parse_expression(unit)
     wanted = DIMENSIONS[dimension]
     for si, size in {wanted.si: 1.0, **wanted.also}.items():

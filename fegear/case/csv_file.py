@@ -38,13 +38,19 @@ class Columns(dict[str, NDArray[np.float64]]):
         All heads of the file.
     reading : str
         What had to be understood: decimal commas, lines that were passed over; empty for nothing.
+    units : mapping, optional
+        Dimension and unit of the columns that may be of several dimensions.
     """
 
     def __init__(
-        self, columns: Mapping[str, NDArray[np.float64]], heads: tuple[str, ...] = (), reading: str = ""
+        self,
+        columns: Mapping[str, NDArray[np.float64]],
+        heads: tuple[str, ...] = (),
+        reading: str = "",
+        units: Mapping[str, tuple[str, str]] | None = None,
     ) -> None:
         super().__init__(columns)
-        self.heads, self.reading = heads, reading
+        self.heads, self.reading, self.units = heads, reading, dict(units or {})
 
     @property
     def has(self) -> str:
@@ -72,7 +78,12 @@ class Columns(dict[str, NDArray[np.float64]]):
 
 
 def read_columns(
-    path: Path, key: str, dimensions: Mapping[str, str], units: Mapping[str, str] | None = None, *, gaps: bool = False
+    path: Path,
+    key: str,
+    dimensions: Mapping[str, str | tuple[str, ...]],
+    units: Mapping[str, str] | None = None,
+    *,
+    gaps: bool = False,
 ) -> Columns:
     """Read the columns that are known by name into SI; others are passed over.
 
@@ -85,7 +96,7 @@ def read_columns(
     key : str
         Where the case names the file, for messages.
     dimensions : mapping
-        Dimension of each column that may be there; empty for plain numbers.
+        Dimension of each column that may be there; empty for plain numbers; several where its unit says which.
     units : mapping, optional
         Units of columns whose heads have none.
     gaps : bool
@@ -119,19 +130,35 @@ def read_columns(
     missing = len(lines.rows) - len(rows)
     lines = replace(lines, rows=rows)
     commas = decimal_commas([(number, row[i]) for number, row in lines.rows for i in at.values()], path, key)
-    columns = {
-        name: _column(lines, i, path, key, dimensions[name], (units or {}).get(name, ""), commas=commas)
-        for name, i in at.items()
-    }
-    return Columns(columns, tuple(head.text for head in lines.heads), _reading(lines, missing, commas=commas))
+    columns, several = {}, {}
+    for name, i in at.items():
+        one, given = dimensions[name], (units or {}).get(name, "")
+        if isinstance(one, tuple):
+            unit = _unit(lines, i) or given
+            one = next((other for other in one if _is_of(unit, other)), one[0])
+            several[name] = one, unit
+        columns[name] = _column(lines, i, path, key, one, given, commas=commas)
+    return Columns(columns, tuple(head.text for head in lines.heads), _reading(lines, missing, commas=commas), several)
+
+
+def _unit(lines: CsvLines, i: int) -> str:
+    """Unit in a head, as it is written here."""
+    return _ELSEWHERE.get(lines.heads[i].unit, lines.heads[i].unit)
+
+
+def _is_of(unit: str, dimension: str) -> bool:
+    """Whether a unit is one of a dimension."""
+    try:
+        return bool(unit_size(unit, dimension))
+    except InputError:
+        return False
 
 
 def _column(
     lines: CsvLines, i: int, path: Path, key: str, dimension: str, given: str, *, commas: bool
 ) -> NDArray[np.float64]:
     """One column in SI."""
-    head = lines.heads[i]
-    unit = _ELSEWHERE.get(head.unit, head.unit)
+    head, unit = lines.heads[i], _unit(lines, i)
     scale = unit_size(unit or given, dimension, f"{key}, column {head.name}") if dimension else 1.0
     if given and unit_size(given, dimension, key) != scale:
         raise InputError(

@@ -6,7 +6,19 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, Length, LengthOrZero, Number, Part, PositiveLength, Table, refuse
+from fegear.case.part import (
+    Angle,
+    Length,
+    LengthOrZero,
+    Number,
+    Part,
+    PositiveLength,
+    PositiveNumber,
+    PositiveSpeed,
+    PositiveVoltage,
+    Table,
+    refuse,
+)
 
 #: Keys that say where the middle of the grid lies.
 PLACES = ("tangent_angle", "centre_angle", "arc", "diameter", "height")
@@ -16,14 +28,43 @@ class MeasuredStrainPart(Part):
     """``measured = { file, angle, strain, fit }``: a trace of the gauge over the rotation of its gear."""
 
     file: str = Field(
-        description="CSV file with the columns `angle [deg]` (rotation of the gear of the gauge) and `strain [um/m]`."
+        description="CSV file with the columns `angle [deg]` (rotation of the gear of the gauge), or `time [s]` at a "
+        "constant speed, and `strain [um/m]` or `[mV/V]`."
     )
     angle: str | None = Field(default=None, description="Unit of the angle column, if its head has none.")
     strain: str | None = Field(
-        default=None, description="Unit of the strain column, if its head has none: `um/m`, `ustrain`, `m/m`."
+        default=None,
+        description="Unit of the strain column, if its head has none: `um/m`, `ustrain`, `m/m`; of the output of the "
+        "bridge `mV/V` (requires `gauge_factor`) or `mV`, `V` (requires `excitation`, too).",
+    )
+    gauge_factor: PositiveNumber | None = Field(
+        default=None,
+        description="Gauge factor k, if the strain column is the output of the bridge: strain = 4 U/U_0 / (k N), with "
+        "N `active_arms`.",
+    )
+    active_arms: Annotated[Number, Field(gt=0.0, le=4.0)] = Field(
+        default=1.0,
+        description="Number N of active arms of the bridge: 1 (quarter bridge), 2 (half), 4 (full); with transverse "
+        "gauges 1 + nu or 2 (1 + nu).",
+    )
+    excitation: PositiveVoltage | None = Field(
+        default=None, description="Excitation voltage U_0 of the bridge, if the strain column is a voltage."
+    )
+    amplification: PositiveNumber = Field(
+        default=1.0, description="Amplification of the output of the bridge, voltage over voltage."
     )
     angle_column: str = Field(default="angle", description="Name of the angle column.")
     strain_column: str = Field(default="strain", description="Name of the strain column.")
+    time: str | None = Field(default=None, description="Unit of the column of the time, if its head has none.")
+    time_column: str = Field(
+        default="time",
+        description="Column of the time, of files without the angle: the rotation is that at a constant `speed`.",
+    )
+    speed: PositiveSpeed | None = Field(
+        default=None,
+        description="Constant speed of the gear of the gauge (of `shaft`) during the trace, if it is over time; from "
+        "two turns on it is found from the period of the trace within ±5 %. Default: that of the pair.",
+    )
     torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
     torque_column: str = Field(
         default="torque",
@@ -57,9 +98,11 @@ class MeasuredStrainPart(Part):
                 raise refuse(f"contains {one} without offset", "add offset", value=list(self.fit), key="fit")
         if self.angle_column == self.strain_column:
             raise refuse("is the column of the angle", "specify another column", key="strain_column")
-        if self.torque_column in (self.angle_column, self.strain_column):
-            other = "angle" if self.torque_column == self.angle_column else "strain"
-            raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
+        known = {self.angle_column: "angle", self.strain_column: "strain"}
+        for key, column in (("torque_column", self.torque_column), ("time_column", self.time_column)):
+            if column in known:
+                raise refuse(f"is the column of the {known[column]}", "specify another column", key=key)
+            known[column] = key.removesuffix("_column")
         return self
 
 

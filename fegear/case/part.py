@@ -258,6 +258,9 @@ PositiveInverseLength = Annotated[float, quantity("inverse_length", positive=Tru
 InverseLength = Annotated[float, quantity("inverse_length")]
 
 
+PositiveVoltage = Annotated[float, quantity("voltage", positive=True)]
+
+
 PositiveMass = Annotated[float, quantity("mass", positive=True)]
 
 

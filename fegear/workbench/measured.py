@@ -22,6 +22,7 @@ _RIG = "rig"
 #: SI units of columns of arrays, by the key that names the column.
 _STRAIN_UNITS = {
     "angle_column": ("angle", "rad"), "strain_column": ("strain", "m/m"), "torque_column": ("torque", "N*m"),
+    "time_column": ("time", "s"),
 }  # fmt: skip
 _TE_UNITS = {"angle_column": ("angle", "rad"), "te_column": ("te", "m"), "torque_column": ("torque", "N*m")}
 

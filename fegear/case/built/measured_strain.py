@@ -11,6 +11,8 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
 from fegear.base.printed import figures, percent
+from fegear.case.built.angle_of_time import steady_turning
+from fegear.case.built.bridge_output import COLUMN_OF_STRAIN, strain_of_bridge
 from fegear.case.built.trace_levels import change_along, no_level, of_driven, said_of_rest, torque_levels
 from fegear.case.csv_file import read_columns
 from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST, turns_along
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 _LARGEST_STRAIN = 0.05
 #: Part of its turns that a trace may lack.
 _SLACK = 1e-3
-#: Name of the column of the torque that a file need not have.
-_TORQUE = "torque"
+#: Names of columns that a file need not have.
+_TORQUE, _TIME = "torque", "time"
+#: Deviation of turns from the rotation at a constant speed from which on it is said [rad].
+_WANDERS = math.radians(1.0)
+_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -96,20 +101,44 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
         If the file is no trace, or has none at the nominal torque.
     """
     key = f"gauge.{name}.measured.file"
-    columns = {part.angle_column: "angle", part.strain_column: "strain", part.torque_column: "torque"}
-    given = {part.angle_column: part.angle, part.strain_column: part.strain, part.torque_column: part.torque}
+    columns = {
+        part.angle_column: "angle", part.strain_column: COLUMN_OF_STRAIN, part.torque_column: "torque",
+        part.time_column: "time",
+    }  # fmt: skip
+    given = {
+        part.angle_column: part.angle, part.strain_column: part.strain, part.torque_column: part.torque,
+        part.time_column: part.time,
+    }  # fmt: skip
     found = read_columns(
         scene.file(part.file, key), key, columns, {column: unit for column, unit in given.items() if unit}, gaps=True
     )
-    for column, word in ((part.angle_column, "angle_column"), (part.strain_column, "strain_column")):
-        found.require(column, key, part.file, word)
-    if part.torque_column != _TORQUE:
-        found.require(part.torque_column, key, part.file, "torque_column")
-    angle, strain, torque = found[part.angle_column], found[part.strain_column], found.get(part.torque_column)
-    if part.shaft is not None:  # of which the mate turns several times, or a part of a turn, for one of the gear
-        of = scene.pairs[pair].driver if part.shaft == "driver" else scene.pairs[pair].driven
-        angle = np.unwrap(angle) * abs(of.teeth / teeth)
-    angle, reading = -angle if part.reverse else angle, [found.reading] if found.reading else []
+    found.require(part.strain_column, key, part.file, "strain_column")
+    for column, usual, word in (
+        (part.torque_column, _TORQUE, "torque_column"),
+        (part.time_column, _TIME, "time_column"),
+    ):
+        if column != usual:
+            found.require(column, key, part.file, word)
+    reading = [found.reading] if found.reading else []
+    strain, said = strain_of_bridge(
+        found[part.strain_column], part, *found.units[part.strain_column], f"gauge.{name}.measured"
+    )
+    reading += [said] if said else []
+    if part.time_column in found and (part.angle_column not in found or part.time_column != _TIME):
+        angle, said = _rotation(scene, name, part, pair, teeth, found[part.time_column], strain)
+        reading.append(said)
+    else:
+        found.require(part.angle_column, key, part.file, "angle_column (at a constant speed: time_column and speed)")
+        if part.speed is not None:
+            raise InputError(
+                f"gauge.{name}.measured.speed", f"{part.speed * _RPM:.6g} rpm",
+                f'has no effect: "{part.file}" has the angle in column {part.angle_column}', "remove it",
+            )  # fmt: skip
+        angle = found[part.angle_column]
+        if part.shaft is not None:  # of which the mate turns several times, or a part of a turn, for one of the gear
+            angle = np.unwrap(angle) * _turns_for_one(scene, pair, part.shaft, teeth)
+    torque = found.get(part.torque_column)
+    angle = -angle if part.reverse else angle
     levels: tuple[StrainLevel, ...] = ()
     if torque is not None and scene.case.pair[pair].all_loads(scene.pairs[pair]):
         levels, more = _levels(scene, part, pair, 2.0 * math.pi / abs(teeth), key, angle, strain, torque)
@@ -120,6 +149,39 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
     _check(name, key, part, angle, strain)
     fit = tuple(one for one in part.fit if one != "runout")
     return MeasuredStrain(angle, strain, fit, ", ".join(reading), levels, part.file, "runout" in part.fit)
+
+
+def _turns_for_one(scene: Scene, pair: str, shaft: str, teeth: int) -> float:
+    """Turns of a gear with these teeth for one of a shaft."""
+    return abs((scene.pairs[pair].driver if shaft == "driver" else scene.pairs[pair].driven).teeth / teeth)
+
+
+def _rotation(
+    scene: Scene, name: str, part: MeasuredStrainPart, pair: str, teeth: int, time: Array, strain: Array
+) -> tuple[Array, str]:  # fmt: skip
+    """Rotation of a gear at a constant speed from the time of the samples [rad], and how that was found."""
+    key, of_pair = f"gauge.{name}.measured", scene.case.pair[pair].speed
+    if part.speed is None and of_pair is None:
+        raise InputError(
+            f"{key}.speed", "(not given)", f'is required: "{part.file}" has the time in column {part.time_column} and '
+            f"no column {part.angle_column}", "set speed to the constant speed of the gear of the gauge during the "
+            f'trace, e.g. "1000 rpm" (or pair.{pair}.speed to that of the driver), or set angle_column',
+        )  # fmt: skip
+    if np.any(np.diff(time) <= 0.0):
+        raise InputError(
+            f"{key}.file", f'"{part.file}"', f"must have ascending times in column {part.time_column}", "sort the lines"
+        )
+    own = part.speed is not None
+    shaft = (part.shaft or "") if own else "driver"
+    speed = (part.speed or of_pair or 0.0) * (_turns_for_one(scene, pair, shaft, teeth) if shaft else 1.0)
+    found = steady_turning(time, strain, speed)
+    stated = f"{speed * _RPM:.6g} rpm, {'the stated speed' if own else f'the speed of pair {pair}'}"
+    if found.found:
+        stated = f"{found.speed * _RPM:.6g} rpm, the period of the trace (stated: {speed * _RPM:.6g} rpm)"
+    said = f"rotation from the time at {stated}"
+    if found.wander > _WANDERS:
+        said += f"; the speed was not constant: parts of the trace are up to {math.degrees(found.wander):.2g}° off"
+    return found.speed * (time - time[0]), said
 
 
 def _levels(
