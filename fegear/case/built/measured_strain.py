@@ -1,4 +1,4 @@
-"""Traces of strain gauges: read from their files, told apart by the torque where a column has it."""
+"""Traces of strain gauges: read from their files, divided by the torque where a column has it."""
 
 from __future__ import annotations
 
