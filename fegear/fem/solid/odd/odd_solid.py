@@ -127,15 +127,20 @@ class OddSolid(SolidFlank):
 
     def same_as(self, first: int, count: int) -> int:
         """Those from `first` on by themselves where one of them answers otherwise than ordinary teeth."""
-        z = self.period
-        if any(self._touched(first + n) is not None for n in range(min(count, z))):
-            return first % z
-        return self._usual
+        if self._any_touched(first, count):
+            return first % self.period
+        if count not in self._ordinary_runs:
+            runs = (tooth for tooth in range(self.period) if not self._any_touched(tooth, count))
+            self._ordinary_runs[count] = next(runs)
+        return self._ordinary_runs[count]
 
     @cached_property
-    def _usual(self) -> int:
-        """The first tooth that answers as an ordinary one; -1 where there is none."""
-        return next((tooth for tooth in range(self.period) if self._touched(tooth) is None), -1)
+    def _ordinary_runs(self) -> dict[int, int]:
+        """First tooth of the first run of so many teeth that all answer as ordinary ones, by how many."""
+        return {}
+
+    def _any_touched(self, first: int, count: int) -> bool:
+        return any(self._touched(first + n) is not None for n in range(min(count, self.period)))
 
     def _touched(self, tooth: int) -> OddWindow | None:
         return next((window for window in self.windows if window.near(tooth) in window.touched), None)
