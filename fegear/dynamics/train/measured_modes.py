@@ -44,16 +44,21 @@ class MeasuredModes(ReadOnlyArrays):
         return float((self.ratio / self.mean_ratio).std())
 
     @property
-    def verdict(self) -> str:
+    def off(self) -> str:
         """How far they are off, a sentence without its end."""
         off, k = self.mean_ratio - 1.0, int(np.abs(np.log(self.ratio)).argmax())
-        stiff = self.mean_ratio**2 - 1.0
         where = f"{self.measured[k]:.4g} Hz for {self.computed[k]:.4g} Hz of mode {self.mode[k]}"
         one = self.measured.size == 1
-        said = (
+        return (
             f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'} the computed "
             f"{'one' if one else 'ones on average'} ({where}{'' if one else ' is farthest off'})"
         )
+
+    @property
+    def verdict(self) -> str:
+        """The same with what a common factor would say."""
+        off, said, one = self.mean_ratio - 1.0, self.off, self.measured.size == 1
+        stiff = self.mean_ratio**2 - 1.0
         if self.scatter > max(abs(off), _ONE_FACTOR):
             return f"{said}, with a scatter of ±{percent(self.scatter)}: no common factor; check which modes they are"
         said += f", as a stiffness {percent(abs(stiff))} {'higher' if stiff >= 0.0 else 'lower'} would make it"

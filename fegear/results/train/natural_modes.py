@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array
-from fegear.base.errors import InputError
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.dynamics import DynamicsPart
@@ -27,11 +26,13 @@ from fegear.engine.sheet.seen import Seen, itself
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Reads, Stage, Upstream, Work
 from fegear.results import forecasts
+from fegear.results.train.beside_modes import beside, causes_of, explained, measured_beside
 from fegear.results.train.gear_train import RPM, TRAIN_SOURCES, gear_train, needs_train, the_train
 
 if TYPE_CHECKING:
     from fegear.dynamics.train.measured_modes import MeasuredModes
     from fegear.dynamics.train.modes import Campbell, Modes
+    from fegear.dynamics.train.one_cause import OneCause
     from fegear.engine.figure.items import Mark
 
 #: A share of energy below this is none.
@@ -106,6 +107,7 @@ class ModesData:
     modes: Modes
     campbell: Campbell | None
     measured: MeasuredModes | None = None
+    causes: OneCause | None = None
 
     @property
     def shapes(self) -> dict[str, Array]:
@@ -205,25 +207,11 @@ def _modes(asked: Reads[DynamicsPart], upstream: Upstream, _work: Work) -> Modes
     data = gear_train(upstream)
     speeds = asked.part.speed_values / data.speed_ratio
     found = modes(data.train)
+    measured = measured_beside(asked.part.measured_frequencies, found.frequencies[1:])
     return ModesData(
-        data, found, campbell(data.train, speeds, asked.part.lines) if speeds.size else None,
-        _measured(asked.part.measured_frequencies, found.frequencies[1:]),
+        data, found, campbell(data.train, speeds, asked.part.lines) if speeds.size else None, measured,
+        causes_of(data, measured),
     )  # fmt: skip
-
-
-def _measured(given: list[float] | None, natural: Array) -> MeasuredModes | None:
-    """What was measured beside the natural frequencies above zero."""
-    if given is None:
-        return None
-    if len(given) > natural.size:
-        raise InputError(
-            "dynamics.measured_frequencies", f"{len(given)} frequencies",
-            f"exceeds the {natural.size} natural frequencies above zero of the train",
-            "remove those of other parts, or add bodies",
-        )  # fmt: skip
-    from fegear.dynamics.train.measured_modes import beside_modes
-
-    return beside_modes(np.array(given), natural)
 
 
 def _mode_words(natural: Array, room: float) -> list[tuple[float, str]]:
@@ -287,16 +275,9 @@ def _critical(seen: Seen) -> Iterator[str]:
     )
 
 
-def _beside(seen: Seen) -> Iterator[str]:
-    """How far measured frequencies are off."""
-    if (found := seen.data.measured) is not None:
-        one = found.measured.size == 1
-        yield f"Measured natural {'frequency is' if one else 'frequencies are'} {found.verdict}."
-
-
 _SHEET = Sheet(
     answer=Answer(
-        _frequencies, _beside, _critical,
+        explained, beside, _frequencies, _critical,
         figure=lambda seen: "campbell" if seen.data.diagram is not None else "natural_modes",
     ),
     name=lambda _asked: "",
@@ -329,6 +310,15 @@ _SHEET = Sheet(
         Rows(
             "measured_frequencies", "Measured and computed natural frequencies",
             ("mode", "measured", "computed", "ratio"), of="measured",
+        ),
+        Rows(
+            "measured_frequency_causes", "Stiffnesses and inertias that would explain the measured natural frequencies",
+            (
+                "number", "part", "factor", "left", "rms",
+                Cell("shares", itself, lambda seen: seen.data.causes, "share_{key}", further=" {key}",
+                     each="causes.shares_by_mode"),
+            ),
+            of="causes",
         ),
     ),
     values=(
@@ -419,7 +409,9 @@ _SHEET = Sheet(
             of="measured",
         ),
     ),
-    remarks=(Remark(lambda seen: next(_beside(seen)), when="measured"),),
+    remarks=(
+        Remark(lambda seen: next(beside(seen)), when="measured"), Remark(lambda seen: seen.one, each=explained),
+    ),
 )  # fmt: skip
 
 
