@@ -57,8 +57,10 @@ def test_every_spring_together_and_no_single_one():
     assert (soft.part[0], round(soft.factor[0], 4)) == ("every spring", 0.9)
     two = causes(measured(train(inputs=1.2e4, tooth=4.5e8, outputs=8.0e4)))
     assert not two.explaining.size
-    assert two.said.startswith("No single spring or inertia explains the measured frequencies: the nearest, ")
-    assert "leaves deviations of up to " in two.said
+    assert two.said.startswith("No single spring or inertia explains the measured frequencies (deviations of up to ")
+    assert "): nearest " in two.said
+    assert two.part[0].capitalize() not in two.said
+    assert str(two.part[0]) in two.said
     assert causes(1.004 * measured(train())).said == ""
 
 

@@ -35,6 +35,8 @@ _LARGEST, _TRIED = 3.0, 81
 _AGREES, _EXPLAINS, _OF_BEFORE = 0.01, 0.01, 0.25
 #: Deviation within which causes of a single frequency explain it, and causes that a sentence names.
 _EXACT, _NAMED = 1e-3, 3
+#: What causes that are as near as the nearest leave over what that one does.
+_SIMILAR = 1.5
 #: Relative step of a derivative, and digits of a deviation from which on the smaller change comes first.
 _STEP, _DIGITS = 1e-4, 6
 _COUNTS = ("", "", "both", "all three", "all four", "all five", "all six")
@@ -94,14 +96,15 @@ class OneCause(ReadOnlyArrays):
             return f"One frequency does not determine the cause: {self._either(near)} would explain it."
         every = _COUNTS[count] if count < len(_COUNTS) else f"all {count}"
         if not found.size:
+            near = np.flatnonzero(self.rms[:_NAMED] <= _SIMILAR * self.rms[0])
             return (
-                f"No single spring or inertia explains the measured frequencies: the nearest, {self._named(0)}, leaves "
-                f"deviations of up to {percent(self.left[0])} (now {percent(self.before)})."
+                f"No single spring or inertia explains the measured frequencies (deviations of up to "
+                f"{percent(self.before)}): nearest {'is' if near.size == 1 else 'are'} {self._either(near, within=True)}."
             )
         first = (
             f"{self._named(0)} explains {every if count > 1 else 'the'} measured frequenc{'ies' if count > 1 else 'y'}"
         )
-        also = f"; so does {self._either(found[1:_NAMED], within=True)}" if found.size > 1 else ""
+        also = f"; so would {self._either(found[1:_NAMED], within=True)}" if found.size > 1 else ""
         return f"{first[0].upper()}{first[1:]} within {percent(self.left[0])} (now {percent(self.before)}){also}."
 
     def _either(self, places: NDArray[np.int64], *, within: bool = False) -> str:

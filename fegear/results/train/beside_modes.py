@@ -45,7 +45,7 @@ def beside(seen: Seen) -> Iterator[str]:
     if (found := seen.data.measured) is not None:
         one = found.measured.size == 1
         causes: OneCause = seen.data.causes
-        judged = found.verdict if not causes.said or not causes.explaining.size or one else found.off
+        judged = found.off if causes.said and not one else found.verdict  # beside a cause no common factor
         yield f"Measured natural {'frequency is' if one else 'frequencies are'} {judged}."
 
 
