@@ -99,7 +99,8 @@ class OneCause(ReadOnlyArrays):
             near = np.flatnonzero(self.rms[:_NAMED] <= _SIMILAR * self.rms[0])
             return (
                 f"No single spring or inertia explains the measured frequencies (deviations of up to "
-                f"{percent(self.before)}): nearest {'is' if near.size == 1 else 'are'} {self._either(near, within=True)}."
+                f"{percent(self.before)}): nearest {'is' if near.size == 1 else 'are'} "
+                f"{self._either(near, within=True)}."
             )
         first = (
             f"{self._named(0)} explains {every if count > 1 else 'the'} measured frequenc{'ies' if count > 1 else 'y'}"
