@@ -98,8 +98,28 @@ def test_laws_of_two_meshes(meshes):
     assert one == pytest.approx(along(inner, "driver", 20e3, bench(outer, "driven", 10e3)), rel=1e-12)
     assert one.max() > 1.2 * alone.max()
     assert one.max() < 1.02 * max(alone.max(), along(inner, "driver", 20e3).max())
-    pulled = along(outer, "driven", 10e3, bench(inner, "driver", 1.0, objective="tension"), objective="tension")
-    assert pulled == pytest.approx(along(outer, "driven", 10e3, objective="tension"), rel=1e-9)
+    tension = {"objective": "tension"}
+    pulled = along(outer, "driven", 10e3, **tension)
+    assert along(outer, "driven", 10e3, bench(inner, "driver", 1.0, **tension), **tension) == pytest.approx(pulled)
+    # Each fillet is pulled by the mesh of its flank and pressed by the other one: the larger counts at each place.
+    its = along(inner, "driver", 20e3, **tension)
+    both = bench(outer, "driven", 10e3, other=bench(inner, "driver", 20e3, **tension), **tension)
+    assert both.along(tooth) == pytest.approx(np.maximum(pulled, its), rel=1e-12)
+    assert both.largest(tooth) == pytest.approx(max(pulled.max(), its.max()), rel=1e-12)
+    pressed, squeezed = pulled - 2.0 * alone, its - 2.0 * along(inner, "driver", 20e3)
+    assert one == pytest.approx(0.5 * np.maximum(pulled - squeezed, its - pressed), rel=1e-9)
+    # A tooth is coupled as far as in that of both meshes in which it is coupled farther.
+    assert both.reach == 2
+    assert bench(outer, "driven", 10e3).reach == 2
+    for first, second in ((1, 3), (3, 1), (0, 0)):
+        far = [
+            SimpleNamespace(other=None, engagement=SimpleNamespace(compliance=SimpleNamespace(
+                source={"driven": SimpleNamespace(reach=reach)}.__getitem__)), member="driven")
+            for reach in (first, second)
+        ]  # fmt: skip
+        far[1].reach = FilletBench.reach.fget(far[1])
+        far[0].other = far[1]
+        assert FilletBench.reach.fget(far[0]) == max(first, second, 1)
 
 
 def test_room_is_the_least_of_both_meshes(meshes):

@@ -225,3 +225,66 @@ def test_what_quadrature_is_off_for_a_ramp_is_the_sum_less_the_integral():
         np.testing.assert_allclose(off, np.maximum(points.x - x, 0.0) @ kernel - exact, atol=1e-13)
         level = -(points.x > x).astype(float) @ kernel + 2.0 / PITCH * (w @ waves)
         np.testing.assert_allclose(by_place, level, atol=1e-13)
+
+
+def test_kinks_are_the_same_in_other_units():
+    """Places and errors in thousandths: the same kinks, and derivatives by heights and places that are lengths."""
+    values, slopes = (np.array(part) for part in zip(tent(3.0, 2.0, -1.5, 0.93, 0.1), tent(-1.0, -0.7, 0.4, 0.42)))
+    small = Positions(1e-3 * X, 1e-3 * PITCH, PAIRS)
+    assert small.changes == POSITIONS.changes
+    for wanted, found in zip(
+        (*POSITIONS.kinks(values[..., None], slopes[..., None]), POSITIONS.entering(values[..., None], slopes[..., None])),
+        (*small.kinks(1e-3 * values[..., None], slopes[..., None]), small.entering(1e-3 * values[..., None], slopes[..., None])),
+        strict=True,
+    ):  # fmt: skip
+        assert found.where.tolist() == wanted.where.tolist()
+        np.testing.assert_allclose(found.values, 1e-3 * wanted.values, rtol=1e-9)
+        np.testing.assert_allclose(found.slopes, wanted.slopes, rtol=1e-6, atol=1e-9)
+    sharp = small.kinks(1e-3 * values[..., None], slopes[..., None])[0]
+    np.testing.assert_array_equal(
+        small.flanks(1e-3 * values[..., None], sharp, with_changes=True),
+        POSITIONS.flanks(values[..., None], sharp, with_changes=True),
+    )
+
+
+def circled(x, at):
+    """Errors around the period that rise steeply to a place and fall behind it, bent by a cube on both sides."""
+    d = (x - at + 0.5 * PITCH) % PITCH - 0.5 * PITCH
+    return np.where(d < 0.0, 2.0 * d + 0.3 * d**3, -1.5 * d + 0.4 * d**3)
+
+
+@pytest.mark.parametrize(("behind", "pair_more"), [(0.04, True), (-0.03, False), (0.04, False), (-0.03, True)])
+def test_a_peak_beside_a_change_is_the_same_wherever_the_period_begins(behind, pair_more):
+    """Positions are counted from each of them in turn: the change stands in their middle, at their ends and beside."""
+    change = 0.8
+    inner = np.array([0.05, 0.2, 0.36, 0.5, 0.63, 0.74, change - 1e-8, change + 1e-8, 0.9, 0.99, 1.15, 1.3, 1.5, 1.75])
+    pairs = np.where((inner > change) == pair_more, 2, 1)
+    peak = 7 if behind > 0.0 else 5
+    found = []
+    for begin in range(inner.size):
+        x = np.concatenate([inner[begin:], inner[:begin] + PITCH])
+        counted = Positions(x, PITCH, np.roll(pairs, -begin))
+        assert counted.changes == (((6 - begin) % 14, (7 - begin) % 14, 1) if pair_more else (
+            (7 - begin) % 14, (6 - begin) % 14, -1),)  # fmt: skip
+        peaks, _ = counted.kinks(circled(x, change + behind)[None, :, None], np.zeros((1, 4, x.size, 1)))
+        found.append(peaks.values[(peaks.where[1] + begin) % 14 == peak])
+    sizes = np.array([one.size for one in found])
+    if pair_more != (behind > 0.0):  # on the side with a pair less nothing comes in
+        assert not sizes.any()
+        return
+    # None where the period begins within the interval of the peak, or beside it: there it has one neighbour only.
+    assert np.flatnonzero(sizes == 0).tolist() == ([8, 9] if peak == 7 else [5, 6])
+    assert found[0] == pytest.approx([0.0], abs=1e-3)
+    # Neighbours are the same unless the period begins in one of them.
+    whole = sorted(set(range(14)) - ({5, 6, 8, 9, 10} if peak == 7 else {4, 5, 6, 8, 9}))
+    for begin in whole:
+        assert found[begin] == pytest.approx(found[0], rel=1e-9)
+
+
+def test_where_no_pair_comes_in_curves_end_with_the_period_and_the_second_interval_has_a_neighbour():
+    x = np.array([0.02, 0.2, 0.36, 0.5, 0.63, 0.74, 0.85, 0.99, 1.15, 1.3, 1.5, 1.75])
+    even = Positions(x, PITCH, np.ones(x.size, dtype=int))
+    for at, interval, found in ((0.1, 0, False), (0.29, 1, True), (1.4, 9, True), (1.6, 10, False)):
+        d = x - at
+        peaks, _ = even.kinks(np.where(d < 0.0, 2.0 * d, -1.5 * d)[None, :, None], np.zeros((1, 4, x.size, 1)))
+        assert (interval in peaks.where[1]) is found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fegear.base.effects import ODD_TEETH
@@ -175,4 +174,4 @@ def check_wide_pair(scene: Scene, name: str) -> None:
                 f"gear.{flank.gear}.relief", "amount_over_delta", "is defined for the plane (2D) model only",
                 "specify the amount as a length for 3D gears",
             )  # fmt: skip
-    open_gaps(replace(spec, spacing_errors=False))
+    open_gaps(spec)

@@ -155,14 +155,14 @@ class Positions:
         """Intervals on both sides of each: of troughs; of peaks, also across a change where a pair more comes in."""
         own = np.arange(self.width.size)
         last = int(own[-1])
-        whole = self.width > _CHANGE * self.period
+        whole = self.whole
         before = np.where(whole & np.roll(whole, 1) & (own > 0), own - 1, own)
         after = np.where(whole & np.roll(whole, -1) & (own < last), own + 1, own)
         across_before, across_after = before.copy(), after.copy()
         for outside, inside, way in self.changes:
-            if way > 0:
+            if way > 0 and inside <= last:  # no interval begins at the last position, none ends at the first
                 across_before[inside] = (outside - 1) % (last + 1)
-            else:
+            elif way < 0 and inside > 0:
                 across_after[inside - 1] = outside % (last + 1)
         troughs, peaks = (
             self._sides(
@@ -173,12 +173,12 @@ class Positions:
         return troughs, peaks
 
     def _sides(self, before: Index, before_that: Index, after: Index, after_that: Index) -> Sides:
-        middle, half = 0.5 * (self.x[1:] + self.x[:-1]), 0.5 * self.period
+        middle = 0.5 * (self.x[1:] + self.x[:-1])
         parts = []
         for near, far in ((before, before_that), (after, after_that)):
             one, two = middle - middle[near], middle[near] - middle[far]
             one, two = (d - self.period * np.round(d / self.period) for d in (one, two))
-            parts.append(np.where((far != near) & (np.abs(one) < half), one / np.where(two == 0.0, 1.0, two), 0.0))
+            parts.append(one / np.where(far == near, np.inf, two))
         return Sides(before, before_that, after, after_that, *parts)
 
     def kinks(self, te: Floats, slope: Floats) -> tuple[Kinks, Kinks]:
@@ -275,7 +275,7 @@ class Positions:
         others = np.abs(outer[0] - outer[1]) + np.abs(outer[2] - outer[3])
         candidate, i, load = kinks.where[:, np.abs(outer[1] - outer[2]) > _SHARP * others]
         # The ends of the monotone run to both sides of every position.
-        way = np.where((self.width > _CHANGE * self.period)[:, None], np.sign(rise), 0.0)
+        way = np.where(self.whole[:, None], np.sign(rise), 0.0)
         turns = np.ones((count, positions, loads), dtype=bool)
         turns[:, 1:-1] = way[:, 1:] != way[:, :-1]
         places = np.arange(positions)[:, None]
