@@ -229,22 +229,17 @@ def test_what_quadrature_is_off_for_a_ramp_is_the_sum_less_the_integral():
 
 def test_kinks_are_the_same_in_other_units():
     """Places and errors in thousandths: the same kinks, and derivatives by heights and places that are lengths."""
-    values, slopes = (np.array(part) for part in zip(tent(3.0, 2.0, -1.5, 0.93, 0.1), tent(-1.0, -0.7, 0.4, 0.42)))
-    small = Positions(1e-3 * X, 1e-3 * PITCH, PAIRS)
+    tents = tent(3.0, 2.0, -1.5, 0.93, 0.1), tent(-1.0, -0.7, 0.4, 0.42)
+    values, slopes = (np.array([one[k] for one in tents])[..., None] for k in (0, 1))
+    small, few = Positions(1e-3 * X, 1e-3 * PITCH, PAIRS), 1e-3 * values
     assert small.changes == POSITIONS.changes
-    for wanted, found in zip(
-        (*POSITIONS.kinks(values[..., None], slopes[..., None]), POSITIONS.entering(values[..., None], slopes[..., None])),
-        (*small.kinks(1e-3 * values[..., None], slopes[..., None]), small.entering(1e-3 * values[..., None], slopes[..., None])),
-        strict=True,
-    ):  # fmt: skip
+    whole = *POSITIONS.kinks(values, slopes), POSITIONS.entering(values, slopes)
+    for wanted, found in zip(whole, (*small.kinks(few, slopes), small.entering(few, slopes)), strict=True):
         assert found.where.tolist() == wanted.where.tolist()
         np.testing.assert_allclose(found.values, 1e-3 * wanted.values, rtol=1e-9)
         np.testing.assert_allclose(found.slopes, wanted.slopes, rtol=1e-6, atol=1e-9)
-    sharp = small.kinks(1e-3 * values[..., None], slopes[..., None])[0]
-    np.testing.assert_array_equal(
-        small.flanks(1e-3 * values[..., None], sharp, with_changes=True),
-        POSITIONS.flanks(values[..., None], sharp, with_changes=True),
-    )
+    there = POSITIONS.flanks(values, whole[0], with_changes=True)
+    np.testing.assert_array_equal(small.flanks(few, whole[0], with_changes=True), there)
 
 
 def circled(x, at):

@@ -19,7 +19,7 @@ from itertools import product
 
 import numpy as np
 
-from fegear.base.arrays import Array, Index, Mask
+from fegear.base.arrays import Array, Mask
 from fegear.design.flanks.forms import NUMBERS
 from fegear.design.flanks.quick import QuickFlanks
 from fegear.design.flanks.trials import FlankTrials
@@ -61,10 +61,6 @@ class _Straight:
     slope: Array
     left: Array
     force: Array
-
-    def some(self, which: Index | Mask) -> _Straight:
-        """Some of the reliefs."""
-        return _Straight(self.te[which], self.slope[which], self.left[which], self.force[which])
 
     def put(self, which: Mask, other: _Straight) -> None:
         """Take over some of another's."""

@@ -31,10 +31,6 @@ class Places:
     on: Mask
     loads: Floats
 
-    def of(self, chosen: Mask | Index) -> Places:
-        """Some of them."""
-        return Places(self.x[chosen], self.where[:, chosen], self.on[:, chosen], self.loads[:, chosen])
-
 
 @dataclass(frozen=True)
 class State:

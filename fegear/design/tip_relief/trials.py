@@ -297,10 +297,6 @@ class Trials:
         zeta = self._shared(np.zeros((1, *self._depths.shape[1:]))).transmission_error
         return float((zeta / self.loads).mean() * self.loads.max())
 
-    def touching(self, p: Floats) -> Mask:
-        """Which pairs carry load, of candidates (C, 4): shape (n, P, C L)."""
-        return np.asarray(self._shared(self._removed(p)[0]).loads > 0.0)
-
     def exact(self, p: Floats) -> Tried:
         """By the exact load sharing, of candidates (C, 4)."""
         removal, by_number = self._removed(p)
