@@ -105,7 +105,7 @@ def _run_case(
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
-    from fegear.output.spoken_values import spoken_values
+    from fegear.output.spoken_values import answer_lines, spoken_values
     from fegear.output.tables import printed_lines
     from fegear.results.catalogue import STAGES
 
@@ -151,8 +151,8 @@ def _run_case(
     if with_fields and not files:
         voice.note("No requested result has a field: request root-stress, or stiffness with face_positions.")
     voice.notes(results.notes(remarks), "report.html")
-    for sentence in results.answer.sentences:
-        voice.say(sentence)
+    for line in answer_lines(results.answer):
+        voice.say(line)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.engine.table import Table
 
 #: Sentences of one result, and of all wanted results together unless more are wanted.
 MOST = 5
@@ -31,6 +35,8 @@ class Answered:
         Keys of short tables that a page shows below the figure.
     leads : bool
         Whether it stands before the others, whatever the order asked for: what the case is about, as odd teeth.
+    overviews : tuple of Table
+        A table with a row for each of several subjects, the one to act on first; of one subject its row.
     """
 
     sentences: tuple[str, ...]
@@ -41,3 +47,4 @@ class Answered:
     background: bool = False
     tables: tuple[str, ...] = ()
     leads: bool = False
+    overviews: tuple[Table, ...] = ()

@@ -120,8 +120,9 @@ class Results(Alike):
 
     @property
     def tables(self) -> Named[Table]:
-        """All tables, in order and by name."""
-        return Named(table for outcome in self.outcomes.values() for table in outcome.tables)
+        """All tables, in order and by name; behind them those that have a row for each of several subjects."""
+        own = [table for outcome in self.outcomes.values() for table in outcome.tables]
+        return Named([*own, *self.answer.overviews])
 
     @property
     def values(self) -> Named[Value]:

@@ -10,12 +10,14 @@ have, the one to act on comes first and says among how many it is.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.base.printed import rounded, unit_said
 from fegear.base.spoken_names import spoken
 from fegear.engine.answered import MOST, Answered
+from fegear.engine.declared import stacked
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -23,19 +25,33 @@ if TYPE_CHECKING:
     from fegear.engine.outcome import Outcome
     from fegear.engine.plan import Plan, Step
     from fegear.engine.stage import Task
+    from fegear.engine.table import Table
     from fegear.engine.value import Value
 
 #: Values that a result without an answer of its own says.
 _FIRST = 2
+#: Subjects from which on a table has them all.
+_OVERVIEW = 3
 _COUNTS = ("", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 
 
 class RunAnswer(NamedTuple):
-    """What a run comes to: sentences in the order of the wanted results, the first's figure, and short tables."""
+    """What a run comes to: sentences in the order of the wanted results, the first's figure, and short tables.
+
+    Attributes
+    ----------
+    sentences : tuple of str
+    figure : str
+    tables : tuple of str
+        Keys.
+    overviews : tuple of Table
+        A row for each of at least three subjects of one result, the one to act on first; behind the first sentence.
+    """
 
     sentences: tuple[str, ...]
     figure: str
     tables: tuple[str, ...] = ()
+    overviews: tuple[Table, ...] = ()
 
 
 def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence[str]) -> RunAnswer:
@@ -61,6 +77,7 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     return RunAnswer(
         tuple(dict.fromkeys((*front, *described))), next((one.figure for one in found if one.figure), ""),
         tuple(dict.fromkeys(table for one in found for table in one.tables)),
+        tuple(table for one in found for table in one.overviews if len(table.columns[0]) >= _OVERVIEW),
     )  # fmt: skip
 
 
@@ -129,6 +146,7 @@ def _of_result(result: str, steps: Sequence[Step], outcomes: Mapping[Task, Outco
         _within([one.sentences for one in found])[:MOST], next((one.figure for one in found if one.figure), ""),
         covers=tuple(result for one in found for result in one.covers), background=all(o.background for o in found),
         tables=tuple(table for one in found for table in one.tables), leads=any(one.leads for one in found),
+        overviews=tuple(table for one in found for table in one.overviews),
     )  # fmt: skip
 
 
@@ -145,7 +163,15 @@ def joined(answers: Sequence[Answered]) -> Answered:
     return Answered(
         _within(rows)[:MOST], first.figure, covers=first.covers, background=first.background,
         tables=tuple(table for one in ordered for table in one.tables), leads=any(one.leads for one in ordered),
+        overviews=_below_each_other([table for one in ordered for table in one.overviews]),
     )  # fmt: skip
+
+
+def _below_each_other(tables: Sequence[Table]) -> tuple[Table, ...]:
+    """Tables of one kind as one."""
+    if len(tables) < 2:
+        return tuple(tables)
+    return (replace(tables[0], columns=stacked([one.columns for one in tables])),)
 
 
 def plain_sentences(values: Iterable[Value]) -> tuple[str, ...]:

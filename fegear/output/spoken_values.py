@@ -1,13 +1,15 @@
-"""Which single values of a run the terminal prints: as many as a person reads before the answer."""
+"""Which single values of a run the terminal prints: as many as a person reads before the answer; the answer itself."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from fegear.engine.run_answer import in_order
+from fegear.output.tables import row_lines
 
 if TYPE_CHECKING:
     from fegear.engine.run import Results
+    from fegear.engine.run_answer import RunAnswer
     from fegear.engine.stage import Task
     from fegear.engine.value import Value
 
@@ -47,6 +49,13 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
         kept |= {value.name for value in results.outcomes[task].values[:share]}
     found = [value for value in every if value.name in kept]
     return found, count - len(found)
+
+
+def answer_lines(answer: RunAnswer) -> list[str]:
+    """Lines of an answer: its first sentence, tables of several subjects, the other sentences."""
+    first = 1 if answer.overviews else len(answer.sentences)
+    rows = [line for table in answer.overviews for line in row_lines(table)]
+    return [*answer.sentences[:first], *rows, *answer.sentences[first:]]
 
 
 def _summed_up(results: Results) -> set[Task]:

@@ -93,6 +93,20 @@ def sheet_lines(table: Table) -> list[str]:
     ]
 
 
+def row_lines(table: Table) -> list[str]:
+    """Lines for the terminal: heads, and a line for each row of the table; numbers of four digits, to the right."""
+    columns = [[one.head, *_written(one.values, "{:.4g}")] for one in table.columns]
+    texts = [one.values.dtype.kind == "U" for one in table.columns]
+    widths = [max(map(len, column)) for column in columns]
+    return [
+        "  ".join(
+            f"{cell:<{width}}" if left else f"{cell:>{width}}"
+            for cell, width, left in zip(row, widths, texts, strict=True)
+        ).rstrip()
+        for row in zip(*columns, strict=True)
+    ]
+
+
 def printed_lines(tables: Sequence[Table]) -> list[str]:
     """Lines for the terminal of several tables; of the same ones for several pairs each has its title above it."""
     kinds = [tuple(column.head for column in table.columns[:2]) for table in tables]  # further ones are errors, or none

@@ -21,6 +21,7 @@ from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
+from fegear.output.spoken_values import answer_lines
 from fegear.workbench.given import folder_of, texts
 from fegear.workbench.mesh_curve import angles_of, curve_of, is_secant, load_number
 from fegear.workbench.plots import Plots
@@ -92,7 +93,7 @@ class Results(Found):
 
     def __repr__(self) -> str:
         """What the results come to, values, and what else there is."""
-        lines = [f"  {sentence}" for sentence in self.answer.sentences]
+        lines = [f"  {line}" for line in answer_lines(self.answer)]
         few = max(_FEW - len(lines), _FEWEST)
         lines += [f"  {value!r}" for value in self.values[:few]]
         if len(self.values) > few:

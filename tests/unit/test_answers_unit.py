@@ -193,4 +193,4 @@ def test_a_result_without_an_answer_and_one_by_its_former_name_are_said_too():
 
 def test_what_has_no_outcome_yet_is_not_said():
     plan, _ = run_of(("a", "A", True, ("a1.",)))
-    assert answer_of_run(plan, {}, ("A",)) == ((), "", ())
+    assert answer_of_run(plan, {}, ("A",)) == ((), "", (), ())

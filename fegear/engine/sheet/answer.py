@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from fegear.engine.answered import MOST, Answered
+from fegear.engine.sheet.rows import Rows
 from fegear.engine.sheet.seen import MissingValueError, Seen, Text, Where
 from fegear.engine.value import Value
 
@@ -37,6 +38,8 @@ class Answer:
         As those of `Answered`.
     leads : where, optional
         Whether it does, as of `Answered`.
+    overview : Rows, optional
+        A table of one row, which several subjects make one table.
     """
 
     said: tuple[str | _Says | Callable[[Seen], Iterable[str]], ...]
@@ -47,15 +50,16 @@ class Answer:
     background: bool
     tables: tuple[str, ...]
     leads: Where | None
+    overview: Rows | None
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
         among: str = "", covers: tuple[str, ...] = (), background: bool = False, tables: tuple[str, ...] = (),
-        leads: Where | None = None,
+        leads: Where | None = None, overview: Rows | None = None,
     ) -> None:  # fmt: skip
         for name, given in (
             ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
-            ("background", background), ("tables", tables), ("leads", leads),
+            ("background", background), ("tables", tables), ("leads", leads), ("overview", overview),
         ):  # fmt: skip
             object.__setattr__(self, name, given)
 
@@ -67,6 +71,7 @@ class Answer:
         return Answered(
             found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
             self.background, self.tables, self.leads is not None and seen.holds(self.leads),
+            () if self.overview is None else tuple(self.overview.tables(seen)),
         )  # fmt: skip
 
 

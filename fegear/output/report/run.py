@@ -88,7 +88,12 @@ def _answer(
     """The card on top: what the wanted results come to, the figure that shows it, and short tables."""
     short = [DataTable(table, brief=True) for table in tables if table.name in answer.tables]
     figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
-    blocks: tuple[Block, ...] = (Notes(answer.sentences, "answer"),) if answer.sentences else ()
+    first = 1 if answer.overviews else len(answer.sentences)
+    blocks: tuple[Block, ...] = (
+        *(Notes(part, "answer") for part in (answer.sentences[:first],) if part),
+        *(DataTable(table, brief=True) for table in answer.overviews),
+        *(Notes(part, "answer") for part in (answer.sentences[first:],) if part),
+    )
     if figure is None:
         return (*blocks, *short)
     picture = [Plot(figure.figure)] if figure.figure.drawable_in_page else map(Still, figure.pictures)

@@ -25,6 +25,7 @@ from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import GaugeData
+from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
 from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
@@ -234,6 +235,13 @@ def _neglected(seen: Seen) -> str:
     return remark(f"Gauge {seen.name}", asked.effects, asked.tolerance, effect, [said])
 
 
+def _row(seen: Seen) -> GaugeRow:
+    """The gauge at the nominal load beside other gauges."""
+    data: GaugeData = seen.data
+    torque = data.loads[data.at] * data.history.pair.driver.base_radius * seen.asked.halves
+    return GaugeRow.of(seen.name, data, torque, float(data.peak_strain[data.at]))
+
+
 #: Of a history, in the order of its columns.
 _CURVES = (
     "x", "angle", "roll_angle", "strain", "strain_opposite", "strain_towards_root", "strain_towards_tip",
@@ -358,6 +366,7 @@ _SHEET = Sheet(
         _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
+        overview=gauge_rows("gauges", "Measured and computed strain of all gauges", _row),
     ),
     remarks=(
         Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.verdict), when="verdict"),

@@ -13,7 +13,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, gains_of_places, reach_of_places
 from fegear.results.pair.trace_levels import OverTorque
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
@@ -202,9 +202,9 @@ class GaugeData(BesideTrace):
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
 
-    def _verdict(self, *, brief: bool) -> Note:
+    def _verdict(self, *, brief: bool) -> Judged:
         if self.compared is None or not self.estimated:
-            return Note("")
+            return Judged("")
         peak, error = float(self.peak_strain[self.at]), self.peak_error
         judged = verdict(
             self.compared,
@@ -217,4 +217,7 @@ class GaugeData(BesideTrace):
         )  # fmt: skip
         if not brief or self.over_torque is None or not self.linearity or self.over_torque.linear:
             return judged
-        return Note(f"{judged}; measured / computed strain is not linear over torque", judged.kind)
+        return Judged(
+            f"{judged}; measured / computed strain is not linear over torque", judged.kind,
+            word=f"{judged.word}; not linear over torque",
+        )  # fmt: skip

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.notes import Note, NoteClass, class_of, exceeding, failing
+from fegear.base.notes import Note, NoteClass, class_of
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
@@ -190,6 +190,32 @@ class Otherwise(BetterDescribed):
         return ""
 
 
+class Judged(Note):
+    """A verdict that knows itself in a few words, for a table.
+
+    Parameters
+    ----------
+    text, kind, margin
+        As those of a `Note`.
+    word : str
+    """
+
+    __slots__ = ("word",)
+    word: str
+
+    def __new__(
+        cls, text: str, kind: NoteClass = NoteClass.INFORMATION, margin: float = 0.0, word: str = ""
+    ) -> Judged:  # fmt: skip
+        """Make the note and remember the words."""
+        made: Judged = super().__new__(cls, text, kind, margin)  # type: ignore[assignment]
+        made.word = word
+        return made
+
+    def __reduce__(self) -> tuple[type[Judged], tuple[str, NoteClass, float, str]]:  # type: ignore[override]
+        """Travel to other processes with class and words."""
+        return Judged, (str(self), self.kind, self.margin, self.word)
+
+
 class BesideTrace:
     """What results say of a measured strain beside the computed one; heirs are dataclasses."""
 
@@ -202,19 +228,19 @@ class BesideTrace:
         return None if self.compared is None else thinned(self.compared)
 
     @property
-    def verdict(self) -> Note:
+    def verdict(self) -> Judged:
         """Measured against computed strain at the nominal load; empty without a trace and in drafts."""
         return self._verdict(brief=False)
 
     @property
-    def judged(self) -> Note:
+    def judged(self) -> Judged:
         """The same without what its limit is made of."""
         return self._verdict(brief=True)
 
     @property
     def urgency(self) -> float:
-        """The smaller, the sooner a reader has to act: the class of the verdict."""
-        return float(class_of(self.judged))
+        """The smaller, the sooner a reader has to act: the class of the verdict, behind all where nothing is measured."""
+        return float(class_of(self.judged)) + (0.5 if self.compared is None else 0.0)
 
     @property
     def drifts(self) -> str:
@@ -241,7 +267,7 @@ class BesideTrace:
         """How the figure draws the trace; empty where it is drawn as measured."""
         return drawn_as(self.compared)
 
-    def _verdict(self, *, brief: bool) -> Note:
+    def _verdict(self, *, brief: bool) -> Judged:
         """Without a trace, and in drafts, empty."""
         raise NotImplementedError
 
@@ -260,7 +286,7 @@ def thinned(found: FittedCurve) -> FittedCurve:
 
 def verdict(
     found: FittedCurve, peak: ComputedPeak, otherwise: Otherwise | None = None, *, brief: bool = False
-) -> Note:  # fmt: skip
+) -> Judged:  # fmt: skip
     """Measured against computed strain, in one or two sentences without a subject; failing unless they agree.
 
     The limit has placement, load, computation and the noise of the trace: not its residual, with which a difference of
@@ -280,9 +306,12 @@ def verdict(
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
     if better := otherwise.said(found, size):
         as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"
-        return failing(better + as_given)
+        return Judged(better + as_given, NoteClass.FAILS, word=better.partition(":")[0].removeprefix("the trace "))
     if found.gain <= 0.0:
-        return failing("measured and computed strain have opposite signs; check fillet, sign and shift of the trace")
+        return Judged(
+            "measured and computed strain have opposite signs; check fillet, sign and shift of the trace",
+            NoteClass.FAILS, word="opposite sign",
+        )  # fmt: skip
     with_them = found.gain * (1.0 + peak.missing) - 1.0
     known = replace(limits, neglected=0.0)
     if missing := limits.neglected > _COUNTS * known.together(off):  # too much to be an uncertainty: judged either way
@@ -291,14 +320,16 @@ def verdict(
     within, by = abs(off) <= together, _by(off)
     either = missing and (within or abs(with_them) <= known.together(with_them) or off * with_them < 0.0)
     if within and limits.model > _JUDGES:  # so wide a band would pass nearly everything
-        return exceeding(
+        return Judged(
             f"measured strain is {by} the computed one; this cannot be judged: the computed strain is known to "
-            f"±{percent(limits.model)} only{f'; {peak.sharper}' if peak.sharper else ''}"
-        )
+            f"±{percent(limits.model)} only{f'; {peak.sharper}' if peak.sharper else ''}",
+            NoteClass.BEYOND_TOLERANCE, word=f"cannot be judged: {by}",
+        )  # fmt: skip
     limit = f"limit {percent(together)}" + ("" if brief else f": {limits.parts(off)}")
     effects = " and ".join(peak.neglected)
-    kind = NoteClass.FAILS
+    kind, word = NoteClass.FAILS, f"does not agree: {by} (limit {percent(together)})"
     if found.likeness < _ALIKE:  # a gain of another shape proves nothing
+        word = f"differs in shape: correlation {found.likeness:.3f}"
         or_fit = "" if "shift" in found.fit else ", or fit shift"
         judged = (
             f"{differ}: check fillet, tooth and position of the grid{or_fit}; measured strain is {by} the computed one "
@@ -306,14 +337,15 @@ def verdict(
         )
     elif reason := otherwise.of_ratio(found.gain, together):
         judged = f"measured strain is {figures(found.gain)} times the computed one ({limit}){reason}"
+        word = f"does not agree: {figures(found.gain)} times"
     elif either:
-        kind = NoteClass.NEGLECTED
+        kind, word = NoteClass.NEGLECTED, f"cannot be judged without {effects}"
         judged = (
             f"measured strain is {by} the one computed without {effects} and {_by(with_them)} that with "
             f"{'it' if len(peak.neglected) == 1 else 'them'}: this cannot be judged; {peak.including}"
         )
     elif within:
-        kind = NoteClass.INFORMATION
+        kind, word = NoteClass.INFORMATION, f"agrees: {by} (limit {percent(together)})"
         judged = f"measured strain agrees with the computed one: {by} it ({limit}){_explained(peak, limits, off)}"
     else:
         also = f", {_by(with_them)} it with {effects}" if missing else ""
@@ -325,11 +357,11 @@ def verdict(
         judged += f"; {saturation}" if (saturation := _saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
         steps = "; the torque was not steady from turn to turn" if unsteady_named(found) else ""
-        return Note(judged + drifts + steps, kind)
+        return Judged(judged + drifts + steps, kind, word=word)
     if not found.fits:
-        return Note(judged, kind)
+        return Judged(judged, kind, word=word)
     residual = f"RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
-    return Note(f"{judged}; {residual}", kind)
+    return Judged(f"{judged}; {residual}", kind, word=word)
 
 
 def _by(off: float) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
-from fegear.base.notes import Note, about
+from fegear.base.notes import about
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
@@ -37,7 +37,7 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
@@ -127,10 +127,10 @@ class DynamicStrain(BesideTrace):
         """Whether other meshes, or fluctuating torques, excite the train."""
         return not self.alone
 
-    def _verdict(self, *, brief: bool) -> Note:
+    def _verdict(self, *, brief: bool) -> Judged:
         found = self.found
         if self.compared is None or (self.sharper and found.peak_error is None):
-            return Note("")
+            return Judged("")
         return verdict(
             self.compared,
             ComputedPeak(

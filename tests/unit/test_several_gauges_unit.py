@@ -1,0 +1,85 @@
+"""Answers of several gauges: one table, what does not agree first, on the terminal and on the page."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import build_scene
+from fegear.engine.answered import Answered
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.run_answer import joined
+from fegear.engine.table import Column, Table
+from fegear.output.spoken_values import answer_lines
+from fegear.output.tables import row_lines
+from fegear.results.catalogue import STAGES
+
+_CACHE = SolutionCache()
+
+
+def run(gauges, folder=Path()):
+    gear = {"module": "2 mm", "face_width": "10 mm"}
+    document = {
+        "results": ["gauge"],
+        "gear": {"a": {"teeth": 20, "profile_shift": 0.1, **gear}, "b": {"teeth": 31, **gear}},
+        "pair": {"p": {"driver": "a", "driven": "b", "torque": "16 N*m"}},
+        "gauge": {name: {"gear": "a", "grid_length": "0.3 mm", **more} for name, more in gauges.items()},
+        "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True},
+        "accuracy": {"tolerance": 1e-2},
+    }
+    scene = build_scene(document, "case", folder)
+    return run_plan(scene, make_plan(scene, STAGES), cache=_CACHE)
+
+
+def written(folder, name, history, gain):
+    angle = np.arange(0.0, 720.0, 0.7)
+    place = np.mod(np.radians(angle - 40.0) + math.pi, 2.0 * math.pi) - math.pi
+    strain = 1e6 * gain * np.interp(place, history.angle, history.strain[:, 0], left=0.0, right=0.0) + 20.0
+    strain += np.random.default_rng(3).normal(0.0, 2.0, angle.size)
+    rows = "".join(f"{a:.2f},{s:.4f}\n" for a, s in zip(angle, strain, strict=True))
+    (folder / f"{name}.csv").write_text("angle [deg],strain [um/m]\n" + rows)
+
+
+def test_every_gauge_has_its_row_and_the_one_that_fails_is_first(tmp_path):
+    plain = run({"one": {}})
+    (outcome,) = (one for task, one in plain.outcomes.items() if str(task) == "gauge of one")
+    for name, gain in (("good", 1.01), ("turned", -0.99), ("twice", 2.0)):
+        written(tmp_path, name, outcome.data.history, gain)
+    fit = ["offset", "scale", "shift"]
+    traces = {name: {"measured": {"file": f"{name}.csv", "fit": fit}} for name in ("good", "turned", "twice")}
+    found = run({"plain": {}, **traces}, tmp_path)
+    (table,) = found.answer.overviews
+    cells = {column.name: column.values.tolist() for column in table.columns}
+    assert set(cells["gauge"][:2]) == {"turned", "twice"}
+    assert cells["gauge"][2:] == ["good", "plain"]
+    row = dict(zip(cells["gauge"], zip(*(cells[one] for one in ("verdict", "scale", "offset", "shift")), strict=True),
+                   strict=True))  # fmt: skip
+    assert row["good"][0].startswith("agrees: 1.0 % above (limit ")
+    assert row["good"][1:] == pytest.approx((1.01, 20.0, 40.0), abs=0.4)
+    assert row["turned"][0] == "fits with its sign reversed"
+    assert row["twice"][0] == "does not agree: 2 times"
+    assert row["plain"][0] == "no trace"
+    assert np.isnan(row["plain"][1:]).all()
+    assert cells["torque"] == pytest.approx([16.0] * 4)
+    assert found.tables["gauges"] is not None
+    lines = answer_lines(found.answer)
+    assert lines[0] == found.answer.sentences[0]
+    assert lines[1].startswith("gauge ")
+    assert [line.split()[0] for line in lines[2:6]] == cells["gauge"]
+    assert lines[6:] == list(found.answer.sentences[1:])
+    assert "gauges" not in run({"one": {}, "two": {"grid_length": "0.2 mm"}}).tables  # sentences say both
+
+
+def test_tables_of_subjects_are_joined_in_the_order_of_their_ranks():
+    def of(name, rank):
+        table = Table("all", (Column("name", np.array([name])), Column("size", np.array([rank]), "mm")), "All")
+        return Answered((f"{name}.",), rank=rank, overviews=(table,))
+
+    (found,) = joined([of("a", 2.0), of("long", 1.0), of("c", 3.0)]).overviews
+    assert found.columns[0].values.tolist() == ["long", "a", "c"]
+    assert found.columns[1].values == pytest.approx([1e3, 2e3, 3e3])
+    assert row_lines(found) == ["name  size [mm]", "long       1000", "a          2000", "c          3000"]
+    assert joined([of("a", 2.0)]).overviews[0].columns[0].values.tolist() == ["a"]
