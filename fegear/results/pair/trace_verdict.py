@@ -239,7 +239,7 @@ class BesideTrace:
 
     @property
     def urgency(self) -> float:
-        """The smaller, the sooner a reader has to act: the class of the verdict, behind all where nothing is measured."""
+        """The smaller, the sooner a reader has to act: the class of the verdict; without a trace behind all."""
         return float(class_of(self.judged)) + (0.5 if self.compared is None else 0.0)
 
     @property
