@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any, cast
 
 import numpy as np
 
@@ -207,11 +208,11 @@ class Judged(Note):
         cls, text: str, kind: NoteClass = NoteClass.INFORMATION, margin: float = 0.0, word: str = ""
     ) -> Judged:  # fmt: skip
         """Make the note and remember the words."""
-        made: Judged = super().__new__(cls, text, kind, margin)  # type: ignore[assignment]
+        made = cast("Judged", super().__new__(cls, text, kind, margin))
         made.word = word
         return made
 
-    def __reduce__(self) -> tuple[type[Judged], tuple[str, NoteClass, float, str]]:  # type: ignore[override]
+    def __reduce__(self) -> Any:
         """Travel to other processes with class and words."""
         return Judged, (str(self), self.kind, self.margin, self.word)
 
