@@ -195,7 +195,8 @@ class GaugeData(BesideTrace):
     @property
     def urgency(self) -> float:
         """A verdict at one torque is worth little where the strain is not linear over torque."""
-        return min(super().urgency, float(class_of(self.linearity)))
+        own = super().urgency
+        return min(own, float(class_of(self.linearity))) if self.linearity else own
 
     @property
     def near_contact(self) -> bool:
