@@ -47,9 +47,13 @@ def _several(value: Any) -> Any:
 class CompliancePart(Part):
     """``compliance = { source = "fe" }``: where a pair's tooth compliances come from."""
 
-    source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = Field(
-        default="fe", description="Finite elements, a published formula, or a user table."
-    )
+    source: Literal[
+        "fe", "cornell", "weber-banaschek", "potential-energy", "potential-energy-simplified", "table"
+    ] = Field(
+        default="fe",
+        description="Finite elements, a published formula, or a user table. Simplified: the tooth of the diagnosis "
+        "literature, without fillet, of constant thickness below the base circle.",
+    )  # fmt: skip
     file: str | None = Field(
         default=None,
         description="CSV file with `x [mm]` or `roll_angle [deg]` and `compliance [um/N]`, or with `load [N]` and "

@@ -143,7 +143,8 @@ def coefficients(radius_ratio: float, root_half_angle: float) -> tuple[float, fl
             "half tooth angle at the root",
             f"{theta:.4g} rad",
             f"must be between {RANGE_THETA[0]} and {RANGE_THETA[1]} rad, the fitted range of Sainsot's polynomials",
-            "use another compliance source for gears with few teeth",
+            "use another compliance source for gears with few teeth (potential-energy-simplified, the tooth without "
+            "fillet, covers 17 teeth and more)",
         )
     big_l, m, p, q = (float(v) for v in TABLE_1 @ np.array([1.0 / theta**2, h * h, h / theta, 1.0 / theta, h, 1.0]))
     return big_l, m, p, q

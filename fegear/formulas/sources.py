@@ -22,7 +22,10 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 
 #: Modules of the sources by their names.
-_HOMES = {"cornell": "cornell", "weber-banaschek": "weber_banaschek", "potential-energy": "potential_energy"}
+_HOMES = {
+    "cornell": "cornell", "weber-banaschek": "weber_banaschek", "potential-energy": "potential_energy",
+    "potential-energy-simplified": "potential_energy_simplified",
+}  # fmt: skip
 
 
 class _Sources(Mapping[str, ComplianceSource]):

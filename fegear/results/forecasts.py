@@ -144,6 +144,13 @@ CLOSED_FORM_COMPLIANCES: dict[str, tuple[Citation, ...]] = {
         Citation("wan", "beam that starts on the root circle and follows the fillet"),
         Citation("sainsot", "compliance of the gear body", "Eqs. 14 and 15, Table 1"),
     ),
+    "potential-energy-simplified": (
+        Citation("yang-lin", "bending, axial and contact compliance"),
+        Citation("tian", "shear compliance"),
+        Citation("wu-zuo-parey", "beam of the involute from the base circle on, without fillet"),
+        Citation("liang-zuo-pandey", "root circle and base circle apart"),
+        Citation("sainsot", "compliance of the gear body", "Eqs. 14 and 15, Table 1"),
+    ),
 }
 
 

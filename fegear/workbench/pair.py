@@ -39,7 +39,7 @@ class Pair(Described):
         By default the one that the profile shifts give without backlash.
     compliance : str or mapping
         Where tooth compliances come from: ``"fe"`` (finite elements), ``"weber-banaschek"``, ``"cornell"``,
-        ``"potential-energy"``, or a mapping as in a case file.
+        ``"potential-energy"``, ``"potential-energy-simplified"`` (tooth without fillet), or a mapping as in a case.
     name : str
         In names of results.
     load_distribution : mapping, optional

@@ -5,10 +5,13 @@ import math
 import numpy as np
 import pytest
 
+from fegear.contact.odd_flank import OddFlank, Pit
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.wide.flanks import missing_parts
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import base_twist
 from fegear.contact.wide.loaded import FlankPair
 from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.bands import bands
@@ -100,6 +103,35 @@ def test_no_slice_knows_of_the_next(spur):
         for s in found.lines.at(p):
             total += found.line_load[p, s, 0]
         np.testing.assert_allclose(total, springs * (zeta - gap[: total.size]), rtol=1e-9)
+
+
+@pytest.mark.parametrize("beta", [0.0, 20.0])
+def test_slices_of_a_pit_carry_nothing_and_all_others_what_they_did(beta):
+    """Without neighbours and Hertz's nonlinearity: the springs that are left, whatever the panels are."""
+    one = gear(beta, "right" if beta else "spur")
+    other = gear(beta, "left" if beta else "spur")
+    coarse = SolidSettings().scaled(2.5)
+    body = {"driver": thin(one, coarse), "driven": thin(other, coarse)}
+    pair = GearPair(one, other)
+    whole = OddFlank(pits=(Pit(0.0, 1.0, 0.37, 0.0, 0.11 * WIDTH),))
+    in_part = OddFlank(pits=(Pit(one.pitch_radius, one.pitch_radius + 0.4 * MODULE, 0.37, 0.0, 0.11 * WIDTH),))
+    for odd, panel in ((whole, 2.0), (in_part, 1.1)):
+        gaps = FlankGaps(driver_odd=tuple((tooth, odd) for tooth in range(20)))
+        parts = tuple(missing_parts(odd, pair, "driver"))
+        flanks = FlankPair(pair, body, False, "none", panel, 3, missing=parts)
+        even, found = flanks.solve([LOAD]), flanks.solve([LOAD], gaps)
+        for p in range(found.lines.roll.size):
+            springs = left = 0.0
+            for s in found.lines.at(p):
+                z = np.linspace(found.lines.z[p, s][0], found.lines.z[p, s][-1], 20001)
+                spring = np.interp(z, even.lines.z[p, s], even.line_load[p, s, 0]) / even.transmission_error[p, 0]
+                x = found.lines.roll[p] + found.lines.pair[p, s.start] * pair.base_pitch - base_twist(pair) * z
+                low, high = parts[0].x
+                gone = (np.abs(z - 0.11 * WIDTH) < 0.5 * 0.37 * WIDTH) & (x > low) & (x < high)
+                springs += np.trapezoid(spring, z)
+                left += np.trapezoid(np.where(gone, 0.0, spring), z)
+            assert springs * even.transmission_error[p, 0] == pytest.approx(LOAD, rel=1e-3)
+            assert LOAD / found.transmission_error[p, 0] == pytest.approx(left, rel=2e-3)
 
 
 def test_neighbours_answer_where_both_lines_pass():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from fegear.base.errors import GeometryError, InputError, RangeError
 from fegear.contact.plane.table_compliance import refuse_table
 from fegear.formulas import cornell as cornell_compliance
-from fegear.formulas import potential_energy, weber_banaschek
+from fegear.formulas import potential_energy, potential_energy_simplified, weber_banaschek
 from fegear.formulas.beam import NODES
 from fegear.formulas.outcome import attempt
 from fegear.formulas.root_stress_formulas import root_stress_table
@@ -18,7 +18,10 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 
-NODES_FREE = {m.SOURCE.name: m.tooth_compliance for m in (cornell_compliance, weber_banaschek, potential_energy)}
+NODES_FREE = {
+    m.SOURCE.name: m.tooth_compliance
+    for m in (cornell_compliance, weber_banaschek, potential_energy, potential_energy_simplified)
+}
 RACK = BasicRack(1.0, 1.25, 0.25)
 
 

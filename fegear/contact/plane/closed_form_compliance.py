@@ -92,7 +92,7 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
     ----------
     gear : Gear
     name : str
-        "cornell", "weber-banaschek" or "potential-energy".
+        One of `fegear.formulas.sources.SOURCES`.
 
     Raises
     ------

@@ -7,16 +7,37 @@ from typing import TYPE_CHECKING
 
 from fegear.contact.odd_flank import odd_flanks
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import MissingPart
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.contact.odd_flank import OddFlank
     from fegear.contact.pair_spec import PairSpec
     from fegear.contact.wide.loaded import FlankPair
+    from fegear.geometry.pair import GearPair, Member
 
 
 def as_specified(spec: PairSpec, flanks: FlankPair) -> FlankPair:
     """The flanks with the effects of a spec that change more than what keeps them apart."""
-    return replace(flanks, pair=spec.placed, coupling=spec.neighbour_coupling, hertz=spec.hertz)
+    pair = spec.placed
+    parts = tuple(
+        part
+        for member, flank in zip(MEMBERS, spec.both, strict=True)
+        for _, odd in flank.odd
+        for part in missing_parts(odd, pair, member)
+    )
+    return replace(flanks, pair=pair, coupling=spec.neighbour_coupling, hertz=spec.hertz, missing=parts)
+
+
+def missing_parts(flank: OddFlank, pair: GearPair, member: Member) -> Iterator[MissingPart]:
+    """Where pits of a gear's tooth lie in the plane of action."""
+    gear, (lowest, highest) = pair.gear(member), pair.gear(member).involute_radii
+    for pit in flank.pits:
+        x = sorted(float(pair.x_of_radius(min(max(r, lowest), highest), member)) for r in (pit.low, pit.high))
+        half, middle = 0.5 * pit.face_share * gear.face_width, pit.face_position - pair.face_height(member)
+        yield MissingPart((x[0], x[1]), (middle - half, middle + half))
 
 
 def open_gaps(spec: PairSpec) -> FlankGaps:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array, ReadOnlyArrays
 from fegear.base.tally import note
-from fegear.contact.wide.lines import ContactLines
+from fegear.contact.wide.lines import ContactLines, base_twist
 from fegear.contact.wide.shaft_gaps import RIGID, ShaftGaps
 from fegear.geometry.flank_modification import FlankModification
 from fegear.geometry.pair import MEMBERS, GearPair, Member
@@ -113,9 +113,12 @@ class FlankGaps(ReadOnlyArrays):
             roll = lines.roll_angle(pair, member)[on]
             if flank.relief is not None:
                 found[on] += flank.relief.removal(roll) - usual.removal(roll)
-            z, lean = lines.z[on] + pair.face_height(member), math.cos(gear.base_helix_angle)
             found[on] += flank.deviation.removal(roll)
-            found[on] += flank.gap_over_face(lines.radius(pair, member)[on], z, gear.face_width) / lean
+            up, lean = lines.middle[on], math.cos(gear.base_helix_angle)
+            z, on_path = lines.z[on] + up + pair.face_height(member), lines.x[on]
+            toward = pair.flank_curvature_radius(on_path - base_twist(pair) * up, member)
+            length = lines.roll_length(pair, member)[on] + toward - pair.flank_curvature_radius(on_path, member)
+            found[on] += flank.gap_over_face(pair.place_of_length(length, member), z, gear.face_width) / lean
         return found
 
     def removed(self, member: Member, roll: Array, z: Array) -> Array:

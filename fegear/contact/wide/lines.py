@@ -27,9 +27,23 @@ SHORTEST_LINE = 0.15
 #: Lines shorter than this decide no largest value [modules]: they come and go at corners of the face, where panels are
 #: as long as they are, and what they bear hangs on their number.
 LONG_LINE = 1.0
+#: Panels between ends of missing parts of flanks, and beside them, are no shorter than this share of the others.
+_SHORTEST_PANEL = 0.125
 #: Nothing nearer than this to where a line reaches a tip or form circle does, either [modules along the face]: loads
 #: grow without a bound toward a sharp edge, and with only the last station neglected they would grow with the panels.
 BESIDE_EDGE = 0.2
+
+
+@dataclass(frozen=True)
+class MissingPart:
+    """Part of the plane of action in which a flank is missing: between two x and two z [m]."""
+
+    x: tuple[float, float]
+    z: tuple[float, float]
+
+    def ends(self, at: float, slope: float) -> list[float]:
+        """Heights at which the line x = at - slope z may enter or leave it."""
+        return [*self.z, *((at - x) / slope for x in self.x if slope)]
 
 
 @dataclass(frozen=True)
@@ -94,6 +108,18 @@ class ContactLines(ReadOnlyArrays):
         total = np.zeros(self.z.shape)
         total[:, :-1] += half
         total[:, 1:] += half
+        return total
+
+    @cached_property
+    def middle(self) -> Array:
+        """How far above a station the middle of what it carries lies, half as far as of the panels, (P, M) [m].
+
+        It tells which side two stations at the same place are of.
+        """
+        quarter = 0.25 * self.panel
+        total = np.zeros(self.z.shape)
+        total[:, :-1] += quarter
+        total[:, 1:] -= quarter
         return total
 
     @cached_property
@@ -164,7 +190,12 @@ def life_of_contact(pair: GearPair) -> tuple[float, float]:
 
 
 def contact_lines(
-    pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = (), most_gap: float = 0.0
+    pair: GearPair,
+    roll: ArrayLike,
+    panel: float,
+    weight: ArrayLike = (),
+    most_gap: float = 0.0,
+    missing: tuple[MissingPart, ...] = (),
 ) -> ContactLines:
     """Divide the contact lines of all pairs in reach.
 
@@ -179,6 +210,8 @@ def contact_lines(
         Part of a base pitch that each roll position stands for.
     most_gap : float
         Lines go on along tip edges up to this distance from the mate [m]; 0 for lines that end at tips.
+    missing : tuple of MissingPart
+        Of flanks of some teeth: lines of all have two stations at each end of these, one for either side.
 
     Returns
     -------
@@ -205,7 +238,7 @@ def contact_lines(
             if high - low < shortest * (1.0 - 1e-9):
                 continue
             tips = sorted((at - x) / slope for x in (pair.x_start, pair.x_end)) if slope and most_gap > 0.0 else []
-            z = _stations(low, high, tips, panel)
+            z = _stations(low, high, tips, [end for part in missing for end in part.ends(at, slope)], panel)
             lines.append((j, np.clip(at - slope * z, start, end), z, edges))
         if not lines:
             raise InputError(
@@ -233,12 +266,24 @@ def contact_lines(
     )
 
 
-def _stations(low: float, high: float, tips: list[float], panel: float) -> Array:
+def _stations(low: float, high: float, tips: list[float], missing: list[float], panel: float) -> Array:
     """Stations of a line: equal panels, from tip edge to tip edge where these lie on it."""
     inside = [z for z in tips if low + 0.5 * panel < z < high - 0.5 * panel]
-    ends = [low, *inside, high]
+    fixed = [low, *inside, high]
+    jumps = _apart(missing, fixed, _SHORTEST_PANEL * panel)
+    ends = sorted([*fixed, *jumps])
     parts = [np.linspace(a, b, max(1, math.ceil((b - a) / panel - 1e-9)) + 1) for a, b in itertools.pairwise(ends)]
-    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
+    return np.concatenate([parts[0], *(part[int(part[0] not in jumps) :] for part in parts[1:])])
+
+
+def _apart(places: list[float], fixed: list[float], distance: float) -> list[float]:
+    """Of places on a line those farther than a distance from all other ends of panels.
+
+    There a load ends at full height: two stations at the same place carry what is on either side. With a single one it
+    would fall to nothing over a panel, and the end of a missing part of the flank were uncertain by half of it.
+    """
+    inside = {z for z in places if fixed[0] < z < fixed[-1]}
+    return [z for z in inside if all(abs(z - other) >= distance for other in (*fixed, *inside) if other != z)]
 
 
 def _limits(

@@ -20,7 +20,7 @@ from fegear.contact.fourier import Panels
 from fegear.contact.wide.along_lines import averaged_along, load_below, swept_mean
 from fegear.contact.wide.compliance import FlankCompliance, Hertz, flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
-from fegear.contact.wide.lines import BESIDE_EDGE, ContactLines, base_twist, contact_lines, long_line
+from fegear.contact.wide.lines import BESIDE_EDGE, ContactLines, MissingPart, base_twist, contact_lines, long_line
 from fegear.contact.wide.load_sharing import Contact
 from fegear.contact.wide.roll_points import roll_points
 from fegear.contact.wide.spots import solve_spots
@@ -292,6 +292,8 @@ class FlankPair:
         Roll positions over one base pitch.
     most_gap : float
         Contact lines go on along tip edges up to this distance from the mate's flank [m]; 0 for lines that end there.
+    missing : tuple of MissingPart
+        Of flanks of single teeth: panels end where these do.
     cache : SolutionCache
         Where what gaps and loads do not change is recalled from and kept; by default a memory of this pair's own.
     progress : callable or None
@@ -305,6 +307,7 @@ class FlankPair:
     panel: float = 0.5
     positions: int = 16
     most_gap: float = 0.0
+    missing: tuple[MissingPart, ...] = ()
     cache: SolutionCache = field(default_factory=partial(SolutionCache, most=_KEPT), compare=False, repr=False)
     progress: Callable[[float], None] | None = field(default=None, compare=False, repr=False)
 
@@ -374,7 +377,8 @@ def _compliance(flanks: FlankPair, load: float, cycle: int, roll: Array | None =
         roll, weight = points.x, points.weights / points.period
     else:
         weight = np.empty(0)
-    lines = contact_lines(flanks.pair, roll, flanks.panel * flanks.pair.driver.module, weight, flanks.most_gap)
+    panel = flanks.panel * flanks.pair.driver.module
+    lines = contact_lines(flanks.pair, roll, panel, weight, flanks.most_gap, flanks.missing)
     with one_thread(with_scipy=False):
         return flank_compliance(
             flanks.pair, flanks.gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache,

@@ -258,7 +258,8 @@ def _followed(
 ) -> FollowedFlanks:
     """The pair over all base pitches at some roll positions; those `like` others are for the pairs of these."""
     pair, gaps, load = revolving.pair, revolving.gaps, revolving.load
-    lines = contact_lines(pair, roll, flanks.panel * pair.driver.module, most_gap=flanks.most_gap)
+    panel = flanks.panel * pair.driver.module
+    lines = contact_lines(pair, roll, panel, most_gap=flanks.most_gap, missing=flanks.missing)
     if like is None:
         number = np.unique(lines.pair[lines.present])
         pitches = tuple(together(_teeth_in(flanks, gaps, lines, number, cycle) for cycle in range(count)))

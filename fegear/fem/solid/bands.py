@@ -77,9 +77,10 @@ class Bands(ReadOnlyArrays):
 
     @cached_property
     def is_chain(self) -> bool:
-        """Whether each band falls to the next ones, as those of `hats`."""
+        """Whether each band falls to the next ones, as those of `hats`, none at the place of another."""
         step = np.diff(self.zeta)
-        return self.profile == "hat" and bool((self.after[:-1] == step).all() and (self.before[1:] == step).all())
+        falls = (step > 0.0) & (self.after[:-1] == step) & (self.before[1:] == step)
+        return self.profile == "hat" and bool(falls.all())
 
     def part(self, span: slice | Index) -> Bands:
         """Some of the bands."""

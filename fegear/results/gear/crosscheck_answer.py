@@ -26,7 +26,8 @@ ROOT_FORMULAS = {
 
 #: The same of compliance.
 COMPLIANCES = {
-    "potential-energy": "potential energy", "weber-banaschek": "Weber and Banaschek", "cornell": "Cornell",
+    "potential-energy": "potential energy", "potential-energy-simplified": "potential energy (no fillet)",
+    "weber-banaschek": "Weber and Banaschek", "cornell": "Cornell",
 }  # fmt: skip
 
 

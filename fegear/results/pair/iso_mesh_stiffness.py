@@ -1,7 +1,8 @@
-"""Mean mesh stiffness of a loaded 3D pair per face width beside c_gamma_alpha of ISO 6336-1.
+"""Mean mesh stiffness of a loaded pair per face width, by finite elements, beside c_gamma_alpha of ISO 6336-1.
 
 Both are secants along the transverse line of action: what the flanks of a pair have under its load, where they touch,
-and what the standard has for solid discs and contact over the whole face.
+and what the standard has for solid discs and contact over the whole face. The standard knows contact on the path only;
+of plane (2D) pairs with contact outside it the mean without is compared.
 """
 
 from __future__ import annotations
@@ -33,15 +34,24 @@ class IsoMeshStiffness:
         c_gamma_alpha [Pa]; None where the standard gives none.
     silent : str
         Why it gives none.
+    on_path : bool
+        Whether contact outside the path of contact, which the pair has, is left out of `fe`.
     """
 
     fe_error: float | None
     silent: str
-    fe: float = shown("N/(mm.um)", "mean secant mesh stiffness per face width, 3D", name="c_gamma_fe")
+    on_path: bool
+    fe: float = shown(
+        "N/(mm.um)", "mean secant mesh stiffness per face width, finite elements, contact on the path of contact",
+        name="c_gamma_fe",
+    )  # fmt: skip
     iso: float | None = shown("N/(mm.um)", "c_gamma_alpha of ISO 6336-1", name="c_gamma_iso")
 
     @property
-    @shows("", "c_gamma_alpha of ISO 6336-1 / mean secant mesh stiffness per face width, 3D", name="c_gamma_iso_to_fe")
+    @shows(
+        "", "c_gamma_alpha of ISO 6336-1 / mean secant mesh stiffness per face width, finite elements",
+        name="c_gamma_iso_to_fe",
+    )  # fmt: skip
     def ratio(self) -> float | None:
         """Of both."""
         return None if self.iso is None else self.iso / self.fe
@@ -56,9 +66,15 @@ def iso_mesh_stiffness(e: ErrorOverPitch) -> IsoMeshStiffness:
     """Of the curves of a loaded pair."""
     pair = e.pair
     found = attempt(partial(pair_stiffness, pair, specific_load=pair.specific_load(e.load)))
-    error = None if e.shift is None else e.shift.stiffness / pair.face_width
+    on_path = e.mesh_stiffness_on_path
+    fe, error = e.mesh_stiffness_mean, None if e.shift is None else e.shift.stiffness
+    if on_path is not None:
+        fe, error = on_path, e.on_path_error
     iso = None if found.value is None else found.value.mesh_alpha
-    return IsoMeshStiffness(error, found.reason, e.mesh_stiffness_mean / pair.face_width, iso)
+    return IsoMeshStiffness(
+        None if error is None else error / pair.face_width, found.reason, bool(e.off_path_stiffens),
+        fe / pair.face_width, iso,
+    )  # fmt: skip
 
 
 def said_beside_iso(seen: Seen) -> list[str]:
@@ -66,7 +82,8 @@ def said_beside_iso(seen: Seen) -> list[str]:
     one: IsoMeshStiffness | None = seen.data.iso
     if one is None or one.iso is None:
         return []
-    both = f"{one.iso * 1e-9:.3g} N/(mm µm), mean mesh stiffness {one.fe * 1e-9:.3g} N/(mm µm) (secant)"
+    contact = ", contact on the path only" if one.on_path else ""
+    both = f"{one.iso * 1e-9:.3g} N/(mm µm), mean mesh stiffness {one.fe * 1e-9:.3g} N/(mm µm) (secant{contact})"
     return [f"Pair {seen.name}: c_gamma_alpha of ISO 6336-1 {both}: ratio {one.ratio:.2f}."]
 
 

@@ -59,7 +59,7 @@ _BARS = 16
 class TransmissionErrorData:
     """Transmission error of loaded teeth; evenly spaced and by Mark's series where the case asks for these.
 
-    Its mean stiffness stands beside that of ISO 6336-1 where the pair is loaded in 3D.
+    Its mean stiffness stands beside that of ISO 6336-1 where it is of finite elements.
     """
 
     found: ErrorOverPitch
@@ -76,7 +76,8 @@ def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work
 
         by_mark = mark_data(cast("LoadedPair", teeth), asked.part.terms, found.rotational)
     even = None if asked.part.even_positions is None else even_mesh(found, asked.part.even_positions)
-    iso = iso_mesh_stiffness(found) if hasattr(teeth, "flanks") else None
+    by_fe = hasattr(teeth, "flanks") or cast("LoadedPair", teeth).spec.compliance == "fe"
+    iso = iso_mesh_stiffness(found) if by_fe else None
     return TransmissionErrorData(found, by_mark, even, iso)
 
 

@@ -203,7 +203,10 @@ class MeshRow:
         return self.made.force
 
     @property
-    @shows("N/um", "1 / mean compliance")
+    @shows(
+        "N/um", "1 / mean of 1 / tangent mesh stiffness, the spring of the train; transmission-error has arithmetic "
+        "means: mesh_stiffness_mean (secant), local_stiffness_mean (tangent)",
+    )  # fmt: skip
     def mean_stiffness(self) -> float:
         """[N/m]."""
         return self.spring.stiffness
