@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.atlas.atlas_gear import AtlasGear
-from fegear.atlas.build import Budget, build_atlas
+from fegear.atlas.build import Budget, _known, _sum, build_atlas
 from fegear.atlas.common_rows import KEPT, common_rows
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family, Place, place_of
@@ -19,7 +20,7 @@ from fegear.atlas.polynomials import chosen, degrees_within, fitted, next_degree
 from fegear.atlas.refining import compliances, refined
 from fegear.atlas.tables import Layout, over_contacts, row_of
 from fegear.base.errors import InputError, RangeError
-from fegear.base.solution_cache import cache_on_disk
+from fegear.base.solution_cache import SolutionCache, cache_on_disk
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
@@ -71,6 +72,71 @@ def test_of_other_gears_it_is_within_its_stated_error(atlas, place):
     assert [key for key in off if off[key] > stated[key]] == []
     assert stated["c_self"] < 2e-2
     assert stated["tension 0"] < 5e-2
+
+
+def test_a_region_that_an_atlas_of_the_family_has_is_taken_over(atlas):
+    """With others beside it, whose numbers of regions are other ones; nothing is solved."""
+    cache = SolutionCache()
+    other = replace(atlas, family=replace(FAMILY, rounding=0.2))
+    again = build_atlas(FAMILY, [DOMAIN], SETTINGS, budget=Budget(1.0), cache=cache, like=[other, atlas])
+    assert cache.shapes.computed == 0
+    places = np.array([(29, 0.22, 1.0, 0.5), (41, 0.15, 1.0, 0.5)]).T
+    found, known = (one.tables(places) for one in (again, atlas))
+    np.testing.assert_allclose(found.rows, known.rows, rtol=1e-4, atol=1e-4 * np.abs(known.rows).max())
+    np.testing.assert_array_equal(again.pieces[0].solved, atlas.pieces[0].solved)
+    np.testing.assert_array_equal(again.pieces[0].errors, atlas.pieces[0].errors)
+
+
+def test_of_a_family_like_others_only_what_differs_is_sought(atlas):
+    """Fewer gears; of two atlases with the same numbers as much as of one of them, wherever it lies between both."""
+    family, cache = replace(FAMILY, rounding=0.3), SolutionCache()
+    place = np.array([(31, 0.17, 1.0, 0.5)]).T
+    ends = [replace(atlas, family=replace(FAMILY, rounding=rounding)) for rounding in (0.38, 0.1)]
+    one, two = (
+        build_atlas(family, [DOMAIN], SETTINGS, budget=Budget(1.0), cache=cache, like=like)
+        for like in ([atlas], ends)
+    )  # fmt: skip
+    assert cache.shapes.computed == one.pieces[0].solved.shape[1] < atlas.pieces[0].solved.shape[1]
+    rows = [found.tables(place).rows[0] for found in (one, two)]
+    np.testing.assert_allclose(*rows, rtol=1e-3, atol=1e-4 * np.abs(rows[0]).max())
+    gear = family.gear(Place(31, 0.17, 1.0, 0.5))
+    off, stated = differences(one, gear), one.gear(gear).errors
+    assert [key for key in off if off[key] > stated[key]] == []
+    # the other family is another one: without what was sought it would be off
+    assert off["tension 0"] < 0.5 * abs(atlas.tables(place).rows[0][:-2].max() / rows[0][:-2].max() - 1.0)
+
+
+def test_what_a_region_is_made_like():
+    """The same region, or two others of its number that enclose its rounding; one of them where both have one."""
+    here = Family(rounding=0.3)
+    first, second, third, twin = (
+        SimpleNamespace(family=Family(rounding=rounding), pieces=["a", "b"], domains=["u", "v"])
+        for rounding in (0.2, 0.4, 0.35, 0.4)
+    )
+    same = SimpleNamespace(family=here, pieces=["a", "b"], domains=["u", DOMAIN])
+    short = SimpleNamespace(family=Family(rounding=0.25), pieces=["a"], domains=["u"])
+
+    def found(*like, number=1):
+        return [(one.atlas, one.number, pytest.approx(one.weight)) for one in _known(like, here, DOMAIN, number)]
+
+    assert found(first, same, second) == [(same, 1, 1.0)]
+    assert found(first, second) == [(first, 1, 0.5), (second, 1, 0.5)]
+    assert found(second, first, third, number=0) == [(first, 0, 1.0 / 3.0), (third, 0, 2.0 / 3.0)]
+    assert found(second, twin) == [(twin, 1, 1.0)]
+    assert found(first, short, second) == [(first, 1, 0.5), (second, 1, 0.5)]
+    assert found(short) == found() == []
+    elsewhere = SimpleNamespace(family=here, pieces=["a", "b"], domains=["u", "v"])
+    assert found(elsewhere, second) == [(second, 1, 1.0)]
+
+
+def test_sums_of_products_add_up():
+    some, others = (np.array(degrees) for degrees in ([[0, 0, 1, 0], [2, 1, 0, 0]], [[2, 1, 0, 0], [0, 3, 0, 0]]))
+    one, other = np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([[10.0, 20.0], [30.0, 40.0]])
+    at = np.random.default_rng(2).uniform(-1.0, 1.0, (4, 6))
+    degrees, coefficients = _sum(some, one, others, other)
+    expected = products(some, at) @ one + products(others, at) @ other
+    np.testing.assert_allclose(products(degrees, at) @ coefficients, expected, rtol=1e-12)
+    assert degrees.shape == (3, 4)
 
 
 def test_finer_compliances_are_nearer_and_leave_the_rest(atlas, tmp_path):
