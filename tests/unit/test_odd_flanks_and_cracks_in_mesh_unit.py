@@ -161,7 +161,7 @@ def test_pits_change_gap_and_bearing_share_where_they_touch(member, other):
 
 # ---- cracks ----------------------------------------------------------------------------------------------------------
 class Mesh:
-    """Three pairs over six base pitches: made-up loads, radii and intensities; the first pair carries little, or none."""
+    """Three pairs over six base pitches: loads, radii and intensities made up; the first carries little, or none."""
 
     number, x = np.array([-1, 0, 1]), np.array([0.1, 0.4, 0.7])
 
