@@ -177,7 +177,7 @@ class Mesh:
             face_width=2.0, tooth=lambda member, row, cycle: row - cycle if member == "driver" else cycle - row
         )
         self.engagement = SimpleNamespace(grid=lambda _x: grid, compliance=compliance)
-        self.found = SimpleNamespace(x=self.x, pitch=1.0, load=10.0, number=self.number, loads=self.loads)
+        self.found = SimpleNamespace(x=self.x, pitch=1.3, load=10.0, number=self.number, loads=self.loads)
         self.influence = SimpleNamespace(
             gear=SimpleNamespace(teeth=6, base_radius=4.0), known=range(-2, 3), from_middle=lambda i: (i + 3) % 6 - 3,
             ordinary=SimpleNamespace(lowest_radius=1.0, highest_radius=2.0), fine=SimpleNamespace(closing=closing),
@@ -221,6 +221,31 @@ def test_intensity_is_the_sum_of_those_by_the_loads_on_all_teeth(member, forward
         # its own load: on pair 0 in its base pitch, on pair 1 in the next one
         own = mesh.loads[(order + pitch) % 6, pitch + 1] if pitch in (-1, 0, 1) else np.zeros(3)
         assert found.load[here] == pytest.approx(own)
+
+
+def test_faces_that_may_close_do_so_under_all_loads_together():
+    open_, mesh, asked = Mesh(), Mesh(closing=(1,)), []
+
+    def closed(tooth, loads):
+        asked.append((tooth, {one: (radius, load) for one, (radius, load) in loads.items()}))
+        return np.array([[2.0] * 3, [3.0] * 3]), np.array([[0.1] * 3, [0.2] * 3])
+
+    mesh.influence.closed_intensity = closed
+    before, found = (crack_in_mesh(one.engagement, one.found, "driven", one.influence, 1) for one in (open_, mesh))
+    assert found.k_1 == pytest.approx(before.k_1 + 2.0)
+    assert found.k_2 == pytest.approx(before.k_2 + 3.0)
+    assert found.k_1_error == pytest.approx(before.k_1_error + 0.1)
+    assert found.k_2_error == pytest.approx(before.k_2_error + 0.2)
+    pitches = np.unique(found.base_pitch).tolist()
+    assert len(asked) == len(pitches)
+    for pitch, (tooth, loads) in zip(pitches, asked, strict=True):
+        assert tooth % 6 == 1
+        on = {1 + pitch - j: row for row, j in enumerate((-1, 0, 1)) if mesh.loads[(1 + pitch) % 6, row].any()}
+        assert {one for one in loads if one != tooth} == {one for one in on if one != tooth}
+        for one, row in on.items():
+            radius, load = loads[one]
+            assert np.array_equal(radius, mesh.radius[row])
+            assert load == pytest.approx(mesh.loads[(1 + pitch) % 6, row] / 2.0)
 
 
 def test_of_unstated_errors_none_is_made():
