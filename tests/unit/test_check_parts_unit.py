@@ -111,6 +111,16 @@ def test_on_a_flank_shorter_than_what_is_kept_off_its_ends_all_places_are_in_its
     assert arcs == pytest.approx(0.5 * (flank.flank_start + flank.flank_end) * np.ones(3), rel=1e-9)
 
 
+def test_on_a_flank_without_room_for_wide_contacts_all_are_in_its_middle(known, checked, monkeypatch):
+    _, solved = known
+    monkeypatch.setattr(check, "_ROOM", 1e3)
+    _, asked = checked(3)
+    flank = solved.fine.flank
+    assert flank.arc_of_radius(asked["radius"]) == pytest.approx(
+        np.full(3, 0.5 * (flank.flank_start + flank.flank_end))
+    )
+
+
 def test_differences_are_relative_and_those_of_neighbours_to_the_tooth_s_own(checked):
     found, _ = checked(1, factor=1.01, beside=0.003)
     off = {one.quantity: one.difference for one in found.compared}

@@ -26,9 +26,10 @@ from fegear.fem.plane.estimate import (
     _USUAL,
     Estimate,
 )
-from fegear.fem.plane.root_stress import FilletCurve
+from fegear.fem.plane.root_stress import CLEARANCE, FilletCurve, search_end
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+from fegear.fem.plane.stress_apart import apart_beside_contacts, apart_beside_ends
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
@@ -263,3 +264,56 @@ def test_a_long_fillet_of_few_long_edges_errs_by_more_than_the_order_of_its_elem
         off = np.abs(value - truth.largest_root_stress(0, side, radius)[0])
         assert (off <= 1.2 * error).all()
         assert (error < 0.05 * np.abs(value).max()).all()
+
+
+# ---- how far two solutions are apart beside a place ------------------------------------------------------------------
+#: Edges of a fillet of length 1, the first one short, the last one long.
+EDGES = np.array([0.04, 0.06, 0.1, 0.1, 0.1, 0.1, 0.15, 0.15, 0.2])
+
+
+def solutions():
+    """Two solutions on Gauss points of these edges, whose curves differ by `apart`: straight, so that all is exact."""
+    node = 0.5 * (1.0 + np.polynomial.legendre.leggauss(ORDER)[0])
+    arc = (np.concatenate([[0.0], np.cumsum(EDGES)])[:-1, None] + EDGES[:, None] * node).ravel()
+    fillets = {side: SimpleNamespace(arc=arc, length=1.0) for side in ("tension", "compression")}
+    one = SimpleNamespace(fillets=fillets, flank=SimpleNamespace(order=ORDER))
+    stress = np.ones((arc.size, 1)) * 3.0 + arc[:, None] ** 2
+    return (one, one), arc, stress
+
+
+@pytest.mark.parametrize("slope", [2.0, -2.0])
+@pytest.mark.parametrize(
+    ("place", "edge"),
+    [(0.0, 0.04), (0.03, 0.04), (0.049, 0.04), (0.051, 0.0), (0.4, 0.0), (0.749, 0.0), (0.751, 0.2), (1.0, 0.2)],
+)
+def test_beside_an_end_of_the_fillet_curves_are_compared_a_quarter_of_the_edge_to_either_side(place, edge, slope):
+    """Of places no farther from it than one and a quarter of its edge; elsewhere nothing is stated."""
+    both, arc, stress = solutions()
+    other = stress - slope * (arc[:, None] - 0.5)
+    found = apart_beside_ends(both, "compression", (stress, other), np.array([place]))
+    at = np.clip(place + 0.25 * edge * np.array([-1.0, 0.0, 1.0]), 0.0, 1.0)
+    assert found == pytest.approx([np.abs(slope * (at - 0.5)).max() if edge else 0.0], abs=1e-9)
+
+
+def test_each_contact_has_its_own_place_and_curve():
+    both, _, stress = solutions()
+    stress = np.tile(stress, 3)
+    other = stress + np.array([0.1, 0.2, 0.3])
+    places = np.array([0.02, 0.5, 0.95])
+    assert apart_beside_ends(both, "tension", (stress, other), places) == pytest.approx([0.1, 0.0, 0.3])
+
+
+@pytest.mark.parametrize("slope", [2.0, -2.0])
+def test_below_a_narrowed_contact_curves_are_compared_a_tenth_of_the_way_to_the_end_to_either_side(slope):
+    both, arc, stress = solutions()
+    stress = np.tile(stress, 4)
+    other = stress + slope * (arc[:, None] - 0.9)
+    above, width = np.array([0.02, 0.099, 0.1, np.inf]), np.array([0.02, 0.09, 0.1, 0.1])
+    place = np.array([0.3, 0.2, 0.3, 0.3])
+    found = apart_beside_contacts(both, (stress, other), place, above, width, np.full(4, 0.1))
+    end = search_end(1.0, above[:2], width[:2], CLEARANCE)
+    lower, higher = place[:2] - 0.1 * end, place[:2] + 0.1 * end
+    assert found[:2] == pytest.approx(
+        np.maximum(np.abs(slope * (lower - 0.9)), np.abs(slope * (higher - 0.9))), rel=1e-6
+    )
+    assert found[2:].tolist() == [0.0, 0.0]  # nothing narrows their pressure
