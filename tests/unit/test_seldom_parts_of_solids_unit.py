@@ -194,14 +194,14 @@ def about_load():
 
 def test_between_positions_stress_goes_straight_and_is_looked_for_up_to_the_lower_end():
     known = about_load()
-    found = known.at(np.array([-3.0, -2.0, -0.5, 0.0, 1.5, 9.0, -9.0]))
-    kept = np.array([-3.0, -2.0, -0.5, 0.0, 1.5, 2.0, -3.0])
+    found = known.at(np.array([-3.0, -2.0, -0.5, 0.0, 1.95, 9.0, -9.0]))
+    kept = np.array([-3.0, -2.0, -0.5, 0.0, 1.95, 2.0, -3.0])
     assert found.stress[7, 1] == pytest.approx(known.stress[7, 1, 0] * (10.0 + kept) / 7.0)
     assert found.slope[7, 0] == pytest.approx(known.slope[7, 0, 0] * (2.0 - kept) / 5.0)
     assert found.share == pytest.approx(0.1 + 0.01 * kept)
     assert found.end[0].tolist() == [1.0, 0.8, 0.3, 0.3, 0.3, 1.0, 1.0]
     assert found.end[1].tolist() == [1.0, 1.0, 1.0, 1.0, 0.1, 0.1, 1.0]
-    assert found.x.tolist() == [-3.0, -2.0, -0.5, 0.0, 1.5, 9.0, -9.0]
+    assert found.x.tolist() == [-3.0, -2.0, -0.5, 0.0, 1.95, 9.0, -9.0]
     back = known.at(np.array([2.0, -1.5]), mirrored=True)
     assert back.x.tolist() == [2.0, -1.5]
     assert back.stress == pytest.approx(known.at(np.array([-2.0, 1.5])).stress)
