@@ -159,6 +159,51 @@ def test_pits_change_gap_and_bearing_share_where_they_touch(member, other):
     ))  # fmt: skip
 
 
+@pytest.mark.parametrize(("member", "other"), [MEMBERS, MEMBERS[::-1]])
+def test_of_a_flank_with_a_profile_of_its_own_the_removal_is_by_it_and_by_the_mates(member, other):
+    usual, (relief, own, off) = contacts(), (EndRelief(amount, 0.2, 0.5) for amount in (8e-6, 30e-6, 3e-6))
+    reliefs = {member: relief, other: EndRelief(5e-6, 0.3, 0.5)}
+    roll = {name: getattr(usual, f"roll_{name}") for name in MEMBERS}
+    removal = sum(reliefs[name].removal(roll[name]) for name in MEMBERS)
+    both, row = tuple(reliefs[name] for name in MEMBERS), usual.number == 0
+
+    def modified(cycle=5, **flanks):
+        given = {name: {5: flanks[name]} if name in flanks else {} for name in MEMBERS}
+        found = OddContacts(SPUR, **given).modified(removal, usual, cycle, both)
+        assert (found[usual.number != cycle - 5] == removal[usual.number != cycle - 5]).all()
+        return found
+
+    assert modified(**{member: OddFlank(pits=(Pit(0.0, 1.0),))}) is removal  # pits are no profile
+    mate = reliefs[other].removal(roll[other])
+    found = modified(**{member: OddFlank(relief=own, deviation=off)})
+    expected = own.removal(roll[member]) + off.removal(roll[member]) + mate
+    assert found[row] == pytest.approx(expected[row], abs=1e-18)
+    found = modified(**{member: OddFlank(deviation=off)})
+    assert found[row] == pytest.approx((removal + off.removal(roll[member]))[row], abs=1e-18)
+    found = modified(**{member: OddFlank(relief=own), other: OddFlank(deviation=off)})
+    expected = own.removal(roll[member]) + mate + off.removal(roll[other])
+    assert found[row] == pytest.approx(expected[row], abs=1e-18)
+    assert modified(9, **{member: OddFlank(relief=own)}) is removal
+
+
+@pytest.mark.parametrize(("member", "other"), [MEMBERS, MEMBERS[::-1]])
+def test_pairs_are_of_one_kind_where_their_flanks_are(member, other):
+    low = OddFlank(tip_radius=20e-3)
+    flanks = {3: low, 8: OddFlank(tip_radius=20e-3), 9: OddFlank(missing=True)}
+    odd, number = OddContacts(SPUR, **{member: flanks, other: {}}), np.array([0, 1])
+    at = MEMBERS.index(member)
+
+    def kinds(cycle):
+        return [one[at] for one in odd.kinds(number, cycle)]
+
+    assert kinds(3) == kinds(8 + Z[member]) == [3, -1]  # the same flank, though another tooth
+    assert kinds(9) == [9, 3]
+    assert kinds(4) == [-1, 3]
+    assert kinds(6) == []
+    assert [one[1 - at] for one in odd.kinds(number, 3)] == [-1, -1]
+    assert [one[at] for one in odd.on(number, 9)] == [flanks[9], flanks[8]]
+
+
 # ---- cracks ----------------------------------------------------------------------------------------------------------
 class Mesh:
     """Three pairs over six base pitches: loads, radii and intensities made up; the first carries little, or none."""

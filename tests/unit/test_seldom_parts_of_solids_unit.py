@@ -240,14 +240,15 @@ def test_stress_about_a_load_is_by_its_forces_and_their_change_over_the_teeth_s_
 
     many = SimpleNamespace(lines=SimpleNamespace(roll=np.zeros(9)), known="known")
     errors = SimpleNamespace(
-        largest_tension=np.array([0.0, 50.0]), x=x, tension_error=np.array([[9.0, 2.0], [9.0, 20.0]]),
+        largest_tension=np.array([0.0, 50.0]), x=np.array([-1.0, 1.0]),
+        tension_error=np.array([[9.0, -12.0], [9.0, 20.0]]),
         error=lambda case: 5.0 if case == 1 else None,
     )  # fmt: skip
     loaded = SimpleNamespace(
         over=SimpleNamespace(found=many, points="points"), places_along=np.array([-4.0, 4.0]), at=1, gaps="gaps",
         pair=SimpleNamespace(driver=SimpleNamespace(module=2.0)), flanks=Flanks(solve=solve), estimated=estimated,
         rooted=lambda member, found, solution: rooted if (member, found, solution) == ("driven", about, "fine") else 0,
-        tooth_stress=lambda member, influence: errors,
+        tooth_stress=lambda member, influence: errors if (member, influence.fine) == ("driven", "fine") else 0,
     )  # fmt: skip
     place = "fegear.contact.wide.roots_about_load"
     monkeypatch.setattr(f"{place}.replace", lambda flanks, **changes: asked.update(changes) or flanks)

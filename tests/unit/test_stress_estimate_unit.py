@@ -26,6 +26,7 @@ from fegear.fem.plane.estimate import (
     _USUAL,
     Estimate,
 )
+from fegear.fem.plane.influence import MOSTLY_TURNED
 from fegear.fem.plane.root_stress import CLEARANCE, FilletCurve, search_end
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
@@ -264,6 +265,34 @@ def test_a_long_fillet_of_few_long_edges_errs_by_more_than_the_order_of_its_elem
         off = np.abs(value - truth.largest_root_stress(0, side, radius)[0])
         assert (off <= 1.2 * error).all()
         assert (error < 0.05 * np.abs(value).max()).all()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_both_neighbours_have_in_common_the_gear_has_turned_by_less_what_scatters(sign):
+    """Of changes by 2.1 +- 0.1 on the mean of either neighbour's places, three times the scatter is none."""
+
+    def turned(ahead, behind, size=1.1 * MOSTLY_TURNED * 80.0, reach=1):
+        found = estimate([0.1] * 5, {})
+        found.fine.reach, off = reach, {1: ahead, -1: behind}
+        answers = {
+            name: SimpleNamespace(
+                reach=reach, self_compliance=lambda r, patch, width: 80.0 * np.ones(r.size),
+                neighbour=lambda k, _p, _q, patch, less=less: size - less * sign * off[k] * np.ones((3, 3)),
+            )
+            for name, less in (("fine", 0.0), ("coarse", 1.0))
+        }  # fmt: skip
+        one = Estimate(answers["fine"], answers["coarse"], 0.1, 0.2)
+        one.__dict__["_samples"] = np.ones(40)
+        return one._turned
+
+    assert turned(2.0, 2.2) == pytest.approx(sign * (2.1 - 3.0 * 0.1))
+    assert turned(2.2, 2.0) == pytest.approx(sign * (2.1 - 3.0 * 0.1))
+    assert turned(2.0, 2.0) == pytest.approx(sign * 2.0)
+    assert turned(0.0, 2.0) == 0.0  # 1 +- 1
+    assert turned(2.0, 2.2, reach=0) == 0.0
+    assert (
+        turned(2.0, 2.2, size=0.5 * MOSTLY_TURNED * 80.0) == 0.0
+    )  # neighbours hardly give way: the gear does not turn
 
 
 # ---- how far two solutions are apart beside a place ------------------------------------------------------------------
