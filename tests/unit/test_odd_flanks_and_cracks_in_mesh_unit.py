@@ -85,11 +85,13 @@ def test_a_pit_over_a_part_of_the_face_leaves_what_is_beside_it(place, member):
     low, high = HELICAL.gear(member).involute_radii
     found = gaps(member, OddFlank(pits=(Pit(low, high, 0.4, 0.0, place),)), 3, 3)
     # the face of the driven gear lies 3 mm farther on
-    height = LINES.z - (3e-3 if member == "driven" else 0.0)
-    inside = on_tooth(member, 3, 3) & (np.abs(height - place) <= 0.2 * HELICAL.gear(member).face_width)
-    assert (np.isinf(found) == inside).all()
-    assert (found[~inside] == 0.0).all()
-    assert inside.any()
+    off = np.abs(LINES.z - (3e-3 if member == "driven" else 0.0) - place) - 0.2 * HELICAL.gear(member).face_width
+    on, near = on_tooth(member, 3, 3), 0.5 * MODULE  # half a panel about an end may be of either side
+    assert (on & (off < -near)).any()
+    assert np.isinf(found[on & (off < -near)]).all()
+    assert (on & (off > near)).any()
+    assert (found[on & (off > near)] == 0.0).all()
+    assert (found[~on] == 0.0).all()
     # a shallow one of a part of the face is a gap that a load may close, a deep one is out of reach
     shallow, deep = (OddFlank(pits=(Pit(low, high, 0.4, depth),)) for depth in (1e-6, 1e-3))
     radius, z = np.full(3, 0.5 * (low + high)), np.array([-0.21, 0.0, 0.21]) * WIDTH

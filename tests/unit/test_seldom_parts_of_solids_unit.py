@@ -60,6 +60,18 @@ def test_the_largest_of_a_fillet_is_found_on_either_side_of_a_mouth(mouth, sign)
         assert value == pytest.approx([sign * (hill(0.8)(end) + 1.0)], rel=1e-9)
 
 
+def test_the_first_and_the_last_points_of_both_pieces_count():
+    """A curve of fifth degree that is largest at an end of a piece, whose points there decide where it goes."""
+    cut = fillet(0.5)
+    for end in (0.0, 0.5, 1.0):
+        rise = 1.0 if end else -1.0
+        stress = np.where((cut.arc < 0.5) == (end < 0.75), rise * (cut.arc - end) * 3.0 + 7.0, -9.0)[:, None]
+        stress[np.abs(cut.arc - end).argmin()] += 2.0
+        value, place = cut.largest(stress, 1.0, np.ones(1))
+        assert value[0] > 7.5
+        assert place[0] == pytest.approx(end, abs=0.02)
+
+
 def test_a_mouth_parts_the_fillet_and_no_curve_goes_through_it():
     """Stress jumps at the mouth: each side keeps its own largest value, of whatever sign."""
     cut = fillet(0.5)
@@ -262,6 +274,8 @@ def test_stress_about_a_load_is_by_its_forces_and_their_change_over_the_teeth_s_
     assert (found.slope == 11.0 / 4.0).all()
     assert found.end == ("tension", [-2.0, 2.0], 7.0)
     assert found.fillet is one
+    assert found.x is x
+    assert found.z.tolist() == [-4.0, 4.0]
     if estimated:
         assert found.share.tolist() == [0.1, 0.4]  # no less than that of the largest
     else:
