@@ -151,10 +151,22 @@ class FittedCurve:
         return None if self.wave is None else self.wave.error
 
     @property
-    @shows("deg", "rotation of the gear at the maximum of the part once per turn", name="measured_runout_angle")
+    @shows(
+        "deg", "rotation of the gear at the maximum of the part once per turn, from the contact of the tooth of the "
+        "gauge at the pitch point", name="measured_runout_angle",
+    )  # fmt: skip
     def runout_angle(self) -> float | None:
         """Less the shift [rad]."""
         return None if self.wave is None else float(np.mod(self.wave.place - self.shift + math.pi, _TURN) - math.pi)
+
+    @property
+    @shows(
+        "deg", "measured angle at the maximum of the part once per turn, from the zero of the measured angle",
+        name="measured_runout_at_measured_angle",
+    )  # fmt: skip
+    def runout_measured_angle(self) -> float | None:
+        """As that of encoders, 0 to one turn [rad]."""
+        return None if self.wave is None else float(np.mod(self.wave.place, _TURN))
 
     @property
     def unfitted_runout(self) -> OncePerTurn | None:

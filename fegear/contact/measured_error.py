@@ -42,6 +42,8 @@ _SLACK = 1e-3
 _HARMONICS = 12
 #: Largest part of the samples that are spikes; groups of teeth whose gains are compared, and fewest of them.
 _MOST_SPIKES, _GROUPS, _FEW_GROUPS = 0.1, 24, 3
+#: Fewest turns whose means have a scatter.
+_TURNS = 3
 #: Orders of each gear that are fitted together, and periods over the trace that tell two of them apart.
 _LINES, _APART = 3, 0.35
 _TURN = 2.0 * math.pi
@@ -141,6 +143,8 @@ class MeasuredError(ReadOnlyArrays):
     mate_order : float
         Order of one revolution of the mating gear, with its multiples a part of the spectrum; 0 where the trace is too
         short to tell it from those of the shaft.
+    mean_error : float
+        Standard error of the mean of the trace by what varies slowly [m].
     """
 
     teeth: int
@@ -155,6 +159,7 @@ class MeasuredError(ReadOnlyArrays):
     by_teeth: Array
     spikes: int = 0
     mate_order: float = 0.0
+    mean_error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -267,9 +272,11 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     even = start + pitch / places * np.arange(cycles * places)
     values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
     mate = _of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
-    spectrum = _spectrum(values - sum((one.at(even) for one in mate), np.zeros(even.size)), cycles / teeth, start)
+    less_mate = values - sum(one.at(even) for one in mate) if mate else values
+    spectrum = _spectrum(less_mate, cycles / teeth, start)
     by_tooth = _over_pitch(values, places)
-    curve, spread, averaged = by_tooth.mean(axis=0) + values.mean(), float(by_tooth.std(axis=0).mean()), len(by_tooth)
+    mean, mean_error = _mean_of_turns(less_mate, values, places, teeth)
+    curve, spread, averaged = by_tooth.mean(axis=0) + mean, float(by_tooth.std(axis=0).mean()), len(by_tooth)
     groups = np.array_split(by_tooth, min(averaged, _GROUPS))
     n = 1 + np.arange(min(_HARMONICS, places // 2 - 1))
     at = n * cycles - 1  # the record has `cycles` tooth pitches: harmonic n of the mesh is its n-th multiple
@@ -277,8 +284,31 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     return MeasuredError(
         teeth, spectrum.beside(mate), np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size],
         spectrum.amplitude[at], spectrum.phase[at], np.stack([one.mean(axis=0) for one in groups]),
-        int(np.count_nonzero(spikes)), mate[0].order if mate else 0.0,
+        int(np.count_nonzero(spikes)), mate[0].order if mate else 0.0, mean_error,
     )  # fmt: skip
+
+
+def _mean_of_turns(less_mate: Array, values: Array, places: int, teeth: int) -> tuple[float, float]:
+    """Mean of a trace less the orders of the mating gear, which it does not have whole, and its standard error.
+
+    By the scatter of the means of turns from three on; of fewer by what the orders of the mate changed; where these are
+    not known by what varies slowly.
+
+    Parameters
+    ----------
+    less_mate, values : ndarray, shape (N,)
+        Without and with these orders [m].
+    places, teeth : int
+        Samples of a tooth pitch, and pitches of a turn of the shaft.
+    """
+    turn = places * teeth
+    mean, turns = float(less_mate.mean()), values.size // turn
+    if turns >= _TURNS:
+        scatter = less_mate[: turns * turn].reshape(turns, turn).mean(axis=1).std(ddof=1) / math.sqrt(turns)
+        return mean, float(scatter)
+    if turns and less_mate is not values:
+        return mean, abs(float(values.mean()) - mean)
+    return mean, float(values.reshape(-1, places).mean(axis=1).std())
 
 
 def _one_way(angle: Array, te: Array, back: float) -> tuple[Array, Array]:
@@ -378,10 +408,16 @@ def beside_computed(
     angle = np.mod(one.angle * turn, _TURN * turn)
     order = np.argsort(angle, kind="stable")
     return FittedError(
-        one.fit, {**one.errors, "shift": one.errors["shift"] * turn}, one.outside, one.offset, one.scale,
+        one.fit, _errors_of_shaft(one, turn, found.mean_error), one.outside, one.offset, one.scale,
         one.shift * turn, one.gain, one.gain_error, angle[order], one.measured[order], one.computed[order],
         gain_scatter=_of_gain(found, one, over, curve), noise=one.noise,
     )  # fmt: skip
+
+
+def _errors_of_shaft(one: FittedCurve, turn: float, mean_error: float) -> dict[Fitted, float]:
+    """Standard errors of a curve over one tooth pitch in angles of the shaft, that of the offset with slow parts."""
+    offset = math.hypot(one.errors["offset"], mean_error) if "offset" in one.fit else 0.0
+    return {**one.errors, "shift": one.errors["shift"] * turn, "offset": offset}
 
 
 def better_described(

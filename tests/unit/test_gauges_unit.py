@@ -299,10 +299,13 @@ def test_a_part_once_per_turn_is_named_and_subtracted_where_that_is_asked_for(pl
         values = {one.name.removeprefix("g."): one.value for one in outcome.values}
         assert values["measured_runout"] == pytest.approx(25.0, abs=4.0 * values["measured_runout_standard_error"])
         assert values["measured_runout_angle"] == pytest.approx(-20.0, abs=1.0)
+        assert values["measured_runout_at_measured_angle"] == pytest.approx(40.0, abs=1.0)
     assert values["measured_offset"] == pytest.approx(35.0, abs=1.0)  # of what is less it
     assert values["residual_rms"] == pytest.approx(2.0, rel=0.15)
     assert any(one.endswith('not subtracted; add "runout" and "offset" to fit.') for one in named.remarks)
-    assert any(one.endswith("with its maximum at a rotation of -20°, subtracted.") for one in less.remarks)
+    (said,) = (one for one in less.remarks if "once per turn" in one)
+    assert "with its maximum at 40° of the measured angle, a rotation of -20° from the contact of the tooth" in said
+    assert said.endswith(", subtracted.")
     with pytest.raises(InputError, match="contains runout without offset; add offset"):
         read(changed({"measured": {"file": "t.csv", "fit": ["runout"]}}), tmp_path)
 

@@ -240,8 +240,12 @@ def test_both_gears_have_their_runout_with_its_place(computed, tmp_path):
     assert values["mate_runout_angle"] == pytest.approx(2.0, abs=2e-2)
     assert values["runout"] == pytest.approx(5e-6, rel=2e-2)
     assert values["measured_scale"] == pytest.approx(plain["measured_scale"], rel=2e-3)
+    off = values["measured_offset"] - plain["measured_offset"]  # of the mate there are no whole turns
+    assert abs(off) < 3.0 * values["measured_offset_standard_error"] < 1e-6
     once = outcome.answer.sentences[2]
     assert "µm of the driven gear (maximum at 11" in once, once
+    assert "° of the measured angle) and " in once
+    assert "° of its own rotation from there): runout" in once
     orders = next(one for one in outcome.tables if one.name == "measured_te_orders_rig")
     assert "phase" in [column.name for column in orders.columns]
 
@@ -365,3 +369,19 @@ def test_traces_that_say_too_little_are_refused(lines, rule, tmp_path):
         ran(changed(), tmp_path)
     assert rule in str(refused.value)
     assert "encoders.rig.traces[0].file" in str(refused.value)
+
+
+@pytest.mark.parametrize("turns", [1.0, 2.4, 5.2])
+def test_the_mean_of_a_trace_without_whole_turns_of_the_mate_has_its_error(turns):
+    """Eccentricities of both gears about a mean of -40 um: off by less than three stated errors."""
+    rng, off, stated = np.random.default_rng(4), [], []
+    for _ in range(12):
+        angle = np.linspace(0.0, 2.0 * np.pi * turns, int(turns * 27 * 40))
+        te = -40e-6 + 9e-6 * np.cos(angle - rng.uniform(0.0, 6.0)) + rng.normal(0.0, 3e-7, angle.size)
+        te += 6e-6 * np.cos(angle * 27.0 / 49.0 - rng.uniform(0.0, 6.0)) + 1e-6 * np.cos(27.0 * angle)
+        found = measured_error(angle, te, 27, 49)
+        off.append(abs(found.te.mean() + 40e-6))
+        stated.append(found.mean_error)
+    assert sum(one < 3.0 * error for one, error in zip(off, stated, strict=True)) >= 10
+    assert np.median(off) > 3e-3 * np.median(stated)  # no error is so large that it says nothing
+    assert (np.median(stated) < 1e-8) == (turns > 3.0)

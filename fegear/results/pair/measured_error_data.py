@@ -203,7 +203,8 @@ class TraceBeside:
         return None if (line := self.runouts[0]) is None else line.amplitude
 
     @property
-    @shows("deg", "rotation of the shaft of the angle at which the part once per revolution has its maximum")
+    @shows("deg", "rotation of the shaft of the angle, from the zero of the measured angle, at the maximum of the part "
+           "once per revolution")  # fmt: skip
     def runout_angle(self) -> float | None:
         """[rad]."""
         return None if (line := self.runouts[0]) is None else line.phase
@@ -215,7 +216,8 @@ class TraceBeside:
         return None if (line := self.runouts[1]) is None else line.amplitude
 
     @property
-    @shows("deg", "rotation of the mating gear, from the zero of the angle, at the maximum once per revolution of it")
+    @shows("deg", "rotation of the mating gear, from the zero of the measured angle, at the maximum once per "
+           "revolution of it")  # fmt: skip
     def mate_runout_angle(self) -> float | None:
         """[rad]."""
         return None if (line := self.runouts[1]) is None else line.phase
@@ -229,8 +231,10 @@ class TraceBeside:
     def runout_said(self, own: str, mate: str) -> str:
         """What there is once per revolution of both gears, a sentence without a subject; empty for a short trace."""
         said = [
-            f"{figures(line.amplitude * 1e6)} µm of the {name} (maximum at {math.degrees(line.phase):.0f}°)"
-            for line, name in zip(self.runouts, (own, mate), strict=True)
+            f"{figures(line.amplitude * 1e6)} µm of the {name} (maximum at {math.degrees(line.phase):.0f}° {of})"
+            for line, name, of in zip(
+                self.runouts, (own, mate), ("of the measured angle", "of its own rotation from there"), strict=True
+            )
             if line is not None
         ]
         if not said:

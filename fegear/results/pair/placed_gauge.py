@@ -218,6 +218,7 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
                 ("runout", "measured_runout"),
                 ("runout_error", "measured_runout_standard_error"),
                 ("runout_angle", "measured_runout_angle"),
+                ("runout_measured_angle", "measured_runout_at_measured_angle"),
             )
         ),
         counted("spikes"),

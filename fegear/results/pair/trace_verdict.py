@@ -433,8 +433,14 @@ def runout_named(found: FittedCurve | None) -> str:
     """What a trace has once per turn, a sentence without a subject; empty where that is little."""
     if found is None or (wave := found.wave) is None or not (found.wave_less or found.unfitted_runout):
         return ""
-    size, place = with_rough_error(wave.amplitude * 1e6, wave.error * 1e6), math.degrees(found.runout_angle or 0.0)
-    said = f"once per turn the measured strain has {size} µm/m with its maximum at a rotation of {place:.0f}°"
+    size = with_rough_error(wave.amplitude * 1e6, wave.error * 1e6)
+    measured, place = (
+        math.degrees(one or 0.0) for one in (found.runout_measured_angle, found.runout_angle)
+    )  # fmt: skip
+    said = (
+        f"once per turn the measured strain has {size} µm/m with its maximum at {measured:.0f}° of the measured angle, "
+        f"a rotation of {place:.0f}° from the contact of the tooth of the gauge at the pitch point"
+    )
     if found.wave_less:
         return f"{said}, subtracted"
     return f'{said} (bending of the shaft, runout, slip ring), not subtracted; add "runout" and "offset" to fit'
