@@ -398,6 +398,13 @@ class PairPart(Part):
         by_torque = self.torque is not None or (self.torques is not None and self.load is None)
         return pair.driver.base_radius if by_torque and self.halves == 1 else None
 
+    def load_key(self, pair: GearPair) -> str:
+        """Key by which the largest load is given: one of torques only where `lever` says that these are the loads."""
+        if self.lever(pair) is None:
+            return "load" if self.load is not None or self.loads is None else "loads"
+        largest = 0.0 if self.torques is None else float(self.torques.in_order.max())
+        return "torques" if self.torque is None or largest > self.torque else "torque"
+
     def all_loads(self, pair: GearPair) -> tuple[float, ...]:
         """Every load of the case along the line of action [N], ascending, the nominal one among them."""
         nominal = self.normal_load(pair)

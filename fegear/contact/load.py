@@ -100,7 +100,7 @@ def refuse_unloaded(spec: PairSpec) -> None:
 
         refuse_gaps(pair, key, corner_contact=spec.corner_contact)
     try:
-        refuse_load(pair, max(spec.loads))
+        refuse_load(pair, max(spec.loads), spec.load_key)
     except InputError as error:
         raise error.under(key) from None
     if not plane and pair.total_contact_ratio < 1.0 and not spec.corner_contact:

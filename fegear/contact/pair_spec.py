@@ -191,6 +191,8 @@ class PairSpec(ToothEffects, RootEffects, FaceEffects):
         What only teeth with a width have: errors over the face, and how it is divided; None for plane teeth.
     name : str
         For messages.
+    load_key : str
+        By which key its largest load is given, for messages: "load", "loads", or one whose values are torques.
     """
 
     pair: GearPair
@@ -203,6 +205,7 @@ class PairSpec(ToothEffects, RootEffects, FaceEffects):
     driven: FlankSpec = field(default_factory=FlankSpec)
     wide: WideSpec | None = None
     name: str = field(default="", compare=False)
+    load_key: str = field(default="load", compare=False)
 
     def __post_init__(self) -> None:
         """Fill in the nominal load; refuse one that is none of the loads, and loads that are one number."""

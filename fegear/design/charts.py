@@ -102,9 +102,14 @@ class ReliefChart:
 
     def best(self, metric: Metric = "effective_error") -> tuple[float, float]:
         """Amount [m] and length whose worst excitation over the loads, over the load and by its weight, is least."""
+        a, b = self.best_point(metric)
+        return float(self.amounts[a]), float(self.lengths[b])
+
+    def best_point(self, metric: Metric = "effective_error") -> tuple[int, int]:
+        """Numbers of that amount and length."""
         worst = self.worst(metric)
         a, b = np.unravel_index(int(worst.argmin()), worst.shape)
-        return float(self.amounts[a]), float(self.lengths[b])
+        return int(a), int(b)
 
     def worst(self, metric: Metric = "effective_error") -> Array:
         """Excitation at the worst of the loads, in proportion to load and weight, shape (A, B) [m]."""

@@ -64,13 +64,13 @@ def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
             f"choose the middle of the path, {middle * 1e3:.6g} mm, and a design length up to "
             f"{pair.path_length * 1e3:.6g} mm",
         )  # fmt: skip
-    load = worst.load
+    load, lever = worst.load, pair.driver.base_radius
     while load > 1e-9 * worst.load and not fits(pair.path_length, middle, load):
         load *= 0.9
     raise RangeError(
-        "design.load", f"{worst.load:.6g} N", rule,
+        "design.load", f"{worst.load:.6g} N ({figures(worst.load * lever, 4)} N m on the driver)", rule,
         f"reduce the load: with the full path of contact as design length the limit is {figures(load)} N "
-        f"({figures(load / worst.compliance.face_width * 1e-3)} N/mm)",
+        f"({figures(load * lever)} N m on the driver, {figures(load / worst.compliance.face_width * 1e-3)} N/mm)",
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -24,7 +24,7 @@ from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
-from fegear.design.tip_relief.tolerated import within_tolerances
+from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 
@@ -141,8 +141,8 @@ class ReliefDesign:
     within : mapping of shape to ndarray, shape (L, 2)
         Least and largest peak-to-peak value at each of these with the reliefs to grind inside their tolerances [m];
         empty without tolerances, or with a film.
-    decisive : mapping of shape to tuple of Decisive or None
-        Which tolerance decides the largest of these at each load; empty as `within`.
+    decisive : tuple of Decisive or None
+        Which tolerance decides the largest of these at each load for the shape to be ground; empty as `within`.
     finer : int or None
         By how many classes the tolerances would have to be finer for the shape to be ground to leave no more than no
         relief at any of these loads that counts: 0 where they do, None where none does.
@@ -162,7 +162,7 @@ class ReliefDesign:
     within: Mapping[Shape, Array]
     tables_leave: float
     finer: int | None = 0
-    decisive: Mapping[Shape, tuple[Decisive | None, ...]] = field(default_factory=dict)
+    decisive: tuple[Decisive | None, ...] = ()
 
     @property
     def shapes(self) -> list[Shape]:
@@ -240,12 +240,9 @@ def design_relief(
         if label != "diagonal only"
     }
     within: dict[Shape, Array] = {}
-    decisive: dict[Shape, tuple[Decisive | None, ...]] = {}
     if film is None and task.tip_tolerances is not None:
         for shape, one in ground.items():
-            within[shape], decisive[shape] = within_tolerances(
-                plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads
-            )
+            within[shape] = within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
     report(0.95)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
@@ -253,10 +250,9 @@ def design_relief(
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     design = ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
-        decisive=decisive,
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave
     )  # fmt: skip
-    return replace(design, finer=_classes_finer(plain, design))
+    return replace(design, finer=_classes_finer(plain, design), decisive=_decisive(plain, design))
 
 
 def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:
@@ -271,10 +267,20 @@ def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:
 
     def finer(classes: int) -> Array:
         allowed = both[0].finer(classes), both[1].finer(classes)
-        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[0][:, 1]
+        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
 
     finest = min(one.finest for one in both)
     return classes_finer(design.within[shape][counts, 1], none[counts], finer, finest)
+
+
+def _decisive(plain: Engagement, design: ReliefDesign) -> tuple[Decisive | None, ...]:
+    """Which tolerance decides what the shape to be ground leaves at most at each load; empty without tolerances."""
+    task = design.task
+    if task.tip_tolerances is None or not design.within:
+        return ()
+    shape, ground = design.best_ground
+    tips, most = (ground.driver, ground.driven), design.within[shape][:, 1]
+    return decisive_tolerances(plain, tips, task.tip_tolerances, task.over_loads, most)
 
 
 def relief_at(designed: Engagement, member: Member, roll_angles: ArrayLike) -> ReliefTable:

@@ -127,8 +127,15 @@ def _load_share(pair: GearPair, load: float) -> float:
     return load / (pair.face_width * pair.driver.module * stiff)
 
 
-def refuse_load(pair: GearPair, load: float) -> None:
+def refuse_load(pair: GearPair, load: float, key: str = "load") -> None:
     """Refuse a load along the line of action [N] under which teeth of any material fold.
+
+    Parameters
+    ----------
+    pair : GearPair
+    load : float
+    key : str
+        By which the load is given: ``"load"`` or ``"loads"``; any other one is said as a torque on the driver.
 
     Raises
     ------
@@ -136,11 +143,13 @@ def refuse_load(pair: GearPair, load: float) -> None:
     """
     share, width = _load_share(pair, load), pair.face_width
     if share > _ABSURD_LOAD:
+        lever, unit = (1.0, "N") if key.startswith("load") else (pair.driver.base_radius, "N m")
         raise InputError(
-            "load", f"{load:.6g} N on {width * 1e3:.6g} mm face width",
+            key, f"{load * lever:.6g} {unit} on {width * 1e3:.6g} mm face width",
             f"gives a line load of {load / width * 1e-3:.4g} N/mm ({share:.2g} times m E), far above the strength of "
             "any tooth",
-            "check the units of load, torque and face_width",
+            f"check the units of {key} and face_width; metals carry at most some "
+            f"{figures(load * lever * _HEAVY_LOAD / share, 2)} {unit} here",
         )  # fmt: skip
 
 

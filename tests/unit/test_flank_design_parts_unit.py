@@ -17,7 +17,7 @@ from fegear.design.flanks.flank_design import (
     FlankState,
     design_flanks,
 )
-from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance, within_tolerances
+from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance, decisive_tolerances, within_tolerances
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
 from fegear.design.flanks.scatter import NOMINAL, Scatter
@@ -301,9 +301,10 @@ class Valley:
 
 
 def test_the_worst_within_tolerances_has_lead_and_tips_at_their_ends_and_nothing_that_is_not_ground():
-    gear = SimpleNamespace(base_radius=0.03)
+    gear = SimpleNamespace(base_radius=0.03, face_width=0.02)
     pair = SimpleNamespace(
-        x_start=-5e-3, x_end=5e-3, path_length=10e-3, gear=lambda member: gear,
+        x_start=-5e-3, x_end=5e-3, path_length=10e-3, gear=lambda member: gear, face_width=0.02,
+        face_height=lambda member: 0.0,
         roll_angle=lambda x, member: (12e-3 + (x if member == "driver" else -x)) / 0.03,
     )  # fmt: skip
     given = FlankTolerance((TipTolerance(5e-6, 0.4e-3, 0.0),) * 2, LeadTolerance(6e-6, 4e-6, 5e-6))
@@ -312,6 +313,8 @@ def test_the_worst_within_tolerances_has_lead_and_tips_at_their_ends_and_nothing
     off = np.array([5e-6, -0.4e-3, 5e-6, -0.4e-3, 4e-6, 0.0, 0.0, 6e-6, 0.0])
     np.testing.assert_allclose(found[0], numbers + off, atol=1e-12)
     np.testing.assert_allclose(found[1], numbers + off * [-1, -1, 1, 1, -1, 1, 1, -1, 1], atol=1e-12)
+    decides = decisive_tolerances(Valley(), pair, numbers, given, np.diag(found @ Valley.slopes.T))
+    assert [(one.member, one.number, one.given) for one in decides] == [("driver", "slope", 6e-6)] * 2
     none = FlankTolerance((TipTolerance(0.0, 0.0, 0.0),) * 2)
     np.testing.assert_allclose(within_tolerances(Valley(), pair, numbers, none), [numbers, numbers], atol=1e-12)
 
@@ -326,7 +329,7 @@ def test_a_lead_chart_has_the_amounts_and_the_band_of_their_tolerances():
     assert chart.lead[[0, 100, -1]] == pytest.approx([-2e-6, 0.0, -4e-6])
     assert chart.upper[[0, 100, -1]] == pytest.approx([5e-6, 0.0, 3e-6])
     assert chart.lower[[0, 100, -1]] == pytest.approx([-9e-6, 0.0, -11e-6])
-    assert chart.words == "crowning 3 ± 4 µm, helix slope 2 ± 6 µm"
+    assert chart.words == "crowning -1 to 7 µm (nominal 3), helix slope -4 to 8 µm (nominal 2)"
 
 
 TIPS = GroundRelief(12.7e-6, 2.5e-3, 18.6e-6, 3e-3)

@@ -12,12 +12,13 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.design.tip_relief.tolerated import within_tolerances
+from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import UNMODIFIED
+from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.profile_charts import profile_chart
 
 LOAD = 6000.0
@@ -44,7 +45,7 @@ def left(engagement, tips, load):
 
 
 def test_without_tolerances_a_relief_leaves_what_it_leaves(engagement, tips):
-    found, _ = within_tolerances(engagement, tips, (EXACT, EXACT), [0.5 * LOAD, LOAD])
+    found = within_tolerances(engagement, tips, (EXACT, EXACT), [0.5 * LOAD, LOAD])
     for (least, most), load in zip(found, (0.5 * LOAD, LOAD), strict=True):
         assert least == most == pytest.approx(left(engagement, tips, load), rel=1e-12)
 
@@ -53,7 +54,7 @@ def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(en
     before = 0.0
     for size in (1e-6, 3e-6):
         allowed = TipTolerance(size, 0.2e-3, 0.0)
-        ((least, most),), _ = within_tolerances(engagement, tips, (allowed, allowed), [LOAD])
+        ((least, most),) = within_tolerances(engagement, tips, (allowed, allowed), [LOAD])
         assert least <= left(engagement, tips, LOAD) <= most
         assert most >= before
         before = most
@@ -65,23 +66,26 @@ def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(en
 
 def test_a_gear_without_relief_stays_without(engagement, tips):
     bare = replace(tips[1], amount=0.0)
-    found, (decisive,) = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(5e-6, None, 0.0)), [LOAD])
-    assert decisive.member == "driver"
+    given = EXACT, TipTolerance(5e-6, None, 0.0)
+    found = within_tolerances(engagement, (tips[0], bare), given, [LOAD])
+    assert decisive_tolerances(engagement, (tips[0], bare), given, [LOAD], found[:, 1]) == (None,)
     assert found[0, 1] == pytest.approx(left(engagement, (tips[0], UNMODIFIED), LOAD), rel=1e-9)
 
 
-def test_the_tolerance_that_decides_is_the_one_whose_removal_reduces_the_maximum_most(engagement, tips):
+def test_the_tolerance_that_decides_is_the_one_that_halved_reduces_the_maximum_most(engagement, tips):
     given = TipTolerance(4e-6, 0.3e-3, 0.0), TipTolerance(1e-6, 0.1e-3, 0.0)
-    _, (decisive,) = within_tolerances(engagement, tips, given, [LOAD])
-    without = {}
+    most = within_tolerances(engagement, tips, given, [LOAD])[:, 1]
+    (decisive,) = decisive_tolerances(engagement, tips, given, [LOAD], most)
+    halved = {}
     for member, number in product(("driver", "driven"), ("amount", "length")):
         i = ("driver", "driven").index(member)
         allowed = [given[0], given[1]]
-        allowed[i] = replace(given[i], **{number: 0.0})
-        ((_, without[member, number]),), _ = within_tolerances(engagement, tips, tuple(allowed), [LOAD])
-    assert (decisive.member, decisive.number) == min(without, key=without.get)
-    assert decisive.most == pytest.approx(min(without.values()), rel=0.01)
-    assert within_tolerances(engagement, [replace(tip, amount=0.0) for tip in tips], given, [LOAD])[1] == (None,)
+        allowed[i] = replace(given[i], **{number: 0.5 * getattr(given[i], number)})
+        ((_, halved[member, number]),) = within_tolerances(engagement, tips, tuple(allowed), [LOAD])
+    assert (decisive.member, decisive.number) == min(halved, key=halved.get)
+    assert decisive.most == pytest.approx(min(halved.values()), rel=0.01)
+    assert decisive.most < most[0]
+    assert decisive.given == getattr(given[("driver", "driven").index(decisive.member)], decisive.number)
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0])
@@ -96,11 +100,20 @@ def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, 
     for limit, off in ((chart.upper, -0.5e-3), (chart.lower + 3e-6, 0.5e-3)):
         begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
         assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
-    assert "20.0 ± 4.0 µm" in chart.words
-    assert chart.words.endswith("; f_{fα} 3.0 µm")
+    assert "tip relief 20 ± 4 µm from d " in chart.words
+    assert chart.words.endswith(" ± 0.5 mm); f_{fα} 3 µm")
+
+
+def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):
+    gear, tip = engagement.pair.driver, replace(tips[0], amount=4.8e-6)
+    chart = profile_chart("p", gear, tip, TipTolerance(5.5e-6, None, 0.0))
+    assert chart.words.startswith("linear tip relief 0 to 10 µm (nominal 4.8) from d ")
+    assert (chart.upper[-1], chart.lower[-1]) == pytest.approx((0.0, -10.3e-6), abs=1e-12)
+    assert with_limits(2e-6, 6e-6) == "-4 to 8 µm (nominal 2)"
+    assert with_limits(-6e-6, 5e-6) == "-6 ± 5 µm"
 
 
 def test_a_gear_without_relief_has_a_level_chart(engagement, tips):
     chart = profile_chart("p", engagement.pair.driver, replace(tips[0], amount=0.0), TipTolerance(4e-6, None, 3e-6))
     assert not chart.profile.any()
-    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief; f_{fα} 3.0 µm")
+    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief; f_{fα} 3 µm")

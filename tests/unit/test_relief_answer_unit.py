@@ -12,9 +12,9 @@ from fegear.design.held_relief import Robustness
 from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
-from fegear.results.relief.allowed_words import allowed_words
+from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.grinding import TIP, Grinding
-from fegear.results.relief.relief_over_range import LeftOverRange, decisive_words, said_of_range, said_of_undefined
+from fegear.results.relief.relief_over_range import LeftOverRange, said_at, said_of_range, said_of_undefined
 from fegear.results.relief.relief_robustness import as_designed
 
 CLASS = "f_Hα of class 5, assumed"
@@ -139,15 +139,32 @@ def test_tolerances_are_named_once_or_by_gear_and_of_ground_gears_only():
     )
 
 
-@pytest.mark.parametrize(("less", "said_so"), [(2.6e-6, True), (3.2e-6, False)])
-def test_the_tolerance_that_matters_most_is_named_unless_it_hardly_reduces_the_maximum(less, said_so):
-    words = decisive_words(3.26e-6, 150.0, Decisive("driven", "length", less), {"driver": "p", "driven": "w"})
-    assert words == (
-        "the tolerance of the length on gear w matters most: without it at most 2.6 instead of 3.3 µm at 150 N m"
-        if said_so else ""
-    )  # fmt: skip
-    assert not decisive_words(3.26e-6, 150.0, Decisive("driven", "length", less), {"driver": "p"})
-    assert not decisive_words(3.26e-6, 150.0, None, {"driven": "w"})
+@pytest.mark.parametrize(("number", "size"), [("length", "0.19 mm"), ("amount", "190 µm"), ("slope", "190 µm")])
+def test_the_tolerance_that_matters_most_is_named_with_what_half_of_it_brings(number, size):
+    gears, decisive = {"driver": "p", "driven": "w"}, Decisive("driven", number, 2.6e-6, 0.38e-3)
+    name = "helix slope" if number == "slope" else number
+    assert decisive_words(1.2e-6, 3.26e-6, 150.0, decisive, gears) == (
+        f"the tolerance of the {name} on gear w matters most: halved to ± {size}, at most 2.6 instead of 3.3 µm at "
+        "150 N m"
+    )
+    assert decisive_words(1.2e-6, 3.26e-6, 150.0, replace(decisive, most=3.2e-6), gears) == (
+        "no single tolerance decides: half of any one reduces the maximum at 150 N m by less than 5 %"
+    )
+    assert not decisive_words(3.2e-6, 3.26e-6, 150.0, decisive, gears)
+    assert not decisive_words(1.2e-6, 3.26e-6, 150.0, decisive, {"driver": "p"})
+    assert not decisive_words(1.2e-6, 3.26e-6, 150.0, None, gears)
+
+
+@pytest.mark.parametrize(("most", "told"), [(7.2, True), (6.9, False)])
+def test_at_one_torque_relief_that_is_worse_within_its_tolerances_is_not_to_be_ground_first(most, told):
+    """Half of the torque counts for nothing: the relief is for the larger one."""
+    rows = tuple(Grinding("pw"[n], one, "", TIP, "linear", 6e-6, start_diameter=0.06) for n, one in enumerate(MEMBERS))
+    over = {"no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), (3.0, most), 2 if told else 0)}
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS, 5),) * 2)
+    seen = Seen(SimpleNamespace(grinding=rows, over_range=over, load=2000.0), asked, "I")
+    first, *_ = said_at(seen, (1,), (1,))
+    start = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length the transmission error is smaller without relief"
+    assert first.startswith(f"{start}: 7 µm at 100 N m, with relief at most 7.2 µm" if told else "Pair I: grind 6 µm")
 
 
 def test_an_amount_below_its_error_has_no_defined_optimum():

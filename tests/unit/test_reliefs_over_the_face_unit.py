@@ -202,7 +202,7 @@ def test_the_worst_within_tolerances_is_of_all_ends_of_both_gears():
 
 
 @pytest.mark.parametrize(("driven", "decides"), [(2e-6, ("driven", "amount")), (1e-9, ("driver", "amount"))])
-def test_the_tolerance_of_flanks_that_decides_is_the_one_without_which_least_is_left_at_most(driven, decides):
+def test_the_tolerance_of_flanks_that_decides_is_the_one_that_halved_leaves_least_at_most(driven, decides):
     numbers = np.array([5e-6, 1e-3, 8e-6, 2e-3, 0, 0, 0, 0, 0])
     tips = TipTolerance(1e-6, 1e-4, 0.0), TipTolerance(driven, 3e-4, 0.0)
     high = [6e-6, 1.1e-3, 8e-6 + driven, 2.3e-3]
@@ -211,11 +211,12 @@ def test_the_tolerance_of_flanks_that_decides_is_the_one_without_which_least_is_
     def left(n):
         return 2.0 * (n[0] * (1.0 + n[1]) + 2.0 * n[2] * (1.0 + 3.0 * n[3]) - 1e-8)
 
-    (one,) = flank_tolerance.decisive_tips(Trials(np.array([1.0])), PAIR, numbers, given, np.array([left(high)]))
-    without = [left([*high[:i], numbers[i], *high[i + 1 :]]) for i in range(4)]
+    (one,) = flank_tolerance.decisive_tolerances(Trials(np.array([1.0])), PAIR, numbers, given, np.array([left(high)]))
+    halved = [left([*high[:i], 0.5 * (numbers[i] + high[i]), *high[i + 1 :]]) for i in range(4)]
     assert (one.member, one.number) == decides
-    assert one.most == pytest.approx(min(without))
-    none = flank_tolerance.decisive_tips(Trials(np.array([1.0])), PAIR, 0.0 * numbers, given, np.ones(1))
+    assert one.most == pytest.approx(min(halved))
+    assert one.given == tips[["driver", "driven"].index(one.member)].amount
+    none = flank_tolerance.decisive_tolerances(Trials(np.array([1.0])), PAIR, 0.0 * numbers, given, np.ones(1))
     assert none == (None,)
 
 

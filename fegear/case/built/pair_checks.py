@@ -25,7 +25,7 @@ def _bare(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     corners = scene.case.effects.corner_contact
     return PairSpec(
         pair, part.all_loads(pair), width="solid" if over_face and width == "plane" else width,
-        corner_contact=corners, name=name,
+        corner_contact=corners, name=name, load_key=part.load_key(pair),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
-from fegear.design.flanks.flank_tolerance import FlankTolerance, within_tolerances
+from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tolerances, within_tolerances
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
@@ -35,6 +35,7 @@ from fegear.design.flanks.topography import (
 from fegear.design.flanks.trials import FlankTrials, Tried
 from fegear.design.load_range import proportions
 from fegear.design.preferred import CLEARLY, classes_finer
+from fegear.design.tip_relief.tip_tolerance import Decisive
 from fegear.fem.solid.flank_body import FlankBody
 from fegear.geometry.flank_modification import Topography
 from fegear.geometry.pair import GearPair, Member
@@ -165,6 +166,8 @@ class FlankDesign(ReadOnlyArrays):
     finer : int or None
         By how many classes the tolerances of `best` would have to be finer for it to leave no more than no relief under
         any load: 0 where they do, None where none does.
+    decisive : tuple of Decisive or None
+        Which tolerance decides the most that `best` leaves under each of the task's loads; empty without tolerances.
     """
 
     task: FlankDesignTask
@@ -177,6 +180,7 @@ class FlankDesign(ReadOnlyArrays):
     found: Mapping[str, FamilyBest]
     grid: ReliefGrid
     finer: int | None = 0
+    decisive: tuple[Decisive | None, ...] = ()
 
     @property
     def unrelieved(self) -> FlankState:
@@ -368,7 +372,7 @@ def design_flanks(
     states = tuple(_state(label, relief, here, judge, over, task)
                    for label, relief in reliefs.items())  # fmt: skip
     design = FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
-    return replace(design, finer=_classes_finer(over, pair, design))
+    return replace(design, finer=_classes_finer(over, pair, design), decisive=_decisive(over, pair, design))
 
 
 def _starts(held: Sequence[FamilyBest]) -> list[GroundRelief]:
@@ -441,3 +445,14 @@ def _classes_finer(over: _OverLoads, pair: GearPair, design: FlankDesign) -> int
         return np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
 
     return classes_finer(most, design.unrelieved.over_peak_to_peak, finer, tolerance.finest)
+
+
+def _decisive(over: _OverLoads, pair: GearPair, design: FlankDesign) -> tuple[Decisive | None, ...]:
+    """Which tolerance decides the most that is left of what is to be ground; empty where nothing has any."""
+    tolerance = design.task.tolerance
+    if tolerance is None or not design.found:
+        return ()
+    relief, most = design.best.relief, design.best.over_most
+    if relief is None or most is None:
+        return ()
+    return decisive_tolerances(over.searched, pair, relief.numbers, tolerance, most)

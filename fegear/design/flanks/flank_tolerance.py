@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.design.flanks.forms import NUMBERS
+from fegear.design.flanks.forms import NUMBERS, lead_bearer
 from fegear.design.flanks.trials import FlankTrials
 from fegear.design.preferred import CLASS_STEP
-from fegear.design.tip_relief.tip_tolerance import TIP_NUMBERS, Decisive, TipTolerance
-from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.design.tip_relief.tip_tolerance import (
+    HALVED,
+    TIP_NUMBERS,
+    Decisive,
+    LeadNumber,
+    TipNumber,
+    TipTolerance,
+)
+from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import EndRelief
 
 #: Tips: amount and length of driver and driven gear; the amounts behind them.
 _TIPS = 4
 _CROWNING, _END, _SLOPE, _BIAS = (NUMBERS.index(name) for name in ("crowning", "end_relief", "slope", "bias"))
+#: Numbers to which each tolerance of the lead belongs.
+_OF_LEAD: Mapping[LeadNumber, list[int]] = {"crowning": [_CROWNING, _END], "slope": [_SLOPE], "twist": [_BIAS]}
 #: Rounds of tips and lead in turn.
 _ROUNDS = 2
 
@@ -110,19 +120,26 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
         Nominal.
     tolerance : FlankTolerance
     """
+    return _worst(lambda one: trials.of_numbers(one).peak_to_peak[0], trials, pair, numbers, tolerance)
+
+
+def _worst(
+    left: Callable[[Array], Array], trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance
+) -> Array:
+    """As `within_tolerances`; `left` says what nine numbers leave under each load, shape (L,) [m]."""
     tips, leads = _tips(trials, pair, numbers, tolerance), _leads(numbers, tolerance)
     worst = np.tile(numbers, (trials.loads.size, 1))
     for turn in range(_ROUNDS if len(leads) > 1 else 1):
-        worst = _most(trials, worst, tips, slice(0, _TIPS), alike=turn == 0)
+        worst = _most(left, worst, tips, slice(0, _TIPS), alike=turn == 0)
         if len(leads) > 1:
-            worst = _most(trials, worst, leads, slice(_TIPS, None))
+            worst = _most(left, worst, leads, slice(_TIPS, None))
     return worst
 
 
-def decisive_tips(
+def decisive_tolerances(
     trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance, most: Array
 ) -> tuple[Decisive | None, ...]:
-    """Which tolerance of the tip reliefs decides what is left at most under each load; None where none is ground.
+    """Which tolerance, once halved, reduces what is left at most under each load; None where nothing is ground.
 
     Parameters
     ----------
@@ -131,26 +148,51 @@ def decisive_tips(
     most : ndarray, shape (L,)
         Largest peak-to-peak transmission error within all tolerances [m].
     """
+    seen: dict[bytes, Array] = {}
 
-    def left(given: FlankTolerance) -> Array:
-        worst = within_tolerances(trials, pair, numbers, given)
-        return np.array([trials.of_numbers(one).peak_to_peak[0, i] for i, one in enumerate(worst)])
+    def left(one: Array) -> Array:
+        """Under each load; most combinations belong to several tolerances."""
+        key = one.tobytes()
+        if key not in seen:
+            seen[key] = trials.of_numbers(one).peak_to_peak[0]
+        return seen[key]
 
-    part = most / left(tolerance)
+    def worst(given: FlankTolerance) -> Array:
+        return np.array([left(one)[i] for i, one in enumerate(_worst(left, trials, pair, numbers, given))])
+
+    part = most / worst(tolerance)
     found: list[Decisive | None] = [None] * trials.loads.size
-    for at, (member, number) in enumerate(product(MEMBERS, TIP_NUMBERS)):
-        if numbers[2 * (at // 2)] == 0.0:
-            continue
-        tips = list(tolerance.tips)
-        tips[at // 2] = tips[at // 2].without(number)
-        without = part * left(FlankTolerance((tips[0], tips[1]), tolerance.lead))
+    for member, number, given, tighter in _halved(pair, numbers, trials.tip_power, tolerance):
+        then = part * worst(tighter)
         for i, least in enumerate(found):
-            if least is None or without[i] < least.most:
-                found[i] = Decisive(member, number, float(without[i]))
+            if least is None or then[i] < least.most:
+                found[i] = Decisive(member, number, float(then[i]), given)
     return tuple(found)
 
 
-def _most(trials: FlankTrials, worst: Array, choices: Array, where: slice, *, alike: bool = False) -> Array:
+def _halved(
+    pair: GearPair, numbers: Array, tip_power: float, tolerance: FlankTolerance
+) -> Iterator[tuple[Member, TipNumber | LeadNumber, float, FlankTolerance]]:
+    """Whose tolerance of which number is halved, what it was [m], and all tolerances then."""
+    for k, (member, tip) in enumerate(zip(MEMBERS, end_reliefs(numbers, pair, tip_power), strict=True)):
+        one, gear = tolerance.tips[k], pair.gear(member)
+        for number, given in zip(TIP_NUMBERS, (one.amount, one.length_of(gear, tip)), strict=True):
+            if tip.amount and given:
+                tips = list(tolerance.tips)
+                tips[k] = one.halved(number, gear, tip)
+                yield member, number, given, replace(tolerance, tips=(tips[0], tips[1]))
+    lead = tolerance.lead
+    if lead is None:
+        return
+    for name, at in _OF_LEAD.items():
+        given = getattr(lead, name)
+        if given and numbers[at].any():
+            yield lead_bearer(pair), name, given, replace(tolerance, lead=replace(lead, **{name: HALVED * given}))
+
+
+def _most(
+    left: Callable[[Array], Array], worst: Array, choices: Array, where: slice, *, alike: bool = False
+) -> Array:  # fmt: skip
     """Put the choice that leaves most under each load in place of some numbers; `alike`: all rows of `worst` are."""
     found = worst.copy()
     seen: Array | None = None
@@ -158,7 +200,7 @@ def _most(trials: FlankTrials, worst: Array, choices: Array, where: slice, *, al
         if seen is None or not alike:
             tried = np.tile(base, (len(choices), 1))
             tried[:, where] = choices
-            seen = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in tried])
+            seen = np.stack([left(one) for one in tried])
         found[load, where] = choices[int(seen[:, load].argmax())]
     return found
 

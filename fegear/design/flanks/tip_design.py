@@ -13,7 +13,7 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest
-from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tips, within_tolerances
+from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tolerances, within_tolerances
 from fegear.design.flanks.tip_bench import Read, TipReader, tip_reader, tip_trials, without_tips
 from fegear.design.flanks.tip_search import best_tips
 from fegear.design.load_range import LoadRange, proportions
@@ -177,7 +177,7 @@ def design_tips(
     of_shape, numbers = reader.shaped(POWERS[shape]), found[shape].relief.numbers
     return replace(
         design, finer=_classes_finer(of_shape, pair, design, shape),
-        decisive=decisive_tips(of_shape.plain, pair, numbers, task.tolerance, most[shape]),
+        decisive=decisive_tolerances(of_shape.plain, pair, numbers, task.tolerance, most[shape]),
     )  # fmt: skip
 
 

@@ -21,7 +21,11 @@ OF_LENGTH = 0.1
 _SHORTEST = 0.02
 #: Amounts below this are none [m].
 NOTHING = 1e-9
+#: What is left of the tolerance that is tightened: two classes of ISO 1328.
+HALVED = 0.5
 TipNumber = Literal["amount", "length"]
+#: Numbers over the face, each with a tolerance of its own; that of crowning is the one of end relief, too.
+LeadNumber = Literal["crowning", "slope", "twist"]
 #: Numbers of a tip relief in the order of `TipTolerance.off`.
 TIP_NUMBERS: tuple[TipNumber, ...] = ("amount", "length")
 
@@ -61,9 +65,11 @@ class TipTolerance:
         origin = "" if grade is None else f"f_Hα of class {grade}"
         return replace(self, amount=self.amount / CLASS_STEP**classes, origin=origin, grade=grade)
 
-    def without(self, number: TipNumber) -> TipTolerance:
-        """The same with one number exactly as drawn."""
-        return replace(self, amount=0.0) if number == "amount" else replace(self, length=0.0)
+    def halved(self, number: TipNumber, gear: Gear, tip: EndRelief) -> TipTolerance:
+        """The same with half the tolerance of one number of a tip relief."""
+        if number == "amount":
+            return replace(self, amount=HALVED * self.amount)
+        return replace(self, length=HALVED * self.length_of(gear, tip))
 
     def length_of(self, gear: Gear, tip: EndRelief) -> float:
         """By how much the length of a relief may be off [m]."""
@@ -86,17 +92,21 @@ class TipTolerance:
 
 @dataclass(frozen=True)
 class Decisive:
-    """The tolerance without which the largest transmission error is smallest.
+    """The tolerance by which, once halved, the largest transmission error falls most.
 
     Parameters
     ----------
     member : {"driver", "driven"}
-    number : {"amount", "length"}
-        Of the member's tip relief.
+        Whose flank has the number.
+    number : {"amount", "length", "crowning", "slope", "twist"}
+        The first two of the member's tip relief.
     most : float
-        Largest peak-to-peak transmission error with this number as drawn and all others inside their tolerances [m].
+        Largest peak-to-peak transmission error with half of this tolerance and all others as they are [m].
+    given : float
+        The tolerance as it is [m].
     """
 
     member: Member
-    number: TipNumber
+    number: TipNumber | LeadNumber
     most: float
+    given: float

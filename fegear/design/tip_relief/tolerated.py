@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 from fegear.base.arrays import Array
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
-from fegear.design.relief_bench import bench
+from fegear.design.relief_bench import Bench, bench
 from fegear.design.tip_relief.tip_tolerance import NOTHING, TIP_NUMBERS, Decisive, TipTolerance
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Relief
@@ -24,13 +25,12 @@ _NEAREST = 6
 def within_tolerances(
     engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance],
     loads: ArrayLike,
-) -> tuple[Array, tuple[Decisive | None, ...]]:  # fmt: skip
-    """Least and largest peak-to-peak transmission error at each load, shape (L, 2) [m], and what decides at each.
+) -> Array:  # fmt: skip
+    """Least and largest peak-to-peak transmission error at each load, shape (L, 2) [m].
 
     Amounts and lengths of both reliefs are at the lower end, in the middle and at the upper end of their tolerances,
     each with each; which combination is the best and which are among the worst is found on one grid, what these leave
-    with every kink. What decides is by the grid, its values relative to the largest with every kink; None where nothing
-    is ground.
+    with every kink.
 
     Parameters
     ----------
@@ -44,18 +44,8 @@ def within_tolerances(
         [N].
     """
     w = np.atleast_1d(np.asarray(loads, dtype=float))
-    gears = engagement.pair.driver, engagement.pair.driven
-    steps = list(product((-1, 0, 1), repeat=2))
-    ends: list[list[Relief]] = [
-        [allowed.off(gear, tip, *off) for off in steps]
-        if tip.amount > NOTHING else [UNMODIFIED]
-        for gear, tip, allowed in zip(gears, tips, tolerances, strict=True)
-    ]  # fmt: skip
-    both = list(product(*ends))
-    offs = np.array(list(product(*(steps if len(each) > 1 else [(0, 0)] for each in ends)))).reshape(len(both), 4)
-    table = bench(engagement, order=6)
-    removals = np.repeat(np.stack([table.removal(*each) for each in both], axis=2), w.size, axis=2)
-    seen = table.errors(removals, np.tile(w, len(both))).peak_to_peak.reshape(-1, w.size)
+    both = _combinations(engagement, tips, tolerances)
+    seen = _on_grid(bench(engagement, order=6), both, w)
 
     def left(which: int, load: float) -> float:
         driver, driven = both[which]
@@ -63,15 +53,63 @@ def within_tolerances(
         return transmission_error(ground, load, 12).peak_to_peak
 
     found = np.empty((w.size, 2))
-    decisive: list[Decisive | None] = []
     for i, load in enumerate(w):
         order = np.argsort(seen[:, i])
         found[i, 0] = left(int(order[0]), float(load))
         found[i, 1] = max(left(int(at), float(load)) for at in order[-_NEAREST:])
-        part = found[i, 1] / seen[:, i].max()
-        without = {
-            at: float(seen[offs[:, at] == 0, i].max()) * part for at in range(offs.shape[1]) if np.any(offs[:, at])
-        }
-        at = min(without, key=lambda one: without[one], default=None)
-        decisive.append(None if at is None else Decisive(MEMBERS[at // 2], TIP_NUMBERS[at % 2], float(without[at])))
-    return found, tuple(decisive)
+    return found
+
+
+def decisive_tolerances(
+    engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance],
+    loads: ArrayLike, most: Array,
+) -> tuple[Decisive | None, ...]:  # fmt: skip
+    """Which tolerance, once halved, reduces the largest transmission error most at each load; None: nothing is ground.
+
+    By the grid of `within_tolerances`, in proportion to what that has found with every kink.
+
+    Parameters
+    ----------
+    engagement, tips, tolerances, loads
+        As in `within_tolerances`.
+    most : ndarray, shape (L,)
+        Largest peak-to-peak transmission error within all tolerances [m].
+    """
+    w = np.atleast_1d(np.asarray(loads, dtype=float))
+    table = bench(engagement, order=6)
+
+    def worst(allowed: tuple[TipTolerance, TipTolerance]) -> Array:
+        return np.asarray(_on_grid(table, _combinations(engagement, tips, allowed), w).max(axis=0))
+
+    part = most / worst(tolerances)
+    found: list[Decisive | None] = [None] * w.size
+    for k, number in product(range(2), TIP_NUMBERS):
+        gear, tip = engagement.pair.gear(MEMBERS[k]), tips[k]
+        given = tolerances[k].amount if number == "amount" else tolerances[k].length_of(gear, tip)
+        if tip.amount <= NOTHING or given <= 0.0:
+            continue
+        tighter = tolerances[k].halved(number, gear, tip)
+        then = part * worst((tighter, tolerances[1]) if k == 0 else (tolerances[0], tighter))
+        for i, least in enumerate(found):
+            if least is None or then[i] < least.most:
+                found[i] = Decisive(MEMBERS[k], number, float(then[i]), given)
+    return tuple(found)
+
+
+def _combinations(
+    engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance]
+) -> list[tuple[Relief, ...]]:
+    """Both reliefs at the ends and in the middle of their tolerances, each with each."""
+    gears = engagement.pair.driver, engagement.pair.driven
+    ends: list[list[Relief]] = [
+        [allowed.off(gear, tip, *off) for off in product((-1, 0, 1), repeat=2)]
+        if tip.amount > NOTHING else [UNMODIFIED]
+        for gear, tip, allowed in zip(gears, tips, tolerances, strict=True)
+    ]  # fmt: skip
+    return list(product(*ends))
+
+
+def _on_grid(table: Bench, reliefs: Sequence[tuple[Relief, ...]], loads: Array) -> Array:
+    """Peak-to-peak values that pairs of reliefs leave on a grid at each load, shape (C, L) [m]."""
+    removals = np.repeat(np.stack([table.removal(*each) for each in reliefs], axis=2), loads.size, axis=2)
+    return np.asarray(table.errors(removals, np.tile(loads, len(reliefs))).peak_to_peak.reshape(-1, loads.size))

@@ -22,6 +22,7 @@ from fegear.engine.sheet.rows import Cell, Every, EveryLoad, Off, Rows
 from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Reads, Upstream, Work
+from fegear.geometry.relief import UNMODIFIED
 from fegear.results import forecasts
 from fegear.results.pair.iso_mesh_stiffness import (
     ISO_REMARK,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 
     from fegear.case.loading import TransmissionErrorPart
     from fegear.case.reading import Scene
+    from fegear.contact.loaded_teeth import LoadedTeeth
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.figure.items import Mark
 
@@ -59,13 +61,15 @@ _BARS = 16
 class TransmissionErrorData:
     """Transmission error of loaded teeth; evenly spaced and by Mark's series where the case asks for these.
 
-    Its mean stiffness stands beside that of ISO 6336-1 where it is of finite elements.
+    Its mean stiffness stands beside that of ISO 6336-1 where it is of finite elements; `flanks_said` is a clause of its
+    sentence, that plane flanks have no relief.
     """
 
     found: ErrorOverPitch
     by_mark: MarkData | None
     even: EvenMesh | None = None
     iso: IsoMeshStiffness | None = None
+    flanks_said: str = ""
 
 
 def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work) -> TransmissionErrorData:
@@ -78,7 +82,14 @@ def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work
     even = None if asked.part.even_positions is None else even_mesh(found, asked.part.even_positions)
     by_fe = hasattr(teeth, "flanks") or cast("LoadedPair", teeth).spec.compliance == "fe"
     iso = iso_mesh_stiffness(found) if by_fe else None
-    return TransmissionErrorData(found, by_mark, even, iso)
+    return TransmissionErrorData(found, by_mark, even, iso, _flanks_said(teeth))
+
+
+def _flanks_said(teeth: LoadedTeeth) -> str:
+    """A design beside it states the value that it leaves: which of both this is."""
+    engagement = getattr(teeth, "engagement", None)
+    plain = engagement is not None and engagement.driver_relief == engagement.driven_relief == UNMODIFIED
+    return ", without relief" if plain else ""
 
 
 def _marks(seen: Seen) -> Iterable[Mark]:
@@ -246,8 +257,8 @@ _OVER_CONTACT = {
 
 
 _ANSWER = Answer(
-    "Pair {name} at {d.found.driver_torque:.3g}: transmission error {v[te_peak_to_peak]} peak to peak, mean "
-    "{v[te_mean]}.",
+    "Pair {name} at {d.found.driver_torque:.3g}{d.flanks_said}: transmission error {v[te_peak_to_peak]} peak to peak, "
+    "mean {v[te_mean]}.",
     _over_loads,
     _mean_stiffness,
     said_beside_iso,

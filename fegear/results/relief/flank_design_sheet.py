@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.notes import assuming
-from fegear.base.printed import figures, percent
+from fegear.base.printed import percent
 from fegear.contact.wide.lines import ContactLines
 from fegear.design.flanks.forms import lead_bearer
 from fegear.design.preferred import CLASS_STEP
@@ -20,7 +20,8 @@ from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
-from fegear.results.relief.allowed_words import allowed_words
+from fegear.results.relief.allowed_words import allowed_words, decisive_words
+from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.flank_design_data import FlanksShown
 from fegear.results.relief.flank_design_ends import end_notes
 from fegear.results.relief.grinding import TIP, grinding_table
@@ -32,7 +33,6 @@ from fegear.results.relief.relief_over_range import (
     RANGE_CHART,
     left_words,
     lost_words,
-    told_apart,
     within_words,
 )
 
@@ -167,14 +167,6 @@ def _left(seen: Seen, label: str) -> tuple[Array, Array]:
     return np.array([data.load * data.data.pair.driver.base_radius]), np.array([state.judged.peak_to_peak.value])
 
 
-def _microns(size: float) -> str:
-    return figures(size * 1e6, 2)
-
-
-def _torque(torque: float) -> str:
-    return f"{figures(torque, 4)} N m"
-
-
 def _grind(seen: Seen) -> Iterator[str]:
     """What to grind and what it leaves, from the largest to the smallest torque of a range; why no more is ground."""
     design = seen.data.design
@@ -198,6 +190,11 @@ def _grind(seen: Seen) -> Iterator[str]:
     if within is not None and not lost:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
         yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
+    if within is not None and design.decisive:
+        i = int(np.argmax(within / np.maximum(none, _NONE)))
+        gears = {row.member: row.gear for row in ground}
+        if decides := decisive_words(after[i], within[i], torque[i], design.decisive[i], gears):
+            yield f"Pair {seen.name}: {decides}."
     if least is not best:
         why = "within the estimated error" if design.alike(best) else f"by {_further(seen, best, least)}"
         than = f"than {best.label} ({best.modifications})"
@@ -215,7 +212,7 @@ def _allowed(seen: Seen, ground: list[Grinding], classes: int) -> str:
     tips, allowed = [row for row in ground if row.modification == TIP], seen.asked.tolerance.tips
     tip = [allowed_words([one.finer(classes) if classes else one for one in allowed], tips)] if tips else []
     rest = [
-        f"± {_microns(row.amount_tolerance / CLASS_STEP**classes)} µm {row.modification}"
+        f"± {microns(row.amount_tolerance / CLASS_STEP**classes)} µm {row.modification}"
         for row in ground
         if row.modification != TIP
     ]
@@ -235,7 +232,7 @@ def _drawn(seen: Seen, best: FlankState, least: FlankState) -> str:
         i = design.worst_load(left)
         ours, theirs = float(left[i]), float(design.left_under(least)[i])
     less, more = told_apart(theirs, ours)
-    return f" ({less}, not {more} µm at {_torque(torque[i])})"
+    return f" ({less}, not {more} µm at {torque_words(torque[i])})"
 
 
 def _within(seen: Seen, best: FlankState, least: FlankState) -> str:
@@ -245,7 +242,7 @@ def _within(seen: Seen, best: FlankState, least: FlankState) -> str:
         return ""
     i = seen.data.design.worst_load(most)
     more, less = told_apart(most[i], ours[i])
-    return f" (at most {more}, not {less} µm at {_torque(torque[i])})"
+    return f" (at most {more}, not {less} µm at {torque_words(torque[i])})"
 
 
 def _further(seen: Seen, best: FlankState, least: FlankState) -> str:
@@ -253,7 +250,7 @@ def _further(seen: Seen, best: FlankState, least: FlankState) -> str:
     rows = seen.data.grinding
     ours = {(row.gear, row.modification) for row in rows if row.design == best.label}
     more = [
-        f"{_microns(row.amount)} ± {_microns(row.amount_tolerance)} µm {row.modification}"
+        f"{microns(row.amount)} ± {microns(row.amount_tolerance)} µm {row.modification}"
         for row in rows
         if row.design == least.label and row.words and (row.gear, row.modification) not in ours
     ]
@@ -264,16 +261,16 @@ def _exact(seen: Seen) -> Iterator[str]:
     """What the topography leaves at the design load, and where in a range it leaves more than no relief."""
     design = seen.data.design
     before, after = (state.judged.peak_to_peak.value for state in (design.unrelieved, design.exact))
-    at = _torque(seen.data.load * seen.data.data.pair.driver.base_radius)
+    at = torque_words(seen.data.load * seen.data.data.pair.driver.base_radius)
     said = (
-        f"Pair {seen.name}: the exact topography reduces the transmission error from {_microns(before)} to "
-        f"{_microns(after)} µm at {at}"
+        f"Pair {seen.name}: the exact topography reduces the transmission error from {microns(before)} to "
+        f"{microns(after)} µm at {at}"
     )
     (torque, none), left = _left(seen, design.unrelieved.label), _left(seen, design.exact.label)[1]
     worst = int(np.argmax(left / np.maximum(none, _NONE)))
     if left[worst] > none[worst]:
         more, less = told_apart(left[worst], none[worst])
-        said += f"; at {_torque(torque[worst])} it is {more} µm, more than without relief ({less} µm)"
+        said += f"; at {torque_words(torque[worst])} it is {more} µm, more than without relief ({less} µm)"
     yield f"{said}."
 
 
@@ -290,7 +287,7 @@ def _scattered(seen: Seen) -> Iterator[str]:
 
     before, after = means(design.unrelieved), means(best)
     left = ", ".join(
-        f"{_microns(before[i])} -> {_microns(after[i])} µm at {_torque(torque[i])}"
+        f"{microns(before[i])} -> {microns(after[i])} µm at {torque_words(torque[i])}"
         for i in dict.fromkeys(i % torque.size for i in (-1, 0))
     )
     worst = " (maximum over the torques relative to the torque)" if torque.size > 1 else ""
@@ -298,7 +295,7 @@ def _scattered(seen: Seen) -> Iterator[str]:
     aligned = min(design.ground, key=lambda state: float(_left(seen, state.label)[1][-1]))
     mine, other = (float(_left(seen, state.label)[1][-1]) for state in (best, aligned))
     if other < (1.0 - _CLEARLY) * mine:
-        said += f"; aligned as specified {aligned.label} leaves less, {_microns(other)} µm at {_torque(torque[-1])}"
+        said += f"; aligned as specified {aligned.label} leaves less, {microns(other)} µm at {torque_words(torque[-1])}"
     yield f"{said}."
 
 

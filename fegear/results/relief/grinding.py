@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import Member
+from fegear.results.relief.answer_numbers import microns
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -68,7 +68,7 @@ class Grinding:
         """As a sentence says it; empty for nothing."""
         if abs(self.amount) <= NOTHING:
             return ""
-        amount = f"{figures(self.amount * 1e6, 2)} µm"
+        amount = f"{microns(self.amount)} µm"
         if self.modification == TIP:
             return f"{amount} from d {self.start_diameter * 1e3:.1f} mm on gear {self.gear}"
         return f"{amount} {self.modification} on gear {self.gear}"

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Line, Over
+from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.grinding import CROWNING, END, NOTHING, SLOPE
 
 if TYPE_CHECKING:
@@ -77,9 +77,7 @@ def lead_chart(
         return np.asarray(one.removal(pair, 0.5 * (pair.x_start + pair.x_end), z) - 0.5 * abs(one.slope))
 
     band = [removed(*offs) for offs in product(*((-off, off) for *_, off in ground))]
-    words = ", ".join(
-        f"{word} {figures(amount * 1e6, 2)} ± {figures(off * 1e6, 2)} µm" for _, word, amount, off in ground
-    )
+    words = ", ".join(f"{word} {with_limits(amount, off)}" for _, word, amount, off in ground)
     return LeadChart(
         gear, words, z + pair.face_height(member), -removed(*(0.0 for _ in ground)), -np.min(band, axis=0),
         -np.max(band, axis=0),

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.geometry.relief import EndRelief, roll_of_radius
+from fegear.results.relief.answer_numbers import microns, with_limits
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -74,13 +76,14 @@ def profile_chart(
     words, marks = "no relief", []
     if tip.amount > NOTHING:
         start = gear.base_radius * math.hypot(1.0, tip.start)
+        amount = with_limits(tip.amount, tolerance.amount, least=0.0)
         words = (
-            f"{_SHAPES[tip.power]}, {tip.amount * 1e6:.1f} ± {tolerance.amount * 1e6:.1f} µm over {length * 1e3:.1f} ± "
-            f"{tolerance.length_of(gear, tip) * 1e3:.1f} mm"
+            f"{_SHAPES[tip.power]} tip relief {amount} from d {2e3 * start:.1f} mm "
+            f"(length {figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm)"
         )
         marks = [Mark("x", gear.base_radius * tip.start * 1e3, f"d {2e3 * start:.2f}")]
     if tolerance.form > NOTHING:
-        words = f"{words}; f_{{fα}} {tolerance.form * 1e6:.1f} µm"
+        words = f"{words}; f_{{fα}} {microns(tolerance.form)} µm"
     return ProfileChart(
         name, words, tuple(marks), gear.base_radius * roll, -tip.removal(roll), -least, -most,
         None if present is None else -present.removal(roll),

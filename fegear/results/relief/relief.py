@@ -90,6 +90,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
     return ReliefInputs(
         design_part(scene), pair_spec(scene, name), design_range(scene, name), tip_tolerances(scene, name),
         case.accuracy.tolerance, case.effects, scene.sizes_neglected, table_names(scene, name), gears,
+        f"pair.{name}.{case.pair[name].load_key(scene.pairs[name])}",
     )  # fmt: skip
 
 
@@ -110,7 +111,10 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
         inputs.over, inputs.tolerances,
     )  # fmt: skip
-    design = design_relief(pair.engagement, pair.shifted, task, work.progress, work.cache)
+    try:
+        design = design_relief(pair.engagement, pair.shifted, task, work.progress, work.cache)
+    except RangeError as error:
+        raise error.under("", {} if part.load else {"design.load": inputs.load_key}) from None
     best = design.best_ground if design.ground else None
     neglected: dict[str, tuple[str, ...]] = {}
     if inputs.neglected:

@@ -24,6 +24,7 @@ from fegear.engine.stage import Forecast, Upstream, Work
 from fegear.geometry.pair import MEMBER_WORDS
 from fegear.geometry.relief import CombinedRelief, EndRelief, roll_of_radius
 from fegear.results import forecasts
+from fegear.results.relief.answer_numbers import microns, torque_words
 from fegear.results.relief.grinding import NOTHING
 from fegear.results.relief.ground_tips import GroundTip, tip_numbers, tips_of
 from fegear.results.relief.relief import design_part, relief_stage
@@ -269,20 +270,26 @@ def unit_in_words(seen: Seen) -> str:
 def _optimum_in_words(seen: Seen) -> Iterator[str]:
     """The optimum of each gear on its own for all loads, and the best equal reliefs of the chart."""
     chart, ground = seen.data.chart, [tip for tip in seen.data.tips if tip.relief.amount > NOTHING]
-    amounts = " and ".join(
-        f"{figures(tip.relief.amount * 1e6, 2)} µm on the {MEMBER_WORDS[tip.member]}" for tip in ground
-    )  # fmt: skip
-    amount, length = chart.best()
-    equal = f"{figures(amount * 1e6, 2)} µm over {figures(length * chart.unit_length * 1e3, 2)} mm"
-    if ground and seen.asked.said_by_relief:
-        yield f"Pair {seen.name}: best equal tip relief on both gears: {equal}."
-    elif not ground:
+    if not ground:
         yield f"Pair {seen.name}: no tip relief reduces the excitation."
-    else:
+        return
+    if not seen.asked.said_by_relief:
+        amounts = " and ".join(f"{microns(tip.relief.amount)} µm on the {MEMBER_WORDS[tip.member]}" for tip in ground)
         yield (
-            f"Pair {seen.name}: optimum for all loads: {amounts} ({figures(seen.data.left(seen.asked.metric) * 1e6, 2)}"
-            f" µm remain at the maximum load); equal on both gears: {equal}."
+            f"Pair {seen.name}: optimum for all loads: {amounts} ({microns(seen.data.left(seen.asked.metric))} µm "
+            "remain at the maximum load)."
         )
+    i, j = chart.best_point()
+    length = figures(chart.lengths[j] * chart.unit_length * 1e3, 2)
+    torque = chart.loads * seen.data.pair.pair.driver.base_radius
+    left = ", ".join(
+        f"{microns(chart.peak_to_peak[i, j, k])} µm at {torque_words(torque[k])}"
+        for k in dict.fromkeys((int(chart.loads.argmax()), int(chart.loads.argmin())))
+    )
+    yield (
+        f"Pair {seen.name}: for comparison, equal {seen.asked.part.shape} tip relief on both gears, "
+        f"{microns(chart.amounts[i])} µm over {length} mm, gives {left}, peak to peak."
+    )
 
 
 CHART_SHEET = Sheet(

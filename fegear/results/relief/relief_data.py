@@ -40,6 +40,8 @@ class ReliefInputs:
         Whether the sizes of effects that are off are estimated.
     labels, gears : mapping of str to str
         Names of the tables and of the gears by member.
+    load_key : str
+        Key of the design load where the design has none of its own, for messages.
     """
 
     part: DesignPart
@@ -51,6 +53,7 @@ class ReliefInputs:
     neglected: bool
     labels: Mapping[Member, str] = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
+    load_key: str = field(default="design.load", compare=False)
 
 
 @dataclass(frozen=True)

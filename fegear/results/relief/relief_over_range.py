@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.design.preferred import CLEARLY
 from fegear.engine.colours import ROLES
@@ -16,11 +15,12 @@ from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import MEMBERS
-from fegear.results.relief.allowed_words import allowed_words
+from fegear.results.relief.allowed_words import allowed_words, decisive_words
+from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.left_errors import left_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.design.tip_relief.tip_tolerance import Decisive
     from fegear.engine.sheet.seen import Seen
-    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.pair import GearPair
     from fegear.results.relief.grinding import Grinding
 
 #: Tip relief over its tolerance below which grinding cannot be told from not grinding.
@@ -51,7 +51,8 @@ class LeftOverRange:
         By how many classes the tolerances would have to be finer for it to leave no more than no relief anywhere: 0
         where they do, None where none does.
     decisive : tuple of Decisive or None, length L
-        Which tolerance decides the maximum within the tolerances at each torque; empty where this is not known.
+        Which tolerance, once halved, reduces the maximum within the tolerances most at each torque; empty where this
+        is not known.
     """
 
     torque: Array = shown("N.m", "torque on the driver", label="torque on the driver")
@@ -84,16 +85,15 @@ def left_over_range(
     load = np.array(design.task.over_loads)
     weights = design.task.over_weights
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
-    decisive = {f"{shape} tip relief": one for shape, one in design.decisive.items()}
-    finer = {f"{design.shapes[0]} tip relief": design.finer} if design.ground else {}
+    best = f"{design.shapes[0]} tip relief" if design.ground else ""
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
     searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
     return {
         label: LeftOverRange(
             load * pair.driver.base_radius, load, weights / weights.max(),
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
-            within.get(label), _errors(found, shifted, searched.get(label)), finer=finer.get(label, 0),
-            decisive=decisive.get(label, ()),
+            within.get(label), _errors(found, shifted, searched.get(label)),
+            finer=design.finer if label == best else 0, decisive=design.decisive if label == best else (),
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
@@ -144,15 +144,9 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         nominal = d.load * single.torque[i] / single.load[i]
         more, less = told_apart(single.peak_to_peak[i], none.peak_to_peak[i])
         yield (
-            f"Pair {seen.name}: tip relief designed for {figures(nominal, 4)} N m only gives {more} µm peak-to-peak "
-            f"at {figures(single.torque[i], 4)} N m, more than without relief ({less} µm)."
+            f"Pair {seen.name}: tip relief designed for {torque_words(nominal)} only gives {more} µm peak-to-peak "
+            f"at {torque_words(single.torque[i])}, more than without relief ({less} µm)."
         )
-
-
-def told_apart(one: float, other: float) -> tuple[str, str]:
-    """Two lengths in µm with two digits, as sentences beside have them; with three where these would be the same."""
-    first, second = (figures(value * 1e6, 2) for value in (one, other))
-    return (first, second) if first != second else (figures(one * 1e6), figures(other * 1e6))
 
 
 def _said_of_small_torques(seen: Seen, best: LeftOverRange, single: LeftOverRange) -> Iterator[str]:
@@ -164,8 +158,8 @@ def _said_of_small_torques(seen: Seen, best: LeftOverRange, single: LeftOverRang
         return
     remaining, possible = told_apart(best.peak_to_peak[large], single.peak_to_peak[large])
     yield (
-        f"Pair {seen.name}: torques down to {figures(best.torque[small], 4)} N m limit the relief: {remaining} µm at "
-        f"{figures(best.torque[large], 4)} N m, {possible} µm with tip relief for that torque only; set weights that "
+        f"Pair {seen.name}: torques down to {torque_words(best.torque[small])} limit the relief: {remaining} µm at "
+        f"{torque_words(best.torque[large])}, {possible} µm with tip relief for that torque only; set weights that "
         "emphasise the larger torques."
     )
 
@@ -198,7 +192,7 @@ def lost_words(none: Array, most: Array, torque: Array, finer: int | None, allow
     at = " at every torque" if torque.size > 1 else ""
     said = (
         f"within {allowed(0)} the transmission error is smaller without relief{at}: {less} µm at "
-        f"{figures(torque[i], 4)} N m, with relief at most {more} µm"
+        f"{torque_words(torque[i])}, with relief at most {more} µm"
     )
     if finer is None:
         return f"{said}; no finer class makes relief pay{at}"
@@ -223,14 +217,15 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
         yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
     if best.decisive:
         gears = {row.member: row.gear for row in rows}
-        decides = decisive_words(best.most[i], best.torque[i], best.decisive[i], gears)
+        ends = best.peak_to_peak[i], best.most[i]
+        decides = decisive_words(*ends, best.torque[i], best.decisive[i], gears)
         if decides:
             yield f"Pair {seen.name}: {decides}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 else ""
     for row in rows:
         off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
         if row.amount < _FAINT * off:
-            amount, allowed_off = (figures(one * 1e6, 2) for one in (row.amount, off))
+            amount, allowed_off = microns(row.amount), microns(off)
             yield (
                 f"Pair {seen.name}: {amount} µm on gear {row.gear} is below a quarter of its tolerance "
                 f"(± {allowed_off} µm) and cannot be ground; omit it{weights}."
@@ -246,31 +241,9 @@ def said_of_undefined(seen: Seen, rows: Sequence[Grinding]) -> Iterator[str]:
                 low, high = told_apart(row.amount_from, row.amount_to)
                 equal = f"; {low} to {high} µm are equally good"
             yield (
-                f"Pair {seen.name}: no defined optimum on gear {row.gear}: {figures(row.amount * 1e6, 2)} µm has an "
-                f"estimated error of {figures(row.amount_error * 1e6, 2)} µm{equal}."
+                f"Pair {seen.name}: no defined optimum on gear {row.gear}: {microns(row.amount)} µm has an "
+                f"estimated error of {microns(row.amount_error)} µm{equal}."
             )
-
-
-def decisive_words(most: float, torque: float, decisive: Decisive | None, gears: Mapping[Member, str]) -> str:
-    """Which tolerance decides the maximum; empty where the best of them hardly reduces it.
-
-    Parameters
-    ----------
-    most : float
-        Maximum peak-to-peak transmission error within all tolerances [m].
-    torque : float
-        [N m].
-    decisive : Decisive or None
-    gears : mapping of member to str
-        Names of the ground gears.
-    """
-    if decisive is None or decisive.member not in gears or decisive.most >= CLEARLY * most:
-        return ""
-    more, less = told_apart(most, decisive.most)
-    return (
-        f"the tolerance of the {decisive.number} on gear {gears[decisive.member]} matters most: without it at most "
-        f"{less} instead of {more} µm at {figures(torque, 4)} N m"
-    )
 
 
 def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int]) -> str:
@@ -291,10 +264,8 @@ def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at:
     for i in at:
         within = ""
         if most is not None:
-            within = f" ({'at most' if said else 'within tolerances at most'} {figures(most[i] * 1e6, 2)} µm)"
-        said.append(
-            f"{figures(none[i] * 1e6, 2)} -> {figures(drawn[i] * 1e6, 2)} µm{within} at {figures(torque[i], 4)} N m"
-        )
+            within = f" ({'at most' if said else 'within tolerances at most'} {microns(most[i])} µm)"
+        said.append(f"{microns(none[i])} -> {microns(drawn[i])} µm{within} at {torque_words(torque[i])}")
     return ", ".join(said)
 
 
@@ -314,8 +285,8 @@ def within_words(
     allowed : callable
         Tolerances that are so many classes finer, in words.
     """
-    at = f"{figures(most * 1e6, 2)} µm at {figures(torque, 4)} N m"
-    said = f"within {allowed(0)} at most {at} ({figures(none * 1e6, 2)} µm without relief)"
+    more, less = told_apart(most, none)
+    said = f"within {allowed(0)} at most {more} µm at {torque_words(torque)} ({less} µm without relief)"
     if finer == 0:
         return said
     if finer is None:
@@ -338,7 +309,7 @@ def _as_drawn(seen: Seen, shape: str, best: LeftOverRange, i: int) -> str:
     if not worse:
         return ""
     other = min(worse, key=lambda key: worse[key])
-    drawn, most = (figures(value * 1e6, 2) for value in worse[other])
+    drawn, most = map(microns, worse[other])
     return f"; {other} tip relief {drawn} µm as drawn there, but at most {most} µm"
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures, percent
+from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.design.preferred import CLEARLY
 from fegear.engine.figure.axis import Axis
@@ -17,9 +17,9 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
+from fegear.results.relief.answer_numbers import microns, told_apart
 from fegear.results.relief.relief import design_pairs, design_part, relief_stage
 from fegear.results.relief.relief_chart import CITES
-from fegear.results.relief.relief_over_range import told_apart
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -145,16 +145,16 @@ def _worst_in_words(seen: Seen) -> Iterator[str]:
     label, every = seen.data.recommended, seen.data.candidates
     found, none = every[label], every[NO_RELIEF]
     at = np.unravel_index(int(found.values.argmax()), found.values.shape)
-    nominal, worst = (figures(size * 1e6, 2) for size in (found.nominal, max(found.worst, found.nominal)))
+    nominal, worst = microns(found.nominal), microns(max(found.worst, found.nominal))
     yield (
         f"Pair {seen.name}, {label}: {nominal} µm at the design load, at most {worst} µm ({_combination(found, at)}); "
-        f"without relief {figures(none.nominal * 1e6, 2)} µm and at most {figures(none.worst * 1e6, 2)} µm."
+        f"without relief {microns(none.nominal)} µm and at most {microns(none.worst)} µm."
     )
     if label != NO_RELIEF:
         yield f"Pair {seen.name}, {label}: {_beside_none(found, none)}."
     least = min(every, key=lambda key: every[key].worst)
     if every[least].worst < CLEARLY * found.worst:
-        yield f"Pair {seen.name}: {least} gives the smallest maximum, {figures(every[least].worst * 1e6, 2)} µm."
+        yield f"Pair {seen.name}: {least} gives the smallest maximum, {microns(every[least].worst)} µm."
 
 
 def _beside_none(found: Robustness, none: Robustness) -> str:
