@@ -143,13 +143,14 @@ def refuse_load(pair: GearPair, load: float, key: str = "load") -> None:
     """
     share, width = _load_share(pair, load), pair.face_width
     if share > _ABSURD_LOAD:
+        stiff = min(gear.material.young_modulus for gear in (pair.driver, pair.driven))
+        most = _HEAVY_LOAD if stiff > _METAL else _ABSURD_LOAD
         lever, unit = (1.0, "N") if key.startswith("load") else (pair.driver.base_radius, "N m")
         raise InputError(
             key, f"{load * lever:.6g} {unit} on {width * 1e3:.6g} mm face width",
             f"gives a line load of {load / width * 1e-3:.4g} N/mm ({share:.2g} times m E), far above the strength of "
             "any tooth",
-            f"check the units of {key} and face_width; metals carry at most some "
-            f"{figures(load * lever * _HEAVY_LOAD / share, 2)} {unit} here",
+            f"check the units of {key} and face_width; choose at most {figures(load * lever * most / share, 2)} {unit}",
         )  # fmt: skip
 
 

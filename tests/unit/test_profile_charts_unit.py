@@ -100,14 +100,14 @@ def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, 
     for limit, off in ((chart.upper, -0.5e-3), (chart.lower + 3e-6, 0.5e-3)):
         begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
         assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
-    assert "tip relief 20 ± 4 µm from d " in chart.words
-    assert chart.words.endswith(" ± 0.5 mm); f_{fα} 3 µm")
+    assert chart.words.startswith(f"20 ± 4 µm, {'linear' if power == 1.0 else 'parabolic'} from d ")
+    assert chart.words.endswith(" ± 0.5 mm long); f_{fα} 3 µm")
 
 
 def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):
     gear, tip = engagement.pair.driver, replace(tips[0], amount=4.8e-6)
     chart = profile_chart("p", gear, tip, TipTolerance(5.5e-6, None, 0.0))
-    assert chart.words.startswith("linear tip relief 0 to 10 µm (nominal 4.8) from d ")
+    assert chart.words.startswith("0 to 10 µm (nominal 4.8), linear from d ")
     assert (chart.upper[-1], chart.lower[-1]) == pytest.approx((0.0, -10.3e-6), abs=1e-12)
     assert with_limits(2e-6, 6e-6) == "-4 to 8 µm (nominal 2)"
     assert with_limits(-6e-6, 5e-6) == "-6 ± 5 µm"

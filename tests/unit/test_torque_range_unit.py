@@ -3,6 +3,7 @@
 Gears are 25/67 and random pairs with compliances by Weber and Banaschek, which need no mesh.
 """
 
+import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -26,11 +27,13 @@ from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.load_range import LoadRange
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief, relief_over_path
+from fegear.engine.plan import make_plan
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief
+from fegear.results.catalogue import STAGES
 from fegear.results.relief.relief import RELIEF
 
 GEARS = """
@@ -281,3 +284,32 @@ def test_a_design_applied_to_a_fresh_case_gives_what_it_states(tmp_path, shape):
     assert run.exit_code == 0, run.output
     relief = [tomllib.loads(path.read_text("utf-8"))["gear"] for path in (fresh, other)]
     assert relief[0] == relief[1]
+
+
+@pytest.mark.parametrize(
+    ("pair", "key"),
+    [
+        ('torque = "60 kN*m"', "pair.I.torque = 60000 N m on 30 mm face width"),
+        ('torques = ["150 N*m", "60 kN*m"]', "pair.I.torques = 60000 N m on 30 mm face width"),
+        ('power = "9424.7779608 kW"\nspeed = "1500 rpm"', "pair.I.torque = 60000 N m on 30 mm face width"),
+        ('load = "2043220 N"', "pair.I.load = 2.04322e+06 N on 30 mm face width"),
+        ('loads = ["1 kN", "2043220 N"]', "pair.I.loads = 2.04322e+06 N on 30 mm face width"),
+    ],
+)
+def test_an_impossible_load_is_refused_by_the_key_of_the_case_with_what_is_permissible(pair, key):
+    with pytest.raises(InputError) as refused:
+        make_plan(scene(pair), STAGES)
+    text = str(refused.value)
+    assert text.startswith(key)
+    limit = 0.005 * 206.8e9 * 2.5e-3 * 30e-3 * (1.0 if "load" in key else 0.0293658)
+    named = re.search(r"check the units of (\w+) and face_width; choose at most ([\d.]+) (N.*)\.$", text)
+    assert (named[1], named[3]) == (key.split()[0].split(".")[-1], "N" if "load" in key else "N m")
+    assert float(named[2]) == pytest.approx(limit, rel=0.02)
+
+
+def test_a_relief_that_no_tooth_has_room_for_names_the_permissible_torque_and_the_key_of_the_case():
+    begins = r"pair\.I\.torque = 40\d\d\d\d N \(12000 N m on the driver\): requires a relief of"
+    with pytest.raises(InputError, match=begins) as refused:
+        fegear.run(case('torque = "12 kN*m"'))
+    limit = float(re.search(r"limit is [\d.e+]+ N \(([\d.]+) N m on the driver", str(refused.value))[1])
+    assert 300.0 < limit < 12000.0

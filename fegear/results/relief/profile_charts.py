@@ -78,10 +78,10 @@ def profile_chart(
         start = gear.base_radius * math.hypot(1.0, tip.start)
         amount = with_limits(tip.amount, tolerance.amount, least=0.0)
         words = (
-            f"{_SHAPES[tip.power]} tip relief {amount} from d {2e3 * start:.1f} mm "
-            f"(length {figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm)"
+            f"{amount}, {_SHAPES[tip.power]} from d {2e3 * start:.1f} mm "
+            f"({figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm long)"
         )
-        marks = [Mark("x", gear.base_radius * tip.start * 1e3, f"d {2e3 * start:.2f}")]
+        marks = [Mark("x", gear.base_radius * tip.start * 1e3, f"d {2e3 * start:.1f}")]
     if tolerance.form > NOTHING:
         words = f"{words}; f_{{fα}} {microns(tolerance.form)} µm"
     return ProfileChart(
@@ -122,7 +122,7 @@ def k_chart(of: str) -> Chart:
                     Line("present", "present relief", "present relief", look=plain),
                 ),
                 _ordinate,
-                title="gear {one.gear}: {one.words}", each=lambda seen: seen.one,
+                title="{one.gear}: {one.words}", each=lambda seen: seen.one,
                 marks=lambda seen: seen.one.marks,
             ),
         ),
