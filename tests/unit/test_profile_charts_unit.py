@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.relief import UNMODIFIED
+from fegear.geometry.relief import UNMODIFIED, EndRelief
 from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.profile_charts import profile_chart
 
@@ -111,6 +112,23 @@ def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):
     assert (chart.upper[-1], chart.lower[-1]) == pytest.approx((0.0, -10.3e-6), abs=1e-12)
     assert with_limits(2e-6, 6e-6) == "-4 to 8 µm (nominal 2)"
     assert with_limits(-6e-6, 5e-6) == "-6 ± 5 µm"
+
+
+def test_the_relief_of_a_ring_gear_is_off_by_its_tolerances_as_that_of_other_gears():
+    """Roll angles of ring gears are negative, and grow towards the tip."""
+    ring, tip = SimpleNamespace(base_radius=0.1), EndRelief(6e-6, -0.38, -0.31, 1.0)
+    allowed = TipTolerance(2e-6, 1e-3, 0.0)
+    assert allowed.off(ring, tip, 0, 0) == tip
+    for amount, length in product((-1, 1), repeat=2):
+        off = allowed.off(ring, tip, amount, length)
+        assert (off.amount, off.start, off.end) == pytest.approx((6e-6 + 2e-6 * amount, -0.38 - 0.01 * length, -0.31))
+    low, high = allowed.limits(ring, tip, [-0.45, -0.395, -0.31])
+    assert low == pytest.approx([0.0, 0.0, 4e-6])
+    assert high == pytest.approx([0.0, 0.0, 8e-6])
+    assert (
+        replace(allowed, length=8e-3).off(SimpleNamespace(base_radius=0.1), EndRelief(6e-6, 0.02, 0.07), 0, 1).start
+        == 0
+    )
 
 
 def test_a_gear_without_relief_has_a_level_chart(engagement, tips):

@@ -79,7 +79,12 @@ class TipTolerance:
         """The relief with amount and length at an end of their tolerances: -1, 0 or 1 each."""
         whole = tip.end - tip.start
         longer = max(whole + length * self.length_of(gear, tip) / gear.base_radius, _SHORTEST * whole)
-        return replace(tip, amount=max(tip.amount + amount * self.amount, 0.0), start=max(tip.end - longer, 0.0))
+        start = tip.end - longer
+        if (
+            tip.end > 0.0
+        ):  # not past the base circle; of ring gears, whose roll angles are negative, it lies beyond the tip
+            start = max(start, 0.0)
+        return replace(tip, amount=max(tip.amount + amount * self.amount, 0.0), start=start)
 
     def limits(self, gear: Gear, tip: EndRelief, roll: ArrayLike) -> tuple[Array, Array]:
         """Least and largest removal that a profile chart allows at roll angles [m]."""
