@@ -93,7 +93,7 @@ def about(subject: str, clause: str) -> Note:
     return Note(f"{subject}: {clause}.", class_of(clause), getattr(clause, "margin", 0.0))
 
 
-#: Notes that stand open on a page, a terminal and in the window; the others are folded or counted.
+#: Notes that stand open on a page, a terminal and in the window, besides all that fail; others are folded or counted.
 OPEN = 2
 #: Subjects that a merged note names.
 _NAMED = 6
@@ -152,8 +152,16 @@ def _together(numbers: Sequence[str]) -> str:
 
 
 def open_and_folded(notes: Sequence[Note]) -> tuple[Sequence[Note], Sequence[Note]]:
-    """Those to show at once, and those behind a line to click on; a single one is not worth a line."""
-    count = len(notes) if len(notes) <= OPEN + 1 else OPEN
+    """Those to show at once, all that fail among them, and those behind a line to click on, which one is not worth.
+
+    Parameters
+    ----------
+    notes : sequence of Note
+        In order.
+    """
+    count = max(OPEN, sum(note.kind is NoteClass.FAILS for note in notes))
+    if len(notes) <= count + 1:
+        count = len(notes)
     return notes[:count], notes[count:]
 
 

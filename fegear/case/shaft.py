@@ -25,7 +25,7 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.geometry.plausible import refuse_shaft
-from fegear.shafts.axial_factors import AxialFactors
+from fegear.shafts.axial_factors import AxialFactors, ribs_of
 from fegear.shafts.life import LifeRating
 from fegear.shafts.permissible_tilt import PermissibleTilt, tilt_of_kind
 from fegear.shafts.printed_bearing import Kind, PrintedBearing
@@ -246,7 +246,7 @@ class BearingPart(Part):
     designation: str | None = Field(
         default=None,
         description="Designation, such as 6206, 30206 or NU206: rolling elements are estimated from its dimensions "
-        "(ISO 15, ISO 355) and the ratings of `catalogue`.",
+        "(ISO 15, ISO 355) and the ratings of `catalogue`. NUP bearings locate the shaft axially.",
     )
     catalogue: CataloguePart | None = Field(
         default=None,
@@ -331,8 +331,15 @@ class BearingPart(Part):
         axial = None
         if known is not None and not factors:
             size = known.diameter if isinstance(known, RollingElementsPart) else known.element_diameter
-            axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2)
+            axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2, self.ribs)
         return LifeRating(rated, kind, **factors, axial=axial)
+
+    @property
+    def ribs(self) -> tuple[float, float] | None:
+        """Y and e of a bearing whose ribs locate its shaft (NUP); None of any other."""
+        from fegear.shafts.designations import plain_designation
+
+        return None if self.designation is None else ribs_of(plain_designation(self.designation))
 
     @property
     def tilt(self) -> PermissibleTilt | None:
@@ -380,7 +387,7 @@ class BearingPart(Part):
             sign = np.array([1.0, 1.0, -1.0, -1.0, -1.0] if mirrored else [1.0] * 5)
             return StiffBearing(np.array(self.matrix) * np.outer(sign, sign))
         if (printed := self.printed) is not None:
-            made = printed.inside
+            made = replace(printed.inside, ribs=self.ribs is not None)
             return replace(made, contact_angle=-made.contact_angle) if mirrored else made
         if self.elements is not None:
             e = self.elements

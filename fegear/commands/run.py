@@ -105,8 +105,8 @@ def _run_case(
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.report.page import begin_page
     from fegear.output.run_files import STEPS, write_results
-    from fegear.output.spoken_values import answer_lines, spoken_values
-    from fegear.output.tables import printed_lines
+    from fegear.output.spoken_values import answer_lines, spoken_tables, spoken_values
+    from fegear.output.tables import brief_lines, printed_lines
     from fegear.results.catalogue import STAGES
 
     try:
@@ -139,7 +139,8 @@ def _run_case(
             remember(results, forecast_seconds(scene, planned))
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
-    for line in printed_lines([table for table in results.tables if table.printed]):
+    printed, of_answer = spoken_tables(results)
+    for line in printed_lines(printed):
         voice.say(line)
     values, further = spoken_values(results)
     for value in values:
@@ -153,6 +154,9 @@ def _run_case(
     voice.notes(results.notes(remarks), "report.html")
     for line in answer_lines(results.answer):
         voice.say(line)
+    for table in of_answer:
+        for line in brief_lines(table):
+            voice.say(line)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
 

@@ -1,4 +1,4 @@
-"""Which single values of a run the terminal prints: as many as a person reads before the answer; the answer itself."""
+"""Which values and tables of a run the terminal prints: as many as a person reads; and the answer itself."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from fegear.engine.run import Results
     from fegear.engine.run_answer import RunAnswer
     from fegear.engine.stage import Task
+    from fegear.engine.table import Table
     from fegear.engine.value import Value
 
 #: More values than a screen has lines are read in no order; the other ones are in files and in the report.
@@ -21,7 +22,8 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
     """Values for the terminal, in the order of the run, and how many others there are.
 
     Those of results that the answer of another one sums up are left to the files: a gearbox has a hundred, and its
-    answer names those to act on. All others where they fit on a screen. Else those of the requested results only, of
+    answer names those to act on; beside an answer with tables those of results that describe what is given, too. All
+    others where they fit on a screen. Else those of the requested results only, of
     each its first ones, as many for one as for another.
 
     Parameters
@@ -58,9 +60,41 @@ def answer_lines(answer: RunAnswer) -> list[str]:
     return [*answer.sentences[:first], *rows, *answer.sentences[first:]]
 
 
+def spoken_tables(results: Results) -> tuple[list[Table], list[Table]]:
+    """Tables for the terminal: those before the values, and those of the answer, behind it.
+
+    Beside an answer with tables, those of results that it sums up or that describe what is given are left to the files.
+    What consists of words is in the sentences of the answer.
+
+    Parameters
+    ----------
+    results : Results
+
+    Returns
+    -------
+    list of Table, list of Table
+    """
+    order = {name: n for n, name in enumerate(results.answer.tables)}
+    left = _summed_up(results) if order else set()
+    printed = [
+        table for task, outcome in results.outcomes.items() if task not in left
+        for table in outcome.tables if table.printed
+    ]  # fmt: skip
+    named = [
+        table for table in results.tables
+        if table.name in order and any(column.values.dtype.kind == "f" for column in table.columns)
+    ]  # fmt: skip
+    return printed, sorted(named, key=lambda table: order[table.name])
+
+
 def _summed_up(results: Results) -> set[Task]:
-    """Tasks of wanted results that the answer of another one covers."""
+    """Tasks of wanted results that the answer of another one covers, or puts behind its tables."""
     steps = [step for step in results.plan.steps if step.wanted and step.task in results.outcomes]
     answers = [results.outcomes[step.task].answer for step in steps]
     covered = {result for answer in answers if answer is not None for result in answer.covers}
-    return {step.task for step in steps if set(step.stage.results) <= covered}
+    tables = results.answer.tables
+    behind = {
+        step.task for step, answer in zip(steps, answers, strict=True)
+        if tables and answer is not None and answer.background
+    }  # fmt: skip
+    return behind | {step.task for step in steps if set(step.stage.results) <= covered}

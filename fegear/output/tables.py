@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.base.printed import figures
 from fegear.engine.table import Table
 from fegear.output.file_names import file_name
 
@@ -86,6 +87,27 @@ def sheet_lines(table: Table) -> list[str]:
     rows = [
         [one.head, *_written(one.values, "{:.5g}" if one.unit in _FEW_DIGITS else "{:.7g}")] for one in table.columns
     ]
+    return _aligned(rows)
+
+
+def brief_lines(table: Table) -> list[str]:
+    """Title and lines for the terminal of a table beside an answer: the digits that a person reads, no errors."""
+    rows = [
+        [one.head, *(_brief(value) for value in one.values.tolist())]
+        for one in table.columns
+        if not one.name.endswith("_error")
+    ]
+    return [f"{table.title}:", *_aligned(rows)]
+
+
+def _brief(value: object) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    return figures(value) if math.isfinite(value) else ""
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows whose first cells are heads, the other ones below each other to the right."""
     first, *widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
         f"{row[0]:<{first}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(row[1:], widths, strict=True))

@@ -85,6 +85,8 @@ class RollingBearing:
         Effective [m].
     clearance : float
         Diametral, across the axis [m]; negative for preload. Of bearings with a contact angle, along the normal.
+    ribs : bool
+        Whether ribs on both rings hold the shaft along the axis, rigidly and without play.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class RollingBearing:
     groove_ratio: tuple[float, float] = (0.52, 0.52)
     roller_length: float = 0.0
     clearance: float = 0.0
+    ribs: bool = False
 
     def __post_init__(self) -> None:
         """Refuse elements that do not fit, and rings without grooves."""
@@ -139,8 +142,8 @@ class RollingBearing:
 
     @property
     def rigid(self) -> Array:
-        """Nowhere."""
-        return np.zeros(5, dtype=bool)
+        """Nowhere, but along the axis between ribs."""
+        return np.array([False, False, self.ribs, False, False])
 
     @cached_property
     def usual(self) -> Array:

@@ -173,7 +173,7 @@ def test_the_safety_after_a_lead_correction_is_that_of_the_rating():
     """2.24 -> 1.6 on the flanks; what is said is that of the rating, with manufacturing deviations."""
     weak = replace(mesh(margin=0.64), lead=LevelLead(4e-6, 2.24, 1.6, 3e-6))
     unrated = _of_mesh(weak).remedy
-    assert "helix slope C_Hβ 4 µm with more removal at end II and 3 µm more crowning C_β on the driver)" in unrated
+    assert "helix slope C_Hβ 4 µm with more removal at end II and crowning C_β 3 µm on the driver)" in unrated
     assert "S_H" not in unrated
     failing_still = _of_mesh(replace(weak, levelled=Safety(0.9, 2.3, (1.0, 1.4), 1.42))).remedy
     assert "on the driver): S_H 0.90 at K_Hβ 1.42 in place of 1.80 of the rating, or " in failing_still
@@ -183,7 +183,14 @@ def test_the_safety_after_a_lead_correction_is_that_of_the_rating():
     assert "S_H 1.10" in enough
     assert "face width" not in enough
     sagging = _of_mesh(replace(weak, lead=LevelLead(0.0, 2.24, 1.6, 3e-6))).remedy
-    assert "(3 µm more crowning C_β on the driver" in sagging
+    assert "(crowning C_β 3 µm on the driver" in sagging
+    # what is named is the whole lead, as that of the lead correction
+    present = _of_mesh(replace(weak, present=(-1e-6, 2e-6))).remedy
+    assert (
+        "helix slope C_Hβ 3 µm with more removal at end II and crowning C_β 5 µm on the driver, in place of" in present
+    )
+    flat = _of_mesh(replace(weak, present=(-4e-6, 2e-6), lead=LevelLead(4e-6, 2.24, 1.6, -2e-6))).remedy
+    assert "(crowning C_β 0 µm on the driver, in place of its present lead)" in flat
     assert "face width" in _of_mesh(replace(weak, lead=LevelLead(4e-6, 2.59, 2.5))).remedy
 
 

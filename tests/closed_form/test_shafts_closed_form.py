@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import FegearError, InputError
+from fegear.case.shaft import BearingPart
 from fegear.shafts.beam import Shaft
 from fegear.shafts.bearing import LooseBearing, StiffBearing, stiff
 from fegear.shafts.deflection import deflect
@@ -84,6 +85,21 @@ def test_a_clamped_cone_is_the_integral_and_the_limit_of_fine_steps():
         errors.append(_one(steps, ((clamp, 0.0),), length, (force, 0, 0, 0, 0, 0)).at(length)[0, 0] / found[0] - 1)
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
     assert abs(errors[1] + (errors[1] - errors[0]) / 3) < 1e-7
+
+
+def test_a_bearing_with_ribs_locates_the_shaft_and_gives_way_as_one_without():
+    floats, locates = (BearingPart.model_validate({"designation": f"{kind}207"}).build() for kind in ("NU", "NUP"))
+    shaft, force = _shaft((0.4, 0.035)), (800.0, -3000.0, 700.0, 0, 0, 0)
+    found = _one(shaft, ((locates, 0.02), (floats, 0.38)), 0.15, force)
+    assert found.bearing_forces[:, 2] == pytest.approx([-700.0, 0.0], abs=1e-6)
+    assert found.rings[0, 2] == 0.0
+    fixed = stiff(0.0, INF)  # the force along the axis apart from the rollers
+    other = _one(shaft, ((floats, 0.02), (floats, 0.38), (fixed, 0.02)), 0.15, force)
+    np.testing.assert_allclose(found.bearing_forces[:, :2], other.bearing_forces[:2, :2], rtol=1e-9)
+    np.testing.assert_allclose(found.rings[:, :2], other.rings[:2, :2], rtol=1e-9)
+    assert not floats.rigid.any()
+    with pytest.raises(InputError, match="axially"):
+        _one(shaft, ((floats, 0.02), (floats, 0.38)), 0.15, force)
 
 
 def test_tension_and_twist():

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fegear.base.notes import NoteClass, class_of
-from fegear.case.built.bearing_room import said_of_room
+from fegear.case.built.bearing_room import said_of_room, seats_of
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.first_size import with_teeth_of_ratio
 from fegear.case.drafts.kinds import TWO_STAGES
@@ -101,6 +101,24 @@ def test_bodies_on_two_shafts_that_cut_each_other_are_named_with_radii_and_dista
     assert "Gear wheel_1 (diameter 175.2 mm) and shaft output (diameter 170 mm) intersect" in note
     assert "radii 172.6 mm, axes of shafts middle and output 170.3 mm apart" in note
     assert not notes_of({"shaft.output.sections.1.outer": "164 mm"})
+
+
+def test_a_seat_has_its_shoulder_and_the_room_beside_its_neighbours():
+    scene = build_scene(deepcopy(BOX), "case", Path())
+    seats = seats_of(scene)
+    names = [[place.bearing for place in part.bearings] for part in scene.case.shaft.values()]
+    assert [len(one) for one in seats] == [len(one) for one in names] == [2, 2, 2]
+    first, part = seats[0][0], scene.case.shaft["input"]
+    assert (first.at, first.length) == (part.bearings[0].at, part.sections[0].length)
+    assert first.shoulder == part.sections[1].outer
+    apart = scene.case.shaft["middle"].axis[0] - part.axis[0]
+    beside = scene.case.bearing[names[1][0]].printed
+    most = 2.0 * (apart - 0.5 * beside.outside_diameter)  # the bearing on the next shaft is in the way
+    assert first.has_room(0.99 * most / 1.05, 0.01)
+    assert not first.has_room(1.01 * most / 1.05, 0.01)
+    gap = 2.0 * (part.gears[0].at - 0.5 * scene.gears["pinion_1"].face_width - first.at)
+    assert first.has_room(0.02, 0.99 * gap)
+    assert not first.has_room(0.02, 1.01 * gap)
 
 
 def test_a_bearing_beside_a_gear_overlaps_it_along_the_shaft():

@@ -94,6 +94,14 @@ def test_at_most_three_stand_open(count, shown):
     assert (len(first), len(others)) == (shown, count - shown)
 
 
+@pytest.mark.parametrize(("fails", "others", "shown"), [(5, 9, 5), (5, 1, 6), (5, 2, 5), (1, 9, 2), (2, 1, 3)])
+def test_all_that_fail_stand_open(fails, others, shown):
+    notes = ordered([*(assuming(f"a{n}") for n in range(others)), *(failing(f"f{n}", 0.1 * n) for n in range(fails))])
+    first, rest = open_and_folded(notes)
+    assert (len(first), len(rest)) == (shown, fails + others - shown)
+    assert not any(one.kind is NoteClass.FAILS for one in rest)
+
+
 def test_folded_notes_are_counted_by_class():
     assert counted([assuming("a"), neglecting("b"), assuming("c")]) == "3 further notes (1 neglected, 2 assumed)"
     assert counted([assuming("a")]) == "1 further note (assumed)"

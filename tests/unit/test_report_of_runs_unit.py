@@ -4,15 +4,18 @@ import copy
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import fegear
 from fegear.engine.stage import Task
+from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.output.report import run as reported
 from fegear.output.report.blocks import Folded, Group, Heading, Switch, Values
 from fegear.output.report.gear_data import gear_sections
-from fegear.output.spoken_values import spoken_values
+from fegear.output.spoken_values import spoken_tables, spoken_values
+from fegear.output.tables import brief_lines
 
 GEARS = {
     name: {"teeth": z, "module": "3 mm", "face_width": "10 mm", "bore_radius": "10 mm"}
@@ -124,6 +127,7 @@ def test_the_terminal_has_a_screen_of_values_of_what_is_wanted():
     def ran(*counts):
         results = values_of(*counts)
         results.values = [value for outcome in results.outcomes.values() for value in outcome.values]
+        results.answer = SimpleNamespace(tables=())
         return results
 
     few = ran(("a", 5, True, None), ("b", 9, False, None))
@@ -138,3 +142,42 @@ def test_the_terminal_has_a_screen_of_values_of_what_is_wanted():
     found, further = spoken_values(many)  # of a result that sums others up their values are in the files
     assert {value.name[0] for value in found} == {"b", "c"}
     assert len(found) + further == 143
+
+
+def test_tables_of_an_answer_stand_behind_it_in_place_of_what_it_sums_up_and_of_what_describes_the_gears():
+    def table(name, *, printed=True, words=False):
+        return Table(name, (Column("part", np.array(["I"])), Column("x", np.array(["a"] if words else [2.0]))), name,
+                     printed=printed)  # fmt: skip
+
+    results = values_of(("box", 1, True, None), ("rating", 1, True, None), ("data", 1, True, None),
+                        ("other", 1, True, None))  # fmt: skip
+    answers = {
+        "box": SimpleNamespace(covers=("rating",), background=False),
+        "data": SimpleNamespace(covers=(), background=True),
+    }
+    own = {"box": [table("shafts", printed=False), table("bearings", printed=False),
+                   table("changes", printed=False, words=True)]}  # fmt: skip
+    results.outcomes = {
+        task: SimpleNamespace(values=outcome.values, answer=answers.get(task.stage),
+                              tables=own.get(task.stage, [table(task.stage)]))
+        for task, outcome in results.outcomes.items()
+    }  # fmt: skip
+    results.tables = [one for outcome in results.outcomes.values() for one in outcome.tables]
+    results.values = [value for outcome in results.outcomes.values() for value in outcome.values]
+    results.answer = SimpleNamespace(tables=("changes", "bearings", "shafts"))
+    printed, behind = spoken_tables(results)
+    assert [one.name for one in printed] == ["other"]
+    assert [one.name for one in behind] == ["bearings", "shafts"]  # changes are in the sentences
+    assert {value.name[0] for value in spoken_values(results)[0]} == {"b", "o"}
+    results.answer = SimpleNamespace(tables=())
+    assert [one.name for one in spoken_tables(results)[0]] == ["rating", "data", "other"]
+    assert not spoken_tables(results)[1]
+
+
+def test_a_brief_table_has_the_digits_of_a_person_and_no_errors():
+    found = brief_lines(Table("t", (
+        Column("bearing", np.array(["left", "b"])), Column("at", np.array([0.0464123, np.nan]), "mm"),
+        Column("at_error", np.array([1.0, 2.0]), "mm"),
+    ), "Bearings"))  # fmt: skip
+    assert found[0] == "Bearings:"
+    assert [line.split() for line in found[1:]] == [["bearing", "left", "b"], ["at", "[mm]", "46.4"]]

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 from fegear.base.notes import failing
 from fegear.base.printed import figures
+from fegear.shafts.bearing_seat import BearingSeat, Obstacle
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.base.notes import Note
     from fegear.case.reading import Scene
-    from fegear.case.shaft import ShaftInSpacePart
+    from fegear.case.shaft import BearingPlacePart, ShaftInSpacePart
 
 #: Share by which bore and shaft may differ, and two bodies cut each other: places and diameters are rounded.
 _SAME, _ROUNDED = 0.005, 0.002
@@ -82,6 +83,44 @@ def _diameters(part: ShaftInSpacePart, at: float) -> list[float]:
             found.append(one.outer + (last - one.outer) * (at - start) / one.length)
         start = end
     return found
+
+
+def seats_of(scene: Scene) -> tuple[tuple[BearingSeat, ...], ...]:
+    """Seat of every bearing by shafts, with what another bearing there has to keep away from.
+
+    Of bearings between two shafts nothing is known but the bore: they have no shoulder and no other bodies.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    bodies = list(_bodies(scene))
+    return tuple(
+        tuple(BearingSeat() if one.around is not None else _seat(scene, bodies, name, one) for one in part.bearings)
+        for name, part in scene.case.shaft.items()
+    )
+
+
+def _seat(scene: Scene, bodies: list[_Body], shaft: str, place: BearingPlacePart) -> BearingSeat:
+    part = scene.case.shaft[shaft]
+    length, shoulder, start = 0.0, 0.0, 0.0
+    sections = [max(one.outer, one.outer_end or 0.0) for one in part.sections]
+    for n, one in enumerate(part.sections):
+        end = start + one.length
+        if start - 1e-9 <= place.at <= end + 1e-9 and not length:
+            length = one.length
+            shoulder = max((sections[k] for k in (n - 1, n + 1) if 0 <= k < len(sections)), default=0.0)
+        start = end
+    found = []
+    for body in bodies:
+        if body.shaft == shaft and (body.kind == "shaft" or body.name == place.bearing):
+            continue
+        apart = math.dist(part.axis, scene.case.shaft[body.shaft].axis)
+        if body.shaft != shaft and apart < _ROUNDED * body.radius:
+            continue  # one within the other, or behind it
+        reach = 0.0 if body.shaft == shaft else apart - body.radius
+        found.append(Obstacle(body.start - part.start, body.end - part.start, reach))
+    return BearingSeat(place.at, length or math.inf, shoulder, tuple(found))
 
 
 def _bodies(scene: Scene) -> Iterator[_Body]:

@@ -36,7 +36,7 @@ pressure_angle = {pressure_angle}
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}; replace by that of the drawing
+bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}
 # tip_diameter = "{tip_diameter}"     # default: this value, d + 2 m (1 + x)
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
 {relief}
@@ -52,7 +52,7 @@ hand = "{hand}"
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
-bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}; replace by that of the drawing
+bore_radius = "{bore_radius}"     # gear body fixed there: {bore_note}
 {relief}
 """
 _RING = """\
@@ -107,6 +107,7 @@ _ON = "relief = true     # on: tip relief of both gears, crowning of the pinion"
 #: Column of comments behind keys.
 _COMMENTS = 30
 _ASSUMED = "     # assumed"
+_OF_DRAWING = "replace by that of the drawing"
 #: Questions about the pair, not its gears.
 _OF_PAIR = ("torque", "speed", "lead_error", "life")
 #: Speeds of a train's motion, as shares of the given one.
@@ -227,9 +228,9 @@ def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None)
     bore, note = _BORE * root, "half the root radius"
     if 0.0 < (thinner := root - _RIM * (1.0 + dedendum)) < bore:
         bore, note = thinner, "a rim of 1.2 tooth depths"
-    texts |= {"bore_radius": length(bore * module), "bore_note": note}
+    texts |= {"bore_radius": length(bore * module), "bore_note": f"{note}; {_OF_DRAWING}"}
     if answers.kind == "gearbox":
-        texts |= {"bore_note": "that of the shaft"}
+        texts |= {"bore_note": f"that of the shaft; {_OF_DRAWING}"}
     if answers.helical:
         return _HELICAL.format(**{**texts, "hand": ("right", "left")[number], **(other or {})})
     texts["tip_diameter"] = length(module * (teeth + 2.0 * (1.0 + shift)))
@@ -330,11 +331,19 @@ def _train(answers: Answers) -> Mapping[str, str]:
 def _gearbox(answers: Answers) -> Mapping[str, str]:
     """Gears, shafts and bearings of one stage."""
     found, names = laid_out((answers,)), KINDS["gearbox"].gears
-    gears = [_gear(answers, n, {"bore_radius": length(hole)}) for n, hole in enumerate(found.holes)]
+    gears = [_gear(answers, n, _bored(found, n)) for n in range(len(found.holes))]
     return {
         "gears": "\n".join(gears), "shafts": shafts_text(found, ("input", "output"), names, ((0,), (1,))),
         "operated": _operated(answers),
     }  # fmt: skip
+
+
+def _bored(found: LaidOut, at: int) -> dict[str, str]:
+    """Hole of a gear, and what is said of it where there is none."""
+    texts = {"bore_radius": length(found.holes[at])}
+    if found.cut[at]:
+        texts["bore_note"] = "teeth cut into the shaft, which is solid below them"
+    return texts
 
 
 def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
@@ -349,7 +358,7 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
         grown["profile_shift_note"] = _note(answers, "profile_shift")
         for member in range(2):
             at = 2 * stage + member
-            other = {"name": names[at], "hand": hands[at], "bore_radius": length(found.holes[at]), **grown}
+            other = {"name": names[at], "hand": hands[at], **_bored(found, at), **grown}
             gears.append(_gear(own, member, other))
         follows = {
             "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",

@@ -20,6 +20,7 @@ from fegear.case.drafts.kinds import TWO_STAGES
 from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
 from fegear.shafts.axial_factors import AxialFactors
+from fegear.shafts.bearing_seat import SHOULDER
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN
 from fegear.shafts.life import LifeRating
@@ -29,8 +30,8 @@ from fegear.shafts.load_ratings import dynamic_rating
 _GAP, _CLEAR = 3.0, 2.0
 #: Gap between a gear and a shaft beside it, and between bearings of neighbours [modules of the second stage].
 _APART = 1.0
-#: Shoulder of a shaft behind a bearing, in bores; hole of a gear at most, in root radii.
-_SHOULDER, _HOLE = 1.15, 0.65
+#: Hole of a gear at most, in root radii.
+_HOLE = 0.65
 #: Shear stress of a shaft below its torque [Pa]: bends it little enough.
 _SHEAR = 25e6
 #: Life that bearings are chosen for, over the required one: the load over the face moves their forces.
@@ -107,6 +108,8 @@ class LaidOut:
         Of each of the one or two stages, as of a gearbox with one.
     holes : tuple of float
         Radius of the hole of each gear [m].
+    cut : tuple of bool
+        Whether the teeth of each gear are cut into its shaft, which is thicker than that hole.
     distances : tuple of float
         Centre distances [m].
     middles : tuple of float
@@ -119,6 +122,7 @@ class LaidOut:
 
     stages: tuple[Answers, ...]
     holes: tuple[float, ...]
+    cut: tuple[bool, ...]
     distances: tuple[float, ...]
     middles: tuple[float, ...]
     ends: tuple[float, float]
@@ -217,10 +221,10 @@ def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
         )  # fmt: skip
         width = max(one.width for shaft in shafts for one in shaft.bearings.values())
     thick = [shaft.thick for shaft, gears in zip(shafts, on, strict=True) for _ in gears]
-    holes = tuple(
-        min(0.5 * d, _HOLE * root) for d, root in zip(thick, [one for own in roots for one in own], strict=True)
-    )
-    return LaidOut(stages, holes, tuple(sum(one) for one in radii), middles, ends, length, shafts)
+    most = [_HOLE * one for own in roots for one in own]
+    cut = tuple(root < 0.5 * d for d, root in zip(thick, most, strict=True))
+    holes = tuple(min(0.5 * d, root) for d, root in zip(thick, most, strict=True))
+    return LaidOut(stages, holes, cut, tuple(sum(one) for one in radii), middles, ends, length, shafts)
 
 
 def _kept(answers: Answers) -> dict[str, str]:
@@ -311,7 +315,7 @@ def _shaft(
     left, right = (math.hypot(one, abs(other) + moment) for one, other in zip(tangent, apart, strict=True))
     rolls = _MORE * life * speed / (2.0 * math.pi)
     forces = _Forces(left, right, abs(axial), rolls, root)
-    seat = min(seat, _STEP * _LAST, _STEP * math.floor(root / _SHOULDER / _STEP))
+    seat = min(seat, _STEP * _LAST, _STEP * math.floor(root / SHOULDER / _STEP))
     for halved in range(_HALVES):  # where none lasts as long, one that lasts half of it, and so on
         forces = forces._replace(rolls=rolls * 0.5**halved)
         found = _located(seat, forces) or _adjusted(seat, forces)
@@ -357,14 +361,14 @@ def _adjusted(seat: float, forces: _Forces) -> PlacedShaft | None:
 
 def _thick(bore: float, most: float) -> float:
     """Diameter of the shaft between its bearings: a shoulder, within the root circle."""
-    return min(math.ceil(_SHOULDER * bore * 1e3) * 1e-3, most)
+    return min(math.ceil(SHOULDER * bore * 1e3) * 1e-3, most)
 
 
 def _bearing(kind: str, seat: float, radial: float, axial: float, forces: _Forces) -> ChosenBearing | None:
     """The smallest bearing on this or a larger seat with the life, and with a shoulder within the root circle."""
     for number in range(_FIRST, _LAST + 1):
         bore = _STEP * number
-        if bore < seat - 1e-9 or _SHOULDER * bore > forces.most:
+        if bore < seat - 1e-9 or SHOULDER * bore > forces.most:
             continue
         for series in _SERIES[kind]:
             found = _known(f"{series}{number:02d}")

@@ -150,7 +150,7 @@ def _holds(part: BearingPart, *, reversed_: bool) -> str:
         return "no_direction"  # it slides in its seat, or nearly
     if angle:
         return "negative" if reversed_ != (angle < 0.0) else "positive"
-    along = part.fixed or bool(part.axial) or balls
+    along = part.fixed or bool(part.axial) or balls or part.ribs is not None
     return "both_directions" if along else "no_direction"
 
 

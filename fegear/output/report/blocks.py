@@ -30,6 +30,8 @@ _ROWS = 6
 _BRIEF_ROWS, _BRIEF = 24, 3
 #: Tables of so few rows with more columns than this stand on their side.
 _BESIDE = 8
+#: Longer cells than this are sentences.
+_WORDS = 24
 #: More columns than this cannot be read on a sheet of paper.
 _ON_PAPER = 11
 #: Digits of a number that a person reads where nothing is known of its error.
@@ -272,6 +274,14 @@ class DataTable(Block):
     def broad(self) -> bool:
         """Whether a sheet of paper is too narrow for it."""
         return not self.on_its_side and len(self.table.columns) > _ON_PAPER
+
+    @property
+    def texts(self) -> list[bool]:
+        """Of each column, whether its cells are sentences, which are broken into lines."""
+        return [
+            column.values.dtype.kind != "f" and max(map(len, cells(column.values)), default=0) > _WORDS
+            for column in self.table.columns
+        ]
 
     @property
     def sides(self) -> list[tuple[str, str, str, bool, tuple[tuple[str, str], ...]]]:

@@ -89,9 +89,10 @@
         const order = words ? (a, b) => a[column].localeCompare(b[column], "en") : (a, b) => number(a[column]) - number(b[column]);
         rows = [...rows].sort((a, b) => (down ? order(b, a) : order(a, b)));
       }
+      const texts = [...block.querySelectorAll("th")].map((head) => head.className);
       body.replaceChildren(...(all ? rows : rows.slice(0, preview)).map((row) => {
         const line = document.createElement("tr");
-        line.append(...row.map((cell) => { const td = document.createElement("td"); td.textContent = shown(cell); return td; }));
+        line.append(...row.map((cell, k) => { const td = document.createElement("td"); td.textContent = shown(cell); td.className = texts[k]; return td; }));
         return line;
       }));
     }

@@ -86,7 +86,9 @@ def _answer(
     answer: RunAnswer, drawn: Sequence[Drawn], shown: frozenset[str], tables: Sequence[Table]
 ) -> tuple[Block, ...]:
     """The card on top: what the wanted results come to, the figure that shows it, and short tables."""
-    short = [DataTable(table, brief=True) for table in tables if table.name in answer.tables]
+    order = {name: n for n, name in enumerate(answer.tables)}
+    named = sorted((table for table in tables if table.name in order), key=lambda table: order[table.name])
+    short = [DataTable(table, brief=True) for table in named]
     figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
     first = 1 if answer.overviews else len(answer.sentences)
     blocks: tuple[Block, ...] = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,8 +16,10 @@ from fegear.contact.wide.on_shafts import LoadedShafts
 from fegear.design.flanks.lead_correction import LevelLead
 from fegear.results.shafts.checked_shafts import STRAIGHTER, CheckedShaft, ShaftChecks, TiltedBearing, tilted_bearings
 from fegear.results.shafts.drawn_gearbox import DrawnGearbox
+from fegear.shafts.bearing_seat import BearingSeat
+from fegear.shafts.designations import KNOWN, plain_designation
 from fegear.shafts.gearbox import CAUSES
-from fegear.shafts.larger_bearing import LargerBearing, larger_bearing
+from fegear.shafts.larger_bearing import BearingChange, LargerBearing, larger_bearing
 from fegear.shafts.life import EXPONENT, LifeRating
 
 #: What misaligns a mesh, and what makes it less.
@@ -33,8 +35,12 @@ CAUSE_WORDS = {"bearings": "bearing deflection", "housing": "deflection of the b
 _CORRECTED, _WORTH = 1.1, 1.25
 #: Half-length of the middle of the face, over half its width, in which a largest load is one of crowning.
 _MIDDLE = 0.4
+#: Amounts of a lead below are zero [m].
+_NONE = 1e-9
 #: Parts that are to be changed first.
 _FIRST = 3
+#: Dimensions that differ by less are one [m].
+_SAME = 1e-6
 #: Gain of K_Hbeta from which a lead correction is named, and what a part of the usual size more is worth.
 _GAIN, _MORE = 1.02, 1.1
 
@@ -66,11 +72,14 @@ class MeshAtGlance:
     peak : float
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
     lead : LevelLead or None
-        Helix slope, with crowning where that helps, against the shafts, and what it is worth; None where nothing gains.
+        Helix slope and crowning against the shafts, besides the present ones, and what they are worth; that of
+        ``lead-correction`` where that is computed, too. None where nothing gains.
     levelled : Safety or None
         As `safety` with `lead` in addition to the present lead; None where the rating does not follow it.
     remaining : float
         Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
+    present : tuple of float
+        Present slope and crowning of the driver [m].
     """
 
     safety: Safety | None
@@ -90,6 +99,7 @@ class MeshAtGlance:
     lead: LevelLead | None = None
     levelled: Safety | None = None
     remaining: float = math.nan
+    present: tuple[float, float] = (0.0, 0.0)
 
     @property
     def main_cause(self) -> int:
@@ -115,7 +125,8 @@ class BearingAtGlance:
     tilted: TiltedBearing | None = None
     designation: str = shown("", "designation", default="")
     larger: str = shown("", "bearing that reaches the required life, with its bore", name="change_to", default="")
-    other: LargerBearing | None = None
+    change: BearingChange | None = None
+    seat: BearingSeat = field(default_factory=BearingSeat)
 
     @property
     def least(self) -> float:
@@ -201,8 +212,8 @@ class GearboxData:
         hours = one.duration / 3600.0
         longer = figures(hours * _MORE**one.exponent)
         remedy = f"{percent(_MORE - 1.0, whole=True)} more dynamic load rating C: {longer} h"
-        if one.other is not None:
-            remedy = _changed_to(one, one.other)
+        if one.change is not None and one.change.fitting is not None:
+            remedy = _changed_to(one, one.change.fitting)
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
             f"life {figures(hours)} h, required {figures(self.required_hours / 3600.0)} h: minimum reserve of bearings",
@@ -213,23 +224,49 @@ class GearboxData:
         if not one.margin < 1.0:
             return None
         remedy = f"a dynamic load rating C {figures(1.0 / one.margin)} times as large"
-        if one.other is not None:
-            remedy = f"{_changed_to(one, one.other)}, or C {figures(1.0 / one.margin)} times as large"
-        elif one.designation:
-            remedy += " (no tabulated bearing of this kind with the same bore or series reaches it)"
+        if one.change is not None:
+            remedy = f"{_advised(one, one.change)}, or C {figures(1.0 / one.margin)} times as large"
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
             f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h", remedy,
         )  # fmt: skip
 
 
+def _advised(one: BearingAtGlance, change: BearingChange) -> str:
+    """The bearing to change to, or that none fits, with what comes nearest and what would fit a thicker shaft."""
+    if change.fitting is not None:
+        return _changed_to(one, change.fitting)
+    said = "no tabulated bearing that fits this seat lasts"
+    if (best := change.longest) is not None:
+        said += f" (longest life {_hours(one, best)} with {best.said}{_size(one, best)})"
+    if (other := change.thicker) is not None:
+        said += f"; on a thicker shaft {other.said}{_size(one, other)}: {_hours(one, other)}"
+    return said
+
+
 def _changed_to(one: BearingAtGlance, other: LargerBearing) -> str:
-    """Another designation with its life at the present forces, its size where it is not that of the present bore."""
-    hours = one.duration / 3600.0 * other.revolutions / one.life
-    size = f"outside diameter {figures(other.outside_diameter * 1e3, 4)} mm"
-    if not other.same_bore:
-        size = f"bore {figures(other.bore * 1e3, 4)} mm, {size}"
-    return f"{other.designation} instead of {one.designation} ({size}): {figures(hours)} h by its estimated C"
+    """Another designation with its life at the present forces, and what of its size is not that of the present one."""
+    return f"{other.said} instead of {one.designation}{_size(one, other)}: {_hours(one, other)} by its estimated C"
+
+
+def _hours(one: BearingAtGlance, other: LargerBearing) -> str:
+    return f"{figures(one.duration / 3600.0 * other.revolutions / one.life)} h"
+
+
+def _size(one: BearingAtGlance, other: LargerBearing) -> str:
+    """Bore, outside diameter and width where they differ from the present ones, and a seat that is to be longer."""
+    present = KNOWN[plain_designation(one.designation)]
+    said = [
+        f"{words} {figures(size * 1e3, 4)} mm"
+        for words, size, own in (
+            ("bore", other.bore, present.bore), ("outside diameter", other.outside_diameter, present.outside_diameter),
+            ("width", other.width, present.width),
+        )
+        if abs(size - own) > _SAME
+    ]  # fmt: skip
+    if other.width > one.seat.length + _SAME:
+        said.append(f"seat longer than {figures(one.seat.length * 1e3, 4)} mm")
+    return f" ({', '.join(said)})" if said else ""
 
 
 def _of_shaft(one: CheckedShaft) -> Change | None:
@@ -281,15 +318,16 @@ def _gain(one: MeshAtGlance) -> float:
 
 
 def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
-    """The lead correction against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
+    """The whole lead against tilt and sag of the shafts; if `gained`, with K_Hbeta before and after it."""
     if one.lead is None or _gain(one) <= _GAIN:
         return "lead correction"
-    slope = one.lead.slope
-    amounts = [f"helix slope C_Hβ {figures(slope * 1e6)} µm with {end_of_slope(slope)}"] if slope else []
-    if one.lead.crowning:
-        amounts.append(f"{figures(one.lead.crowning * 1e6)} µm more crowning C_β")
+    slope, crowning = one.present[0] + one.lead.slope, one.present[1] + one.lead.crowning
+    amounts = [f"helix slope C_Hβ {figures(slope * 1e6)} µm with {end_of_slope(slope)}"] if abs(slope) > _NONE else []
+    if crowning > _NONE or one.present[1] or not amounts:
+        amounts.append(f"crowning C_β {figures(crowning * 1e6) if crowning > _NONE else 0} µm")
+    whole = ", in place of its present lead" if any(one.present) else ""
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
-    return f"lead correction ({' and '.join(amounts)} on the driver{gain})"
+    return f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain})"
 
 
 def end_of_slope(slope: float) -> str:
@@ -377,6 +415,7 @@ def bearings_at_glance(
     designations: Sequence[Sequence[str]],
     checks: ShaftChecks,
     required: float,
+    seats: Sequence[Sequence[BearingSeat]],
 ) -> tuple[BearingAtGlance, ...]:
     """Every bearing, the least load margin first, then the shortest life.
 
@@ -388,10 +427,12 @@ def bearings_at_glance(
     checks : ShaftChecks
     required : float
         Life [s].
+    seats : sequence of sequence of BearingSeat
     """
     found = []
-    every = zip(data.nominal.bent, lives, speeds, designations, tilted_bearings(checks, data.nominal.bent), strict=True)
-    for bent, of_lives, of_speeds, of_designations, of_tilts in every:
+    tilts = tilted_bearings(checks, data.nominal.bent)
+    every = zip(data.nominal.bent, lives, speeds, designations, tilts, seats, strict=True)
+    for bent, of_lives, of_speeds, of_designations, of_tilts, of_seats in every:
         loads = bent.bearing_loads(tuple(of_lives))
         for k, tilted in enumerate(of_tilts):
             rating = of_lives[k]
@@ -402,7 +443,7 @@ def bearings_at_glance(
             permissible = math.nan if tilted.permissible is None else tilted.permissible.high
             found.append(BearingAtGlance(
                 tilted.bearing, tilted.shaft, radial, axial, float(loads.life[k]), duration, margin, exponent,
-                tilted.tilt, permissible, tilted, of_designations[k],
+                tilted.tilt, permissible, tilted, of_designations[k], seat=of_seats[k],
             ))  # fmt: skip
     ordered = sorted(found, key=lambda one: (one.least, _last(one.margin), _last(one.duration), _last(one.life)))
     first = next((one for one in ordered if math.isfinite(one.margin)), None)
@@ -410,15 +451,15 @@ def bearings_at_glance(
 
 
 def _with_larger(one: BearingAtGlance, *, improved: bool) -> BearingAtGlance:
-    """With the bearing to change to where its life is too short, or `improved`: the next larger one."""
+    """With the bearing to change to where its life is too short, or `improved`: one with more of it."""
     if not one.designation or not math.isfinite(one.margin) or not (one.margin < 1.0 or improved):
         return one
     wanted = one.life * (one.margin**-one.exponent if one.margin < 1.0 else 1.0)
-    other = larger_bearing(one.designation, one.radial, one.axial, wanted)
-    if other is None:
-        return one
-    short = f"{other.designation} (bore {figures(other.bore * 1e3, 4)} mm)" if one.margin < 1.0 else ""
-    return replace(one, other=other, larger=short)
+    change = larger_bearing(one.designation, one.radial, one.axial, wanted, one.seat)
+    if change is None or change.fitting is None or one.margin >= 1.0:
+        return replace(one, change=change)
+    found = change.fitting
+    return replace(one, change=change, larger=f"{found.said} (bore {figures(found.bore * 1e3, 4)} mm)")
 
 
 def meshes_in_order(meshes: Sequence[MeshAtGlance]) -> tuple[MeshAtGlance, ...]:
