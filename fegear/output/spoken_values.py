@@ -88,7 +88,7 @@ def spoken_tables(results: Results) -> tuple[list[Table], list[Table]]:
 
 
 def _summed_up(results: Results) -> set[Task]:
-    """Tasks of wanted results that the answer of another one covers, or puts behind its tables."""
+    """Tasks of results that the answer of a wanted one covers, or puts behind its tables."""
     steps = [step for step in results.plan.steps if step.wanted and step.task in results.outcomes]
     answers = [results.outcomes[step.task].answer for step in steps]
     covered = {result for answer in answers if answer is not None for result in answer.covers}
@@ -97,4 +97,6 @@ def _summed_up(results: Results) -> set[Task]:
         step.task for step, answer in zip(steps, answers, strict=True)
         if tables and answer is not None and answer.background
     }  # fmt: skip
-    return behind | {step.task for step in steps if set(step.stage.results) <= covered}
+    return behind | {
+        step.task for step in results.plan.steps if step.stage.results and set(step.stage.results) <= covered
+    }  # fmt: skip

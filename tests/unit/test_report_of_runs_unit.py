@@ -149,7 +149,7 @@ def test_tables_of_an_answer_stand_behind_it_in_place_of_what_it_sums_up_and_of_
         return Table(name, (Column("part", np.array(["I"])), Column("x", np.array(["a"] if words else [2.0]))), name,
                      printed=printed)  # fmt: skip
 
-    results = values_of(("box", 1, True, None), ("rating", 1, True, None), ("data", 1, True, None),
+    results = values_of(("box", 1, True, None), ("rating", 1, False, None), ("data", 1, True, None),
                         ("other", 1, True, None))  # fmt: skip
     answers = {
         "box": SimpleNamespace(covers=("rating",), background=False),

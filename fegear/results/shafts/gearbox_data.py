@@ -223,13 +223,18 @@ class GearboxData:
     def _of_bearing(self, one: BearingAtGlance) -> Change | None:
         if not one.margin < 1.0:
             return None
-        remedy = f"a dynamic load rating C {figures(1.0 / one.margin)} times as large"
+        remedy = f"a dynamic load rating C {_times(one.margin)} times as large"
         if one.change is not None:
-            remedy = f"{_advised(one, one.change)}, or C {figures(1.0 / one.margin)} times as large"
+            remedy = f"{_advised(one, one.change)}, or C {_times(one.margin)} times as large"
         return Change(
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
             f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h", remedy,
         )  # fmt: skip
+
+
+def _times(margin: float) -> str:
+    """Over the present load rating, rounded up."""
+    return figures(math.ceil(100.0 / margin - 1e-9) / 100.0)
 
 
 def _advised(one: BearingAtGlance, change: BearingChange) -> str:
