@@ -173,10 +173,13 @@ def test_the_safety_after_a_lead_correction_is_that_of_the_rating():
     """2.24 -> 1.6 on the flanks; what is said is that of the rating, with manufacturing deviations."""
     weak = replace(mesh(margin=0.64), lead=LevelLead(4e-6, 2.24, 1.6, 3e-6))
     unrated = _of_mesh(weak).remedy
-    assert "helix slope C_Hβ 4 µm with more removal at end II and crowning C_β 3 µm on the driver)" in unrated
+    assert (
+        "helix slope C_Hβ 4 µm with more removal at end II and crowning C_β 3 µm on the driver; estimate, grind that of"
+        in unrated
+    )
     assert "S_H" not in unrated
     failing_still = _of_mesh(replace(weak, levelled=Safety(0.9, 2.3, (1.0, 1.4), 1.42))).remedy
-    assert "on the driver): S_H 0.90 at K_Hβ 1.42 in place of 1.80 of the rating, or " in failing_still
+    assert "of lead-correction): S_H 0.90 at K_Hβ 1.42 in place of 1.80 of the rating, or " in failing_still
     assert failing_still.count("K_Hβ") == 1
     assert "; with the lead correction still 1.23 times the face width" in failing_still
     enough = _of_mesh(replace(weak, levelled=Safety(1.1, 2.3, (1.0, 1.4), 1.2))).remedy
@@ -190,7 +193,7 @@ def test_the_safety_after_a_lead_correction_is_that_of_the_rating():
         "helix slope C_Hβ 3 µm with more removal at end II and crowning C_β 5 µm on the driver, in place of" in present
     )
     flat = _of_mesh(replace(weak, present=(-4e-6, 2e-6), lead=LevelLead(4e-6, 2.24, 1.6, -2e-6))).remedy
-    assert "(crowning C_β 0 µm on the driver, in place of its present lead)" in flat
+    assert "(crowning C_β 0 µm on the driver, in place of its present lead; estimate" in flat
     assert "face width" in _of_mesh(replace(weak, lead=LevelLead(4e-6, 2.59, 2.5))).remedy
 
 
@@ -224,7 +227,7 @@ def test_where_nothing_falls_short_three_improvements_are_named():
     assert (
         box.changes[0].remedy
         == "lead correction (helix slope C_Hβ 4 µm with more removal at end II on the driver: K_Hβ of the loaded "
-        "flanks 1.20 -> 1.00)"
+        "flanks 1.20 -> 1.00; estimate, grind that of lead-correction)"
     )
     rated = replace(first, levelled=Safety(1.9, 3.1, (1.0, 1.4), 1.1))
     better = replace(box, meshes=(rated, second, third)).changes[0].remedy

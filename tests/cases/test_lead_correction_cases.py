@@ -41,25 +41,6 @@ def corrected():
     return run(coarse(), "lead-correction")[Task("lead-correction", "all")]
 
 
-@pytest.mark.dear
-def test_the_changes_of_a_gearbox_name_the_lead_to_grind_where_it_is_computed(corrected):
-    scene = build_scene({**coarse(), "results": ["gearbox", "lead-correction"]}, "box", Path())
-    outcomes = run_plan(scene, make_plan(scene, STAGES)).outcomes
-    box = outcomes[Task("gearbox", "all")]
-    assert not [one for one in box.remarks if "estimate" in one]
-    for mesh, (slope, crowning) in zip(
-        sorted(box.data.meshes, key=lambda one: one.pair), leads_of(corrected).values(), strict=True
-    ):
-        assert (mesh.present[0] + mesh.lead.slope, mesh.present[1] + mesh.lead.crowning) == pytest.approx(
-            (slope * 1e-6, crowning * 1e-6)
-        )
-    named = [change for change in box.data.changes if "lead correction (" in change.remedy]
-    assert named
-    for change in named:
-        slope = leads_of(corrected)[{"pair I": "a", "pair II": "c"}[change.part]][0]
-        assert f"helix slope C_Hβ {slope:g} µm with more removal" in change.remedy
-
-
 def leads_of(outcome):
     """Amounts by driver [um]."""
     found = dict(zip(("a", "c"), outcome.data.found, strict=True))

@@ -72,8 +72,8 @@ class MeshAtGlance:
     peak : float
         Where the load over the face is largest: -1 at end I, 0 at mid-face, 1 at end II.
     lead : LevelLead or None
-        Helix slope and crowning against the shafts, besides the present ones, and what they are worth; that of
-        ``lead-correction`` where that is computed, too. None where nothing gains.
+        Helix slope and crowning against the shafts, besides the present ones, and what they are worth; None where
+        nothing gains.
     levelled : Safety or None
         As `safety` with `lead` in addition to the present lead; None where the rating does not follow it.
     remaining : float
@@ -332,7 +332,9 @@ def _levelled(one: MeshAtGlance, *, gained: bool = True) -> str:
         amounts.append(f"crowning C_β {figures(crowning * 1e6) if crowning > _NONE else 0} µm")
     whole = ", in place of its present lead" if any(one.present) else ""
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
-    return f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain})"
+    return (
+        f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain}; estimate, grind that of lead-correction)"
+    )
 
 
 def end_of_slope(slope: float) -> str:

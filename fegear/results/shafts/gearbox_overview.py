@@ -16,7 +16,7 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
 from fegear.contact.wide.on_shafts import FlankForces
-from fegear.design.flanks.lead_correction import LevelLead, level_lead
+from fegear.design.flanks.lead_correction import level_lead
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.sheet.answer import Answer
@@ -41,16 +41,8 @@ from fegear.results.shafts.gearbox_data import (
     safeties,
 )
 from fegear.results.shafts.gearbox_scheme import scheme
-from fegear.results.shafts.lead_correction import (
-    LEAD_CORRECTION_TASK,
-    LeadInputs,
-    corrections,
-    ground_leads,
-    lead_inputs,
-)
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
-    fed_pairs,
     inputs_of_shafts,
     loaded_shafts,
     mesh_forces,
@@ -71,6 +63,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.shaft import BearingPart
     from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
@@ -112,8 +105,6 @@ class GearboxInputs:
         Longest life that pairs are rated for [s]; NaN where none is given.
     seats : tuple of tuple of BearingSeat
         Of every bearing by shafts.
-    corrected : LeadInputs or None
-        What the lead correction reads where its result is wanted, too: its lead is that of the changes.
     why : tuple of str
         Why something is missing.
     """
@@ -131,7 +122,6 @@ class GearboxInputs:
     checks: ShaftChecks
     required: float
     seats: tuple[tuple[BearingSeat, ...], ...]
-    corrected: LeadInputs | None
     why: tuple[str, ...]
 
 
@@ -186,13 +176,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         tuple(present_lead(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         lives, speeds, tuple(tuple(_designation(part[one]) for one in row) for row in names), checks_of(scene),
-        required, seats_of(scene), lead_inputs(scene, name) if _corrected(scene) else None, tuple(why),
+        required, seats_of(scene), tuple(why),
     )  # fmt: skip
-
-
-def _corrected(scene: Scene) -> bool:
-    """Whether the lead correction is computed anyway."""
-    return "lead-correction" in scene.case.results and bool(fed_pairs(scene))
 
 
 def _designation(part: BearingPart) -> str:
@@ -230,17 +215,11 @@ def _against(spins: dict[str, float], shaft: str, around: str | None) -> float:
 def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxData:
     shafts = loaded_shafts(upstream)
     states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
-    found = [_mesh(inputs, upstream, shafts, n, state) for n, state in enumerate(states)]
-    if inputs.corrected is None:
-        leads = _leads(inputs, upstream, shafts, work)
-        found = [replace(one, lead=lead) for one, lead in zip(found, leads, strict=True)]
-        meshes = [
-            replace(one, levelled=_levelled(one, releaded))
-            for one, releaded in zip(found, inputs.releaded, strict=True)
-        ]
-    else:
-        ground = {one.pair: one.leads for one in ground_leads(corrections(upstream), inputs.corrected)}
-        meshes = [_with_ground(one, *ground[one.pair][:2]) if one.pair in ground else one for one in found]
+    leads = _leads(inputs, upstream, shafts, work)
+    found = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
+    meshes = [
+        replace(one, levelled=_levelled(one, releaded)) for one, releaded in zip(found, inputs.releaded, strict=True)
+    ]
     bearings = bearings_at_glance(
         shafts, inputs.lives, inputs.speeds, inputs.designations, inputs.checks, inputs.required, inputs.seats
     )
@@ -262,17 +241,6 @@ def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
         for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
     ]
-
-
-def _with_ground(one: MeshAtGlance, present: SafetyOfLead, best: SafetyOfLead) -> MeshAtGlance:
-    """With the lead to grind of the lead correction, and the safeties that it has there."""
-    lead = LevelLead(
-        best.slope - one.present[0], present.flanks, best.flanks, best.crowning - one.present[1]
-    )  # fmt: skip
-    levelled = None
-    if one.safety is not None and best.factor < one.safety.face_load_factor:
-        levelled = Safety(best.contact, best.bending, one.safety.required, best.factor)
-    return replace(one, lead=lead, levelled=levelled)
 
 
 def _levelled(one: MeshAtGlance, releaded: RatedLead | None) -> Safety | None:
@@ -334,8 +302,6 @@ def _safety(asked: PairToRate | None, upstream: Upstream, pair: str) -> Safety |
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     found = [LOADED_SHAFTS_TASK, *needs_gears_of_meshes(scene, name)]
-    if _corrected(scene):
-        found.append(LEAD_CORRECTION_TASK)
     for mesh in mesh_places(scene):
         if not _why_not_rated(scene, mesh.pair):
             found.append(Task("rating", mesh.pair))
@@ -457,10 +423,10 @@ def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
     return found if any(found) else None
 
 
-#: What the slopes of its changes are where no lead correction is computed.
+#: Which of two leads of one mesh is to be ground.
 _ESTIMATED = (
-    "Gearbox: helix slopes and crownings of its changes are the whole lead of the driver, estimated under nominal "
-    "load; for the lead to grind, over all loads, request lead-correction: the changes then name that."
+    "Gearbox: leads of its changes are estimates under nominal load, slope and crowning in place of the present ones; "
+    "grind those of lead-correction, which are for all loads."
 )
 #: What the safety of shafts lacks.
 _NOTCHES = (
@@ -511,9 +477,7 @@ _SHEET = Sheet(
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
         lambda _seen: [neglecting(_NOTCHES)],
-        lambda seen: (
-            [_ESTIMATED] if seen.asked.corrected is None and any(one.lead for one in seen.data.meshes) else []
-        ),
+        lambda seen: [_ESTIMATED] if any(one.lead is not None for one in seen.data.meshes) else [],
         lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),
         lambda seen: seen.data.said_of_lives(),
         lambda seen: overlooked(seen.asked.checks.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),

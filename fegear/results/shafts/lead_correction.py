@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.base.printed import figures
@@ -104,15 +104,7 @@ class GroundLead:
         return self.leads[1]
 
 
-def lead_inputs(scene: Scene, name: str) -> LeadInputs:
-    """What the result reads of the case.
-
-    Parameters
-    ----------
-    scene : Scene
-    name : str
-        Of all shafts together.
-    """
+def _inputs(scene: Scene, name: str) -> LeadInputs:
     shafts = inputs_of_shafts(scene, name)
     drivers = tuple(scene.case.pair[mesh.pair].driver for mesh in shafts.gearbox.meshes)
     leads = [present_lead(scene, mesh.pair) for mesh in shafts.gearbox.meshes]
@@ -132,23 +124,8 @@ def _compute(inputs: LeadInputs, upstream: Upstream, work: Work) -> LeadData:
     return LeadData(tuple(mesh.pair for mesh in box.meshes), radii, found)
 
 
-#: The one task of this stage.
-LEAD_CORRECTION_TASK = Task("lead-correction", "all")
-
-
-def corrections(upstream: Upstream) -> LeadData:
-    """What this stage computed."""
-    return cast("LeadData", upstream[LEAD_CORRECTION_TASK])
-
-
-def ground_leads(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
-    """Of every corrected mesh the lead to grind, the one that gains most first.
-
-    Parameters
-    ----------
-    data : LeadData
-    asked : LeadInputs
-    """
+def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
+    """Of every corrected mesh, the one that gains most first."""
     rows = zip(
         data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, asked.rated, strict=True
     )
@@ -257,7 +234,7 @@ def _known(key: str) -> Cell:
 
 _SHEET = Sheet(
     answer=Answer(_sentences, figure=lambda seen: f"lead_correction_{seen.data[0].pair}" if seen.data else ""),
-    of=ground_leads,
+    of=_ground,
     name=lambda _asked: "",
     tables=(
         Rows(
@@ -307,7 +284,7 @@ def _check(scene: Scene, _name: str) -> None:
 
 LEAD_CORRECTION = Stage(
     subjects=shafts_of,
-    inputs=lead_inputs,
+    inputs=_inputs,
     compute=_compute,
     present=_SHEET.present,
     needs=_needs,
