@@ -7,7 +7,8 @@ bearings side by side. Bearings that float stay as they are (NU, N), tapered one
 C is that of ISO 281 for what is estimated to roll inside (`CatalogueBearing.estimated_rating`), X, Y and e are those of
 the same inside: a life by a catalogue's C may be longer or shorter, by what `rating_error` says of C. Two tapered
 bearings side by side count as one of two rows (ISO 281:2007, Clauses 7 and 8): C of one times 2^(7/9), P = F_r + 0.45
-cot(alpha) F_a up to e = 1.5 tan(alpha), 0.67 F_r + 0.67 cot(alpha) F_a above.
+cot(alpha) F_a up to e = 1.5 tan(alpha), 0.67 F_r + 0.67 cot(alpha) F_a above. Face to face they hardly take moments
+of the bending shaft, which that neglects; back to back they do.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class LargerBearing:
     revolutions : float
         Basic rating life under the forces of the present one.
     count : int
-        Two tapered bearings side by side, back to back or face to face, or one.
+        Two tapered bearings side by side, face to face, or one.
     """
 
     designation: str
@@ -54,7 +55,7 @@ class LargerBearing:
     @property
     def said(self) -> str:
         """Its designation, with the number where there are two."""
-        return self.designation if self.count == 1 else f"two {self.designation} side by side"
+        return self.designation if self.count == 1 else f"two {self.designation} face to face"
 
 
 @dataclass(frozen=True, slots=True)
