@@ -1,0 +1,122 @@
+"""Stress intensity along a front as functionals, on fields that leave the faces of a crack free and have known K."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
+from fegear.fem.plane.odd.cracked_sector import FACES, cracked_sector
+from fegear.fem.plane.odd.stress_intensity import interaction
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.solid.odd.front_intensity import front_rows
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.rack import BasicRack
+
+NU = 0.3
+LAM, MU = NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), 0.5 / (1.0 + NU)
+TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
+
+
+class Front:
+    """A crack in a coarse sector, functionals of its front, and the nodes' places in the crack's own axes."""
+
+    def __init__(self):
+        mouth = mouth_at_tangent(TOOTH, math.radians(30.0))
+        self.sector = cracked_sector(
+            TOOTH, 9.0, settings_at(-5), straight_crack(TOOTH, mouth, math.radians(70.0), depth=0.5)
+        )
+        self.elements = sector_elements(self.sector.mesh, 2)
+        self.rows = front_rows(self.sector, NU, self.elements)
+        way = self.sector.way
+        self.axes = np.array([way, [-way[1], way[0]]])
+        self.node = self.elements.point_nodes
+        self.x, self.y = self.axes @ (self.sector.mesh.points - self.sector.tip[:, None])
+
+    def nodal(self, x, y, z):
+        """Displacement at all nodes, of components along the crack, to its left, and along the front, (N, 3)."""
+        found = np.zeros((self.rows.shape[3], 3))
+        flat = np.stack([np.broadcast_to(one, self.x.shape) for one in (x, y)])
+        found[self.node, :2] = (self.axes.T @ flat).T
+        found[self.node, 2] = z
+        return found
+
+    def intensity(self, displacement, slope=(0.0, 0.0, 0.0), curvature=(0.0, 0.0, 0.0)):
+        """K_I, K_II, K_III by each ring, and the size of the terms that they are the sum of."""
+        each = [
+            np.einsum("rmnc,nc->rm", self.rows[:, :, k], self.nodal(*of))
+            for k, of in enumerate((displacement, slope, curvature))
+        ]
+        size = [
+            np.einsum("rmnc,nc->rm", np.abs(self.rows[:, :, k]), np.abs(self.nodal(*of)))
+            for k, of in enumerate((displacement, slope, curvature))
+        ]
+        return np.sum(each, axis=0), np.max(size)
+
+
+@pytest.fixture(scope="module")
+def front():
+    return Front()
+
+
+def near_tip(front, mode):
+    """Displacement of Williams' first terms in plane strain, K = 1; of the faces' own sides at the faces."""
+    x, y = front.x.copy(), front.y.copy()
+    mesh, theta = front.sector.mesh, np.arctan2(y, x)
+    for name, side in zip(FACES, (1.0, -1.0), strict=True):
+        on = np.unique(mesh.edges[name])
+        theta[on] = np.where(np.hypot(x[on], y[on]) > 1e-9, side * math.pi, 0.0)
+    root = np.sqrt(np.hypot(x, y) / (2.0 * math.pi))
+    c, s, kappa = np.cos(0.5 * theta), np.sin(0.5 * theta), 3.0 - 4.0 * NU
+    none = 0.0 * x
+    if mode == 0:
+        return root / (2.0 * MU) * c * (kappa - np.cos(theta)), root / (2.0 * MU) * s * (kappa - np.cos(theta)), none
+    if mode == 1:
+        along = root / (2.0 * MU) * s * (kappa + 2.0 + np.cos(theta))
+        return along, -root / (2.0 * MU) * c * (kappa - 2.0 + np.cos(theta)), none
+    return none, none, 2.0 * root / MU * s
+
+
+@pytest.mark.parametrize("mode", [0, 1, 2])
+def test_the_field_of_a_mode_has_its_own_intensity_only(front, mode):
+    found, _ = front.intensity(near_tip(front, mode))
+    assert found == pytest.approx(np.tile(np.eye(3)[mode], (2, 1)), abs=2e-2)
+
+
+def test_in_the_plane_it_is_the_functional_of_the_plane(front):
+    one = interaction(front.sector, NU, "strain", front.elements)
+    displacement = np.random.default_rng(6).normal(size=(front.rows.shape[3], 2))
+    by_front = np.einsum("mnc,nc->m", front.rows[0, :2, 0, :, :2], displacement)
+    assert by_front == pytest.approx(one.T @ displacement.ravel(), rel=1e-9)
+
+
+def fields(front):
+    """Displacement, slope and curvature along the front of fields in equilibrium that leave the faces free."""
+    x, y = front.x, front.y
+    none = (0.0, 0.0, 0.0)
+    bent = -2.0 * LAM / (LAM + 2.0 * MU)
+    warped = -(LAM * bent + 2.0 * (LAM + 2.0 * MU)) / (2.0 * MU)
+    return {
+        "moved along the crack": ((1.0, 0.0, 0.0), none, none),
+        "moved across": ((0.0, 1.0, 0.0), none, none),
+        "moved along the front": ((0.0, 0.0, 1.0), none, none),
+        "turned in the section": ((-y, x, 0.0), none, none),
+        "turned about the crack": ((0.0, 0.0, y), (0.0, -1.0, 0.0), none),
+        "turned about the normal": ((0.0, 0.0, -x), (1.0, 0.0, 0.0), none),
+        "pulled along the crack": (((1.0 - NU**2) * x, -NU * (1.0 + NU) * y, 0.0), none, none),
+        "pulled along the front": ((-NU * x, -NU * y, 0.0), (0.0, 0.0, 1.0), none),
+        "sheared along the front": ((0.0, 0.0, x), none, none),
+        "bent along the crack": ((-0.5 * NU * (x**2 - y**2), -NU * x * y, 0.0), (0.0, 0.0, x), (-1.0, 0.0, 0.0)),
+        "bent across": ((-NU * x * y, 0.5 * NU * (x**2 - y**2), 0.0), (0.0, 0.0, y), (0.0, -1.0, 0.0)),
+        "twisted": ((0.0, 0.0, -x * y), (-y, x, 0.0), none),
+        "sheared by bending": (
+            (0.0, 0.0, warped * x**2 - 0.5 * bent * y**2), (0.0, bent * y, 0.0), (0.0, 0.0, 2.0)
+        ),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(fields(type("None", (), {"x": np.zeros(1), "y": np.zeros(1)}))))
+def test_what_leaves_the_faces_free_and_has_no_bound_nowhere_has_no_intensity(front, name):
+    found, size = front.intensity(*fields(front)[name])
+    assert np.abs(found).max() < 1e-4 * size
