@@ -1,11 +1,13 @@
 """Stress intensity along a front as functionals, on fields that leave the faces of a crack free and have known K."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.odd import crack_field
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import FACES, cracked_sector
 from fegear.fem.plane.odd.stress_intensity import interaction
@@ -120,3 +122,66 @@ def fields(front):
 def test_what_leaves_the_faces_free_and_has_no_bound_nowhere_has_no_intensity(front, name):
     found, size = front.intensity(*fields(front)[name])
     assert np.abs(found).max() < 1e-4 * size
+
+
+# ---- a picture of a cracked tooth ------------------------------------------------------------------------------------
+def tooth_of(front, plane):
+    kind = SimpleNamespace(mesh=front.sector.mesh, tooth=TOOTH)
+    return SimpleNamespace(poisson_ratio=NU, plane=plane, kind=lambda i: kind)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+@pytest.mark.parametrize(
+    "strain", [((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 0.7), (0.3, 0.0)), ((0.5, -0.2), (0.1, 1.0))]
+)  # fmt: skip
+def test_of_a_uniform_strain_stress_is_hooke_s_everywhere(front, plane, strain):
+    slope = np.array(strain)
+    moved = np.zeros(2 * front.rows.shape[3])
+    for axis in (0, 1):
+        moved[axis::2][front.node] = slope[axis] @ front.sector.mesh.points
+    found = crack_field._mises(tooth_of(front, plane), 0, 2, moved)
+    even = 0.5 * (slope + slope.T)
+    across = 0.0 if plane == "strain" else -NU / (1.0 - NU) * np.trace(even)
+    whole = np.array([[even[0, 0], even[0, 1], 0.0], [even[1, 0], even[1, 1], 0.0], [0.0, 0.0, across]])
+    stress = LAM * np.trace(whole) * np.eye(3) + 2.0 * MU * whole
+    apart = stress - np.trace(stress) / 3.0 * np.eye(3)
+    assert found == pytest.approx(np.full(found.size, math.sqrt(1.5 * (apart**2).sum())))
+
+
+def test_a_picture_has_the_tooth_and_the_body_near_it_in_small_triangles(front):
+    mesh, known = front.sector.mesh, tooth_of(front, "strain")
+    corners, count = np.unique(mesh.triangles[:3]), mesh.points.shape[1]
+    moved = np.array([[1.0, 2.0], [0.5, -1.0]]) @ mesh.points
+    some = moved.copy()
+    some[:, np.setdiff1d(np.arange(count), corners)] = np.nan  # nodes between corners that the elements do not have
+    found = crack_field._shown(known, 0, some, np.arange(count, dtype=float))
+    at = found.mises.astype(int)  # each point told by its number
+    assert np.array_equal(found.points, mesh.points[:, at])
+    straight = np.isin(at, corners)
+    assert found.moved[:, straight] == pytest.approx(moved[:, at[straight]])
+    bent = np.abs(found.moved - moved[:, at]).max(axis=0)
+    assert bent[~straight].max() < 0.05  # the mean of both ends; edges of the outline are curved a little
+    assert np.median(bent[~straight]) < 1e-9
+
+    def areas(points, t):
+        (ax, ay), (bx, by), (cx, cy) = (points[:, one] for one in t)
+        return 0.5 * ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+
+    small = areas(found.points, found.triangles)
+    assert (small > 0.0).all()
+    radius = np.hypot(*mesh.points)
+    root = radius[np.unique(mesh.edges["fillet"][:2])].min()
+    near = (radius[mesh.triangles] > root - 2.2).any(axis=0)
+    assert small.size == 4 * near.sum() < 4 * near.size
+    whole = areas(mesh.points, mesh.triangles[:3, near])
+    assert small.sum() == pytest.approx(whole.sum(), rel=5e-3)
+    for name, line in zip(FACES, (found.left, found.right), strict=True):
+        assert at[line[-1]] == mesh.tip
+        assert set(at[line].tolist()) == set(np.unique(mesh.edges[name]).tolist())
+        off = np.hypot(*(found.points[:, line] - front.sector.tip[:, None]))
+        assert (np.diff(off) < 0.0).all()  # from the mouth to the tip
+    ends = found.points[:, [found.left[0], found.right[0]]]
+    assert np.hypot(*(ends[:, 0] - ends[:, 1])) == pytest.approx(0.0, abs=1e-9)
+    assert set(at[found.fillets].tolist()) == {
+        int(n) for name in ("fillet", "back_fillet") for n in np.unique(mesh.edges[name])
+    }
