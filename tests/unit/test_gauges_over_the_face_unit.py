@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.contact.wide import gauge_on_face
+from fegear.contact.error_over_pitch import TransmissionErrorShift
+from fegear.contact.wide import gauge_on_face, loaded_pair
 from fegear.contact.wide.gauge_on_face import gauge_about_load, wide_gauge_history, wide_gauge_neglects
 from fegear.fem.plane.gauge import Grid
+from fegear.fem.solid.gauge import grid_on_face, half_up_fillet, lean_at
 from fegear.geometry.gear import Material
 
 STEEL, MIDDLE, MODULE, X = Material(200e9, 0.3), 5.0, 2.0, np.array([0.0, 1.0, 2.0, 4.0])
@@ -191,3 +193,87 @@ def test_what_effects_that_are_off_change_of_the_peak(monkeypatch):
             assert found[effect].change == pytest.approx(force / 300.0 - 1.0)
             assert found[effect].angle == pytest.approx(X / 8.0)
             assert found[effect].strain == pytest.approx(expected("compression", force, 3.0) / STEEL.young_modulus)
+
+
+# ---- points of a grid ------------------------------------------------------------------------------------------------
+class Tooth:
+    """A fillet along a line at 2 modules from the centre plane, whose tangent goes up; twisted by `tau`."""
+
+    def __init__(self, tau=0.0):
+        arc = np.linspace(0.0125, 0.9875, 40)
+        place, tangent = np.stack([np.full(40, 2.0), 8.0 + arc]), np.stack([np.zeros(40), np.ones(40)])
+        self.fillet = SimpleNamespace(arc=arc, place=place, tangent=tangent, length=1.0)
+        self.fillets, self.tau = {"tension": self.fillet}, tau
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.4, -0.4, np.pi / 2.0])
+@pytest.mark.parametrize("tau", [0.0, 0.05])
+def test_the_mean_under_a_grid_is_that_over_its_turned_rectangle(direction, tau):
+    """Of stress that is a polynomial of the place: by moments of a rectangle, which leans with the helix."""
+    tooth, length, width = Tooth(tau), 0.3 * MODULE, 0.2 * MODULE
+    middles, z = np.array([0.45, 0.55]) * MODULE, 1.4 * MODULE
+    grid = grid_on_face(tooth, "tension", Grid(length, width, direction), middles, z, MODULE)
+    arc = tooth.fillet.arc[:, None]
+
+    def mean(of):
+        return grid._mean(of(arc, grid.zeta)[:, :, None])[:, 0]
+
+    # a step along the helix goes (-tau y, tau x, 1): by tau x = 2 tau up the fillet, and by the rest across it
+    skew, across = 2.0 * tau, np.sqrt(1.0 + tau**2 * 8.5**2)
+    assert lean_at(tooth.fillet, tau, 0.5) == pytest.approx((skew, across), rel=1e-3)
+    c, s, (a, b) = np.cos(direction), np.sin(direction), np.array([length, width]) / MODULE
+    up, over = (np.array(one) for one in ((c, -s), (s, c)))  # by steps along the grid, and across it
+    step = np.stack([up - skew / across * over, over / across])  # up the fillet, and along the face
+    second = step @ np.diag([a * a, b * b]) @ step.T / 12.0
+    at, zeta = middles / MODULE, z / MODULE
+    assert mean(lambda s, z: 1.0 + 0.0 * s * z) == pytest.approx([1.0, 1.0])
+    assert mean(lambda s, z: s + 0.0 * z) == pytest.approx(at)
+    assert mean(lambda s, z: 0.0 * s + z) == pytest.approx([zeta, zeta])
+    assert mean(lambda s, z: s**2 + 0.0 * z) == pytest.approx(at**2 + second[0, 0], rel=1e-5)
+    assert mean(lambda s, z: 0.0 * s + z**2) == pytest.approx([zeta**2 + second[1, 1]] * 2, rel=1e-5)
+    assert mean(lambda s, z: s * z) == pytest.approx(at * zeta + second[0, 1], rel=1e-5)
+    reach = half_up_fillet(Grid(length, width, direction), skew / across)
+    assert reach == pytest.approx(0.5 * MODULE * (abs(step[0, 0]) * a + abs(step[0, 1]) * b), rel=1e-3)
+
+
+def test_a_grid_of_no_size_is_a_point():
+    grid = grid_on_face(Tooth(), "tension", Grid(0.0, 0.0, 0.3), np.array([0.5 * MODULE]), 0.0, MODULE)
+    assert (grid.zeta.tolist(), grid.weights.shape[:2]) == ([0.0], (1, 1))
+    assert grid._mean(Tooth().fillet.arc[:, None, None] ** 3)[0, 0] == pytest.approx(0.125)
+
+
+# ---- loads for the surface, and what slices miss ---------------------------------------------------------------------
+def test_at_edges_the_line_load_is_that_of_the_station_beside_them():
+    at_edge = np.array([[True, False, False, True, True, True], [False] * 6])
+    lines = SimpleNamespace(
+        roll=np.zeros(2), at_edge=at_edge, z=np.tile(np.arange(6.0), (2, 1)),
+        at=lambda p: [slice(0, 4), slice(4, 6)] if p == 0 else [slice(0, 6)],
+    )  # fmt: skip
+    load = np.array([[9.0, 2.0, 3.0, 9.0, 7.0, 8.0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]])
+    found = SimpleNamespace(lines=lines, line_load=np.stack([0.0 * load, load], axis=2))
+    assert loaded_pair._without_edges(found, 1).tolist() == [[2.0, 2.0, 3.0, 3.0, 7.0, 8.0], load[1].tolist()]
+    assert found.line_load[0, 0, 1] == 9.0  # what was given stays
+
+
+def test_places_go_nearly_from_end_to_end_with_the_pitch_point():
+    places = loaded_pair._between(-2.0, 3.0, 7)
+    assert places.size == 8
+    assert 0.0 in places
+    assert (np.diff(places) > 0.0).all()
+    assert 0.0 < places[0] + 2.0 == pytest.approx(3.0 - places[-1])
+    assert places[0] + 2.0 < 0.05
+    other = loaded_pair._between(1.0, 3.0, 7)
+    assert other.size == 7
+    assert np.diff(other) == pytest.approx(np.full(6, other[1] - other[0]))
+
+
+def test_what_slices_miss_adds_its_share_of_each_answer():
+    names = ("mean", "peak_to_peak", "effective", "amplitude", "stiffness")
+    shift = TransmissionErrorShift(**dict.fromkeys(names, 1.0))
+    te = SimpleNamespace(
+        mean=20.0, peak_to_peak=30.0, effective_error=40.0, series=SimpleNamespace(amplitude=np.array([50.0, 60.0])),
+        mean_secant=70.0,
+    )  # fmt: skip
+    found = loaded_pair._missed_too(shift, te, 0.1)
+    assert (found.mean, found.peak_to_peak, found.effective, found.stiffness) == pytest.approx((3.0, 4.0, 5.0, 8.0))
+    assert found.amplitude == pytest.approx([6.0, 7.0])

@@ -106,6 +106,11 @@ def test_strain_in_a_direction_is_that_of_hooke_and_of_mohr(direction):
     assert stress == pytest.approx(mean)
     flat, same = grid.means(surface, STEEL, plane_strain=True)
     assert same == pytest.approx(mean)
+    (profile, _), (own, _) = (
+        GridOnFace(SimpleNamespace(), turn, np.array([-1.0, 1.0]), at, weights).means(surface, STEEL, plane_strain=True)
+        for turn in (0.0, direction)
+    )
+    assert own == pytest.approx(way[0] ** 2 * profile, abs=1e-15)
     # across the profile nothing strains: what is needed for it is nu times the stress along
     held = np.stack([surface[0], nu * surface[0], 0.0 * surface[2]])
     by_hand = grid.means(held, STEEL, plane_strain=False)[0]
