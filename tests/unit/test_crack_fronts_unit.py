@@ -12,7 +12,10 @@ from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.fem.plane.odd.cracked_sector import FACES, cracked_sector
 from fegear.fem.plane.odd.stress_intensity import interaction
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.tooth_meshing import mesh_sector
+from fegear.fem.solid.field import _AtNodes, _Layer, _layer, _von_mises
 from fegear.fem.solid.odd.front_intensity import front_rows
+from fegear.fem.solid.section import HUB
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 
@@ -185,3 +188,45 @@ def test_a_picture_has_the_tooth_and_the_body_near_it_in_small_triangles(front):
     assert set(at[found.fillets].tolist()) == {
         int(n) for name in ("fillet", "back_fillet") for n in np.unique(mesh.edges[name])
     }
+
+
+# ---- stress in sections of 3D teeth ----------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("tau", "lean", "stretch"), [(0.0, None, 1.0), (0.06, None, 1.0), (0.0, 0.4, 1.0), (0.0, -0.3, 0.7)]
+)
+def test_stress_of_a_uniform_strain_is_the_same_in_straight_twisted_and_leaning_sections(front, tau, lean, stretch):
+    """Displacement G X: of a twisted prism in its turned axes, of a cone by heights that fall as the radius grows."""
+    mesh = mesh_sector(TOOTH, 9.0, settings_at(-5))
+    elements = sector_elements(mesh, 2)
+    slope = np.array([[1.0, 0.2, -0.6], [0.1, -0.4, 0.8], [0.7, -0.3, 0.5]])
+    place = np.zeros_like(mesh.points)
+    place[:, elements.point_nodes] = mesh.points
+    quarter = np.array([[0.0, -1.0], [1.0, 0.0]])
+    height = 0.0 * place[0] if lean is None else -lean * np.hypot(*place)
+    value = slope @ np.vstack([place, height])
+    along = slope[:, :2] @ (tau * quarter @ place) + slope[:, 2:]
+    along[:2] -= tau * quarter @ value[:2]
+    nodes = elements.element_nodes
+    count, some = nodes.shape[0], np.arange(nodes.shape[0]) % 7 != 0
+    layer = _Layer(some, None if lean is None else np.full(count, lean), np.full(count, stretch))
+    at = _AtNodes(nodes, elements.gradients_at_nodes(), place[:, nodes])
+    found = _von_mises(at, value.T, stretch * along.T, tau, NU, layer)
+    strain = 0.5 * (slope + slope.T)
+    stress = LAM * np.trace(strain) * np.eye(3) + 2.0 * MU * strain
+    apart = stress - np.trace(stress) / 3.0 * np.eye(3)
+    beside = np.unique(nodes[some])
+    assert found[beside] == pytest.approx(np.full(beside.size, math.sqrt(1.5 * (apart**2).sum())), rel=2e-3)
+    assert (np.delete(found, beside) == 0.0).all()  # no material there
+
+
+def test_material_is_where_a_zone_spans_its_ends_included_and_hubs_are_longer():
+    section = SimpleNamespace(spans=((-1.0, 1.0), (0.5, 2.0)), zone=np.array([0, 1, HUB, 1]), lean="lean")
+    section.spans = tuple(section.spans[n % 2] for n in range(HUB + 1))
+    along = SimpleNamespace(stretched=lambda place: 3.0 + place)
+    spans = np.array([section.spans[zone] for zone in section.zone])
+    for place in (-1.0 - 1e-9, -1.0, 0.0, 0.5, 1.0 + 1e-9, 2.0, 2.1, -1.1):
+        found = _layer(section, along, place, 1e-6)
+        assert found.filled.tolist() == [low - 1e-6 <= place <= high + 1e-6 for low, high in spans]
+        assert found.stretch == pytest.approx(np.where(section.zone == HUB, 3.0 + place, 1.0))
+        assert found.lean == "lean"
+    assert (_layer(section, None, 0.0, 1e-6).stretch == 1.0).all()
