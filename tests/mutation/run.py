@@ -117,7 +117,7 @@ class Record:
         self.seconds: dict[str, float] = {}
         self.heirs: dict[str, set[str]] = defaultdict(set)
         self.lines: list[tuple[Path, CoverageData]] = []
-        for place in sorted(WORK.glob("record-*")):
+        for place in sorted(one.resolve() for one in WORK.glob("record-*")):  # one that is shared is a link
             if not ((place / "coverage").exists() and (place / "found.json").exists()):  # not finished
                 continue
             data = CoverageData(str(place / "coverage"))
