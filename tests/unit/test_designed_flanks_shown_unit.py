@@ -1,0 +1,251 @@
+"""Designed flanks as their sheet reads them: a design made up, everything shown of it found from its numbers."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
+from fegear.design.flanks.forms import GroundRelief
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.results.relief import flank_design
+from fegear.results.relief import flank_design_sheet as sheet
+from fegear.results.relief.flank_design_data import FlankDesignData, FlankDesignInputs, FlanksShown
+
+RACK = BasicRack(1.0, 1.25, 0.38)
+GEAR = Gear(Tooth(24, RACK), 2e-3, 0.01, face_width=0.02)
+PAIR = GearPair(GEAR, replace(GEAR, tooth=Tooth(37, RACK)))
+X = np.linspace(PAIR.x_start, PAIR.x_end, 5)
+Z = np.linspace(-0.01, 0.01, 4)
+#: A plane over both: interpolation has it exactly.
+EXACT = 1e-6 * (3.0 + 200.0 * X[:, None] + 300.0 * Z[None, :])
+RELIEFS = {
+    "lead": GroundRelief(crowning=6e-6, slope=4e-6),
+    "profile-and-lead": GroundRelief(10e-6, 1e-3, 20e-6, 1.5e-3, crowning=5e-6),
+    "profile": GroundRelief(12e-6, 1e-3, 24e-6, 1.5e-3, tip_power=2.0),
+}
+ALLOWED = LeadTolerance(2e-6, 1e-6, 3e-6)
+
+
+def state(label, left, relief=None, most=None):
+    """A way that leaves so many um at the first load, and half of it more at the second one."""
+    value = lambda v: SimpleNamespace(value=v)  # noqa: E731
+    over = 1e-6 * left * np.array([1.0, 1.5])
+    return SimpleNamespace(
+        label=label, relief=relief, te=1e-6 * left * np.array([1.0, -0.5, 0.25]), modifications=2,
+        judged=SimpleNamespace(
+            peak_to_peak=value(1e-6 * left), face_load_factor=value(1.0 + left / 10.0),
+            mean_over_scatter=value(2e-6 * left), factor_over_scatter=value(2.0 + left / 10.0),
+        ),
+        over_peak_to_peak=over, over_first=0.4 * over, over_most=most, over_error=0.01 * over, over_mean=1.2 * over,
+        mapped=SimpleNamespace(peak_to_peak=1e-6 * left * np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])),
+    )  # fmt: skip
+
+
+def shown(*, scattered=True, gear="both", weights=None, lead=ALLOWED):
+    none, exact = state("no relief", 8.0), state("exact topography", 0.0)
+    found = {label: SimpleNamespace(relief=one, proven=label != "lead") for label, one in RELIEFS.items()}
+    ways = [state(label, left, RELIEFS[label], 1e-6 * left * np.array([3.0, 4.0]))
+            for label, left in (("lead", 6.0), ("profile-and-lead", 1.0), ("profile", 1.9))]  # fmt: skip
+    design = SimpleNamespace(
+        states=(none, exact, *ways), unrelieved=none, exact=exact, best=ways[2], least=ways[1], chosen=(ways[2],),
+        found=found, scattered=scattered, x=X, z=Z, removal=EXACT, roll=np.array([0.0, 1e-3, 2e-3]),
+        left_by=lambda one: one.judged.peak_to_peak.value,
+        task=SimpleNamespace(
+            load=1500.0, loads=(500.0, 1500.0), weights=weights, map_over_face=(-1e-6, 0.0, 1e-6),
+            map_loads=(100.0, 200.0), deviation=5e-6,
+            loading=SimpleNamespace(line_load=lambda x, z: 3.0 + 100.0 * x + 10.0 * z),
+        ),
+    )  # fmt: skip
+    tolerance = FlankTolerance((TipTolerance(1e-6, 1e-4, 0.0), TipTolerance(3e-6, 1e-4, 0.0)), lead)
+    asked = FlankDesignInputs(SimpleNamespace(gear=gear), "I", {"driver": "p", "driven": "w"}, None, tolerance)
+    return FlanksShown(FlankDesignData(PAIR, design), asked)
+
+
+@pytest.mark.parametrize(
+    ("gear", "shares"), [("both", {"p": 0.5, "w": 0.5}), ("driver", {"p": 1.0}), ("driven", {"w": 1.0})]
+)
+def test_gears_share_the_topography(gear, shares):
+    found = shown(gear=gear)
+    assert (found.driver, found.load) == ("p", 1500.0)
+    assert found.topography_depth == pytest.approx(EXACT.max() - EXACT.min())
+    assert {one.gear for one in found.topographies} == set(shares)
+    for one in found.topographies:
+        member = "driver" if one.gear == "p" else "driven"
+        assert one.removal == pytest.approx(shares[one.gear] * EXACT.ravel())
+        assert one.x == pytest.approx(np.repeat(X, Z.size))
+        assert one.roll_angle == pytest.approx(PAIR.roll_angle(one.x, member))
+        assert one.diameter == pytest.approx(2.0 * PAIR.radius(one.x, member))
+        height = np.tile(Z, X.size)
+        assert one.z == pytest.approx(height + PAIR.face_height(member))
+        assert one.line_load == pytest.approx(1500.0 * (3.0 + 100.0 * one.x + 10.0 * height))
+
+
+def test_surfaces_profiles_and_leads_are_sections_of_one_removal_counted_from_its_least():
+    found = shown()
+    exact, profile = found.drawn
+    assert (exact.relief, profile.relief) == ("exact topography", "profile")
+    assert [way.relief for way in found.mapped] == ["no relief", "exact topography", "profile"]
+    for way in found.drawn:
+        assert (way.x[0], way.x[-1], way.z[0], way.z[-1]) == (X[0], X[-1], Z[0], Z[-1])
+        assert way.roll_angle == pytest.approx(PAIR.roll_angle(way.x, "driver"))
+        assert way.removal.shape == (way.z.size, way.x.size)
+        assert way.removal.min() == 0.0
+    plane = 1e-6 * (200.0 * (exact.x - X[0])[None, :] + 300.0 * (exact.z - Z[0])[:, None])
+    np.testing.assert_allclose(exact.removal, plane, atol=1e-12)
+    relief = RELIEFS["profile"].removal(PAIR, *np.meshgrid(profile.x, profile.z))
+    np.testing.assert_allclose(profile.removal, relief - relief.min(), atol=1e-15)
+    assert found.deepest == (0.0, pytest.approx(max(plane.max(), profile.removal.max())))
+    assert found.highest("peak_to_peak") == pytest.approx(6.0 * 8e-6)
+    # Sections: at -9 / 10, 0 and 9 / 10 of half the face, and after 1, 5 and 9 tenths of the path of contact.
+    profiles, leads = exact.profiles, exact.leads
+    assert [one.label for one in profiles] == ["z = -9 mm", "z = 0 mm", "z = 9 mm"]
+    for one, height in zip(profiles, (-9e-3, 0.0, 9e-3), strict=True):
+        np.testing.assert_allclose(one.removal, 1e-6 * (200.0 * (exact.x - X[0]) + 300.0 * (height - Z[0])), atol=1e-12)
+        assert one.roll == pytest.approx(exact.roll_angle)
+    for one, share in zip(leads, (0.1, 0.5, 0.9), strict=True):
+        place = X[0] + share * (X[-1] - X[0])
+        assert one.label == f"diameter {2e3 * float(PAIR.radius(place, 'driver')):.5g} mm"
+        np.testing.assert_allclose(one.removal, 1e-6 * (200.0 * (place - X[0]) + 300.0 * (exact.z - Z[0])), atol=1e-12)
+        assert one.z == pytest.approx(exact.z)
+
+
+def test_a_way_has_the_numbers_of_its_state():
+    found = shown()
+    none, _, lead, both, _ = found.ways
+    assert [way.unrelieved for way in found.ways] == [True, False, False, False, False]
+    assert (none.best, lead.best.relief, both.word) == (None, RELIEFS["lead"], "profile_and_lead")
+    assert lead.left == 6e-6
+    assert lead.minus_mean.mean() == pytest.approx(0.0, abs=1e-20)
+    assert np.ptp(lead.minus_mean) == pytest.approx(1.5 * 6e-6)
+    assert lead.roll.tolist() == [0.0, 1e-3, 2e-3]
+    assert (lead.over_face.tolist(), lead.load.tolist()) == ([-1e-6, 0.0, 1e-6], [100.0, 200.0])
+    assert found.unproven == "lead"
+
+
+@pytest.mark.parametrize("scattered", [True, False])
+def test_what_every_way_leaves_stands_beside_each_other_the_last_lowest(scattered):
+    found = shown(scattered=scattered)
+    left = found.left
+    order = np.array([1.9, 1.0, 6.0, 0.0, 8.0])
+    assert left.place.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert left.peak_to_peak == pytest.approx(1e-6 * order)
+    assert left.factor == pytest.approx(1.0 + order / 10.0)
+    if scattered:
+        assert left.mean == pytest.approx(2e-6 * order)
+        assert left.worst == pytest.approx(2.0 + order / 10.0)
+    else:
+        assert (left.mean, left.worst) == (None, None)
+    high, low = found.by_size
+    assert [way.relief for way in high.ways] == ["no relief", "lead"]
+    assert [way.relief for way in low.ways] == ["exact topography", "profile-and-lead", "profile"]
+    with_scatter = "standard deviation 5 µm" in sheet._beside_caption(
+        SimpleNamespace(data=found, said=lambda text: text)
+    )
+    assert with_scatter == scattered
+
+
+@pytest.mark.parametrize(("weights", "shares"), [(None, [1.0, 1.0]), ((0.5, 2.0), [0.25, 1.0])])
+def test_torques_have_what_every_way_leaves_and_at_most_of_those_that_are_ground(weights, shares):
+    found = shown(weights=weights)
+    for way in found.ways:
+        one = found.over_range[way.relief]
+        assert one.torque == pytest.approx(np.array([500.0, 1500.0]) * PAIR.driver.base_radius)
+        assert one.weight == pytest.approx(shares)
+        assert one.peak_to_peak == pytest.approx(way.left * np.array([1.0, 1.5]))
+        assert one.first == pytest.approx(0.4 * one.peak_to_peak)
+        assert one.mean == pytest.approx(1.2 * one.peak_to_peak)
+        assert one.errors == pytest.approx(0.01 * one.peak_to_peak)
+        assert (one.most is None) == (way.relief in ("no relief", "exact topography"))
+    assert shown(scattered=False).over_range["lead"].mean is None
+    seen = SimpleNamespace(data=found)
+    torque, left = sheet._left(seen, "lead")
+    assert (torque.tolist(), left.tolist()) == (
+        found.over_range["lead"].torque.tolist(), found.over_range["lead"].peak_to_peak.tolist()
+    )  # fmt: skip
+    one = {"lead": SimpleNamespace(torque=np.array([9.0]), peak_to_peak=np.array([7.0]))}
+    seen = SimpleNamespace(data=SimpleNamespace(over_range=one, design=found.design, load=found.load, data=found.data))
+    torque, left = sheet._left(seen, "lead")
+    assert torque == pytest.approx([1500.0 * PAIR.driver.base_radius])
+    assert left.tolist() == [6e-6]
+
+
+def test_rows_and_charts_begin_with_what_is_to_be_ground_then_by_what_is_left():
+    found = shown()
+    designs = list(dict.fromkeys(row.design for row in found.grinding))
+    assert designs == ["profile", "profile-and-lead", "lead"]
+    tips = [(row.gear, row.amount_tolerance) for row in found.grinding if row.design == "profile"]
+    assert tips == [("p", 1e-6), ("w", 3e-6)]
+    assert list(found.profile_charts) == ["profile", "profile-and-lead"]
+    for label, both in found.profile_charts.items():
+        assert [one.gear for one in both] == ["p", "w"]
+        amounts = [RELIEFS[label].driver_tip, RELIEFS[label].driven_tip]
+        assert [-one.profile.min() for one in both] == pytest.approx(amounts)
+        assert [one.profile.min() - one.lower.min() for one in both] == pytest.approx([1e-6, 3e-6])
+    assert list(found.lead_charts) == ["profile-and-lead", "lead"]
+    assert [one.gear for one in found.lead_charts.values()] == ["p", "p"]
+    assert shown(lead=None).lead_charts == {}
+    chart = found.lead_charts["profile-and-lead"]
+    axis = sheet_ordinate(chart)
+    height = (chart.upper.max() - chart.lower.min()) * 1e6
+    assert axis.limits[0] < chart.lower.min() * 1e6
+    assert axis.limits[1] > chart.upper.max() * 1e6
+    assert axis.limits[1] - axis.limits[0] == pytest.approx(height + 2.0 * (chart.lower.min() * 1e6 - axis.limits[0]))
+
+
+def sheet_ordinate(chart):
+    from fegear.results.relief.lead_charts import _ordinate
+
+    return _ordinate(SimpleNamespace(one=chart))
+
+
+def test_keys_of_the_gears_are_said_also_for_one_gear_where_both_would_be_ground():
+    found = shown()
+
+    def keys(label):
+        seen = SimpleNamespace(data=found, asked=found.asked, one=SimpleNamespace(label=label))
+        return sheet._keys(seen)
+
+    assert keys("lead").startswith("Pair I, lead: keys of the gears: gear.p.lead = ")
+    assert "ground on" not in keys("lead")
+    both = keys("profile")
+    assert "gear.w.relief" in both
+    assert " With the same gaps, ground on p only: " in both
+    assert "gear.w" not in both.partition("ground on")[2]
+
+
+def test_a_map_of_a_way_is_over_misalignment_and_load_with_one_scale(monkeypatch):
+    over = sheet._tiles("peak_to_peak", "label", "title", 0.5)
+    (tiles,) = over.lines
+    found = shown()
+    seen = SimpleNamespace(data=found, one=found.ways[2])
+    assert tiles.si(seen).tolist() == found.ways[2].state.mapped.peak_to_peak.T.tolist()
+    assert tiles.limits(seen) == (0.5, pytest.approx(48e-6))
+
+
+def test_a_design_is_made_of_the_flanks_without_relief_and_the_coarser_gears(monkeypatch):
+    asked, bodies = (
+        {},
+        {"p": SimpleNamespace(fine="fine", coarse="coarse"), "w": SimpleNamespace(fine="w", coarse=None)},
+    )
+    apart = SimpleNamespace(shafts=SimpleNamespace(given="bent"))
+    flanks = SimpleNamespace(pair=PAIR)
+    found = SimpleNamespace(flanks=flanks, unrelieved=apart, nominal=300.0, known="known")
+    monkeypatch.setattr(flank_design, "loaded_flanks", lambda upstream, name: found if name == "I" else None)
+    monkeypatch.setattr(
+        flank_design, "solid_solution_of", lambda upstream, gear: bodies[gear] if upstream == {} else None
+    )
+    monkeypatch.setattr(flank_design, "_task", lambda *given: given)
+    monkeypatch.setattr(
+        "fegear.design.flanks.flank_design.design_flanks", lambda *given: asked.update(given=given) or "design"
+    )
+    inputs = FlankDesignInputs("part", "I", {"driver": "p", "driven": "w"}, "over", "tolerance")
+    data = flank_design._compute(inputs, {}, SimpleNamespace(progress="progress"))
+    assert data == FlankDesignData(PAIR, "design", "bent")
+    task = ("part", PAIR, 300.0, "over", "tolerance")
+    assert asked["given"] == (flanks, {"driver": "coarse", "driven": "w"}, "known", apart, task, "progress")
