@@ -1,14 +1,18 @@
 """Designed flanks as their sheet reads them: a design made up, everything shown of it found from its numbers."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.base.shown import shows
+from fegear.design.flanks.families import FamilyBest
 from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
 from fegear.design.flanks.forms import GroundRelief
+from fegear.design.flanks.judge import Judged, Number
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.engine.sheet.seen import Seen
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -32,24 +36,52 @@ RELIEFS = {
 ALLOWED = LeadTolerance(2e-6, 1e-6, 3e-6)
 
 
+@dataclass(frozen=True)
+class Mapped:
+    """What is left over three misalignments and two loads."""
+
+    left: float
+
+    @property
+    @shows("um", "peak-to-peak value", name="te_peak_to_peak")
+    def peak_to_peak(self):
+        return 1e-6 * self.left * np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
+
+    @property
+    @shows("", "K_Hbeta")
+    def face_load_factor(self):
+        return 1.0 + self.left * np.array([[1.0, 3.0], [4.0, 2.0], [6.0, 5.0]])
+
+    @property
+    @shows("MPa", "pressure")
+    def pressure(self):
+        return 1e8 * self.left * np.array([[6.0, 5.0], [4.0, 3.0], [2.0, 1.0]])
+
+
 def state(label, left, relief=None, most=None):
     """A way that leaves so many um at the first load, and half of it more at the second one."""
-    value = lambda v: SimpleNamespace(value=v)  # noqa: E731
+
+    def value(found):
+        return Number(found, 0.01 * found)
+
     over = 1e-6 * left * np.array([1.0, 1.5])
     return SimpleNamespace(
         label=label, relief=relief, te=1e-6 * left * np.array([1.0, -0.5, 0.25]), modifications=2,
-        judged=SimpleNamespace(
-            peak_to_peak=value(1e-6 * left), face_load_factor=value(1.0 + left / 10.0),
-            mean_over_scatter=value(2e-6 * left), factor_over_scatter=value(2.0 + left / 10.0),
+        judged=Judged(
+            value(1e-6 * left), value(1.0 + left / 10.0), value(1e8 * left), value(2e-6 * left), value(3e-6 * left),
+            value(2.0 + left / 10.0),
         ),
         over_peak_to_peak=over, over_first=0.4 * over, over_most=most, over_error=0.01 * over, over_mean=1.2 * over,
-        mapped=SimpleNamespace(peak_to_peak=1e-6 * left * np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])),
+        mapped=Mapped(left),
     )  # fmt: skip
 
 
 def shown(*, scattered=True, gear="both", weights=None, lead=ALLOWED):
     none, exact = state("no relief", 8.0), state("exact topography", 0.0)
-    found = {label: SimpleNamespace(relief=one, proven=label != "lead") for label, one in RELIEFS.items()}
+    found = {
+        label: FamilyBest(label, one, one, 1e-6, (one,), None, len(label), 2 * len(label), 3e-6, 1e-7, label != "lead")
+        for label, one in RELIEFS.items()
+    }
     ways = [state(label, left, RELIEFS[label], 1e-6 * left * np.array([3.0, 4.0]))
             for label, left in (("lead", 6.0), ("profile-and-lead", 1.0), ("profile", 1.9))]  # fmt: skip
     design = SimpleNamespace(
@@ -202,6 +234,107 @@ def sheet_ordinate(chart):
     from fegear.results.relief.lead_charts import _ordinate
 
     return _ordinate(SimpleNamespace(one=chart))
+
+
+def columns(table):
+    return {column.name: column.si for column in table.columns}
+
+
+def test_tables_have_a_row_for_every_way():
+    found = shown()
+    seen = Seen(found, found.asked, "I")
+    tables = {table.name: table for one in sheet.FLANK_DESIGN_SHEET.tables for table in one.tables(seen)}
+    ways = columns(tables["flank_designs_I"])
+    left = np.array([8.0, 0.0, 6.0, 1.0, 1.9])
+    assert list(ways["relief"]) == ["no relief", "exact topography", "lead", "profile-and-lead", "profile"]
+    for name, values in (
+        ("te_peak_to_peak", 1e-6 * left), ("K_Hbeta", 1.0 + left / 10.0), ("hertz_pressure", 1e8 * left),
+        ("te_mean_over_scatter", 2e-6 * left), ("te_p95_over_scatter", 3e-6 * left),
+        ("K_Hbeta_p95_over_scatter", 2.0 + left / 10.0),
+    ):  # fmt: skip
+        np.testing.assert_allclose(ways[name], values, atol=1e-15)
+        np.testing.assert_allclose(ways[f"{name}_error"], 0.01 * values, atol=1e-15)
+    assert ways["driver_tip"].tolist() == [0.0, 0.0, 0.0, 10e-6, 12e-6]
+    assert ways["driven_tip_length"].tolist() == [0.0, 0.0, 0.0, 1.5e-3, 1.5e-3]
+    assert ways["slope"].tolist() == [0.0, 0.0, 4e-6, 0.0, 0.0]
+    assert ways["combinations"].tolist() == [0, 0, 4, 16, 7]
+    assert ways["loaded_exactly"].tolist() == [0, 0, 8, 32, 14]
+    assert ways["best_on_grid"].tolist() == [0.0, 0.0, 3e-6, 3e-6, 3e-6]
+    (error,) = [one for name, one in ways.items() if name == "quick_error" or "screening" in name]
+    assert np.isnan(error[:2]).all()
+    assert (error[2:] == 1e-7).all()
+    (proven,) = [one for name, one in ways.items() if "proven" in name]
+    assert proven.tolist() == [1.0, 1.0, 0.0, 1.0, 1.0]
+    maps = columns(tables["flank_map_I"])
+    assert len(maps["relief"]) == 5 * 3 * 2
+    np.testing.assert_allclose(
+        maps["te_peak_to_peak"].reshape(5, 3, 2), np.stack([way.state.mapped.peak_to_peak for way in found.ways])
+    )
+    roll = columns(tables["flank_design_roll_I"])
+    assert roll["te_profile_and_lead"].tolist() == found.ways[3].te.tolist()
+    numbers = {value.name: value for one in sheet.FLANK_DESIGN_SHEET.values[1:] for value in one.values(seen)}
+    assert numbers["I.profile.te_peak_to_peak"].si == pytest.approx(1.9e-6)
+    assert numbers["I.profile.te_peak_to_peak"].si_error == pytest.approx(1.9e-8)
+    assert numbers["I.lead.te_mean_over_scatter"].si == pytest.approx(12e-6)
+
+
+def test_of_alignment_that_does_not_scatter_no_value_over_scatter_is_said():
+    found = shown()
+    found.design.task.deviation = 0.0
+    seen = Seen(found, found.asked, "I")
+    numbers = [value.name for one in sheet.FLANK_DESIGN_SHEET.values[1:] for value in one.values(seen)]
+    assert len(numbers) == 5 * 3
+    assert not any("scatter" in name for name in numbers)
+
+
+@pytest.mark.parametrize("scattered", [True, False])
+def test_figures_draw_what_every_way_leaves(scattered):
+    found = shown(scattered=scattered)
+    seen = Seen(found, found.asked, "I")
+    figures = {one.name: one.made() for chart in sheet.FLANK_DESIGN_SHEET.figures for one in chart.figures(seen)}
+    # Points of every way, the last one lowest: as specified, and over the scatter where there is any.
+    left, factor = figures["flank_designs_I"].panels
+    assert (left.x.log, factor.x.log) == (True, False)
+    for panel, numbers in (
+        (left, (found.left.peak_to_peak, found.left.mean)),
+        (factor, (found.left.factor, found.left.worst)),
+    ):
+        assert len(panel.items) == 1 + scattered
+        assert len({one.size for one in panel.items}) == 1
+        for one, x in zip(panel.items, numbers, strict=False):
+            scale = 1e6 if panel is left else 1.0
+            np.testing.assert_allclose(one.x, scale * x)
+            assert list(one.y) == [0.0, 1.0, 2.0, 3.0, 4.0]
+        assert list(panel.y.categories) == ["profile", "profile and lead", "lead", "exact topography", "no relief"]
+    roll = figures["flank_design_roll_I"].panels
+    assert [panel.title for panel in roll] == [one.title for one in found.by_size]
+    for panel, like in zip(roll, found.by_size, strict=True):
+        for curve, way in zip(panel.items, like.ways, strict=True):
+            np.testing.assert_allclose(curve.y, 1e6 * way.minus_mean)
+            assert curve.name == f"{way.relief}: {way.left * 1e6:.3g} µm"
+            assert (curve.role == "no relief") == (way.relief == "no relief")
+    views = figures["flank_topography_I"].views
+    assert [view.label for view in views] == ["exact topography", "profile"]
+    for view, way in zip(views, found.drawn, strict=True):
+        (surface,) = view.panels[0].items
+        np.testing.assert_allclose(surface.z, 1e6 * way.removal)
+        assert surface.limits == pytest.approx((0.0, 1e6 * found.deepest[1]))
+    sections = figures["flank_charts_I"].panels
+    assert [panel.title for panel in sections] == [
+        f"{way}: {kind}" for way in ("exact topography", "profile") for kind in ("profile", "lead")
+    ]
+    for panel, wanted in zip(sections, (found.drawn[0].profiles, found.drawn[0].leads), strict=False):
+        for curve, section in zip(panel.items, wanted, strict=True):
+            np.testing.assert_allclose(curve.y, 1e6 * section.removal)
+            assert (curve.name, curve.dash) == (section.label, "solid")
+    maps = figures["flank_map_I"].views
+    assert [view.label for view in maps] == ["no relief", "exact topography", "profile"]
+    for view, way in zip(maps, found.mapped, strict=True):
+        for panel, numbers, scale in zip(
+            view.panels, (way.state.mapped.peak_to_peak, way.state.mapped.face_load_factor), (1e6, 1.0), strict=True
+        ):
+            (tiles,) = panel.items
+            np.testing.assert_allclose(tiles.z, scale * numbers.T)
 
 
 def test_keys_of_the_gears_are_said_also_for_one_gear_where_both_would_be_ground():

@@ -12,6 +12,7 @@ from fegear.design.flanks.flank_tolerance import end_reliefs
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.engine.sheet.seen import Seen
 from fegear.engine.stage import Forecast, Task
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
@@ -20,6 +21,7 @@ from fegear.geometry.rack import BasicRack
 from fegear.results.relief import relief_chart_over_face as charted
 from fegear.results.relief import relief_over_face as designed
 from fegear.results.relief.relief_over_face_data import TipReliefData, TipReliefInputs, TipsShown
+from fegear.results.relief.relief_over_face_sheet import RELIEF_OVER_FACE_SHEET
 
 RACK = BasicRack(1.0, 1.25, 0.38)
 GEAR = Gear(Tooth(24, RACK), 2e-3, 0.01, face_width=0.02)
@@ -435,3 +437,36 @@ def test_tips_rows_and_charts_are_of_both_gears_the_best_shape_first():
     )
     now = replace(shown, data=replace(shown.data, present=present)).profile_charts
     assert [chart.present.max() for both in now.values() for chart in both] == [-7.0, -8.0, -7.0, -8.0]
+
+
+def test_figures_and_tables_draw_what_each_relief_leaves():
+    shown = Design().shown()
+    seen = Seen(shown, shown.asked, "I")
+    figures = {one.name: one.made() for chart in RELIEF_OVER_FACE_SHEET.figures for one in chart.figures(seen)}
+    (panel,) = figures["relief_candidates_I"].panels
+    for curve, (label, one) in zip(panel.items, shown.left.items(), strict=True):
+        np.testing.assert_allclose(curve.x, 1e3 * one.x)
+        np.testing.assert_allclose(curve.y, 1e6 * one.minus_mean)
+        assert curve.name == f"{label}: {one.words} peak to peak"
+    views = figures["harris_map_I"].views
+    assert [view.label for view in views] == list(shown.maps)
+    for view, one in zip(views, shown.maps.values(), strict=True):
+        curves = [item for item in view.panels[0].items if len(item.y) == POINTS.x.size]
+        assert len(curves) == 3
+        for curve, te in zip(curves, one.transmission_error, strict=True):
+            np.testing.assert_allclose(curve.y, 1e6 * te)
+    tables = {table.name: table for one in RELIEF_OVER_FACE_SHEET.tables for table in one.tables(seen)}
+    columns = {column.name: column.si for column in tables["harris_map_I"].columns}
+    for label, one in shown.left.items():
+        name = f"te_{label.replace(' ', '_')}"
+        assert columns[name].tolist() == one.map.transmission_error.ravel().tolist()
+        assert columns[f"{name}_error"].tolist() == one.map_error.ravel().tolist()
+    numbers = {value.name: value for one in RELIEF_OVER_FACE_SHEET.values for value in one.values(seen)}
+    best = shown.left["linear tip relief"]
+    for name, value in (("te_peak_to_peak", best.peak_to_peak), ("te_effective", best.effective)):
+        one = numbers[f"I.{name}.linear_tip_relief"]
+        assert (one.si, one.si_error) == (pytest.approx(value), pytest.approx(best.error))
+    settings = RELIEF_OVER_FACE_SHEET.settings
+    for number, one in enumerate(shown.design.found.values(), start=1):
+        one.candidates, one.exact = 10 * number, number
+    assert (settings["combinations"](seen), settings["loaded_exactly"](seen)) == (30, 3)
