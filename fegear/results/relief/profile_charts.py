@@ -107,6 +107,7 @@ def k_chart(of: str) -> Chart:
         Mapping of designs to sequences of `ProfileChart`.
     """
     plain = {"markers": False}
+    along = {"x": "roll_length"}
     return Chart(
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
         "Pair {name}: profile of each gear over roll length, material removed below zero, tip at right. Dashed: limits "
@@ -114,12 +115,12 @@ def k_chart(of: str) -> Chart:
         "class), more removal.",
         (
             Over(
-                "roll_length",
+                lambda seen: Axis(f"roll length of {seen.one.gear}", "mm"),  # an axis for each: they lie far apart
                 (
-                    Line("profile", "nominal", "designed", look={**plain, "width": 2.4}),
-                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}),
-                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}),
-                    Line("present", "present relief", "present relief", look=plain),
+                    Line("profile", "nominal", "designed", look={**plain, "width": 2.4}, **along),
+                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}, **along),
+                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}, **along),
+                    Line("present", "present relief", "present relief", look=plain, **along),
                 ),
                 _ordinate,
                 title="{one.gear}: {one.words}", each=lambda seen: seen.one,

@@ -133,11 +133,11 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         yield f"Pair {seen.name}: {lost}."
         do = f"without deviations {do}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    single = d.over_range.get(f"{shape} tip relief for one load")
+    if single and len(every) > 1:  # beside other results a design has room for two sentences
+        yield from _said_of_small_torques(seen, best, single)
     yield from said_of_undefined(seen, rows)
     yield from said_of_tolerances(seen, shape, every, lost=bool(lost))
-    single = d.over_range.get(f"{shape} tip relief for one load")
-    if single and len(every) > 1:
-        yield from _said_of_small_torques(seen, best, single)
     worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
