@@ -97,9 +97,11 @@ def about(subject: str, clause: str) -> Note:
 OPEN = 2
 #: Subjects that a merged note names.
 _NAMED = 6
-_SUBJECT = re.compile(r"(Gear|Pair|Mesh|Set|Shaft|Bearing|Gauge) ([^\s:,]+)((?: over [^:]*)?: .*)", re.DOTALL)
+_SUBJECT = re.compile(
+    r"(Gear|Pair|Mesh|Set|Shaft|Bearing|Gauge|Encoders) ([^\s:,]+(?:, [\d.]+ N m)?)((?: over [^:]*)?: .*)", re.DOTALL
+)
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
-_PLURAL = {"Mesh": "Meshes"}
+_PLURAL = {"Mesh": "Meshes", "Encoders": "Encoders"}
 
 
 class _Subject(NamedTuple):
@@ -135,11 +137,23 @@ def ordered(notes: Iterable[str]) -> tuple[Note, ...]:
 def _merged(noun: str, members: Sequence[_Subject]) -> str:
     if len(members) == 1:
         return members[0].note
-    names = ", ".join(dict.fromkeys(one.name for one in members[:_NAMED]))
-    more = f" and {len(members) - _NAMED} more" if len(members) > _NAMED else ""
+    names, count = _names([one.name for one in members])
+    more = f" and {count - _NAMED} more" if count > _NAMED else ""
     numbers = iter(zip(*(_NUMBER.findall(one.rest) for one in members), strict=True))
     rest = _NUMBER.sub(lambda _: _together(next(numbers)), members[0].rest)
     return f"{_PLURAL.get(noun, noun + 's')} {names}{more}{rest}"
+
+
+def _names(subjects: Sequence[str]) -> tuple[str, int]:
+    """Subjects of a merged note, each with its torques where it has some, and how many there are."""
+    torques: dict[str, list[str]] = {}
+    for one in dict.fromkeys(subjects):
+        name, _, torque = one.partition(", ")
+        torques.setdefault(name, []).extend([torque.removesuffix(" N m")] if torque else [])
+    if not any(torques.values()):
+        return ", ".join(dict.fromkeys(subjects[:_NAMED])), len(subjects)
+    parts = [f"{name}, {', '.join(of)} N m" if of else name for name, of in torques.items()]
+    return "; ".join(parts[:_NAMED]), len(parts)
 
 
 def _together(numbers: Sequence[str]) -> str:

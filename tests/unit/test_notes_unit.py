@@ -122,3 +122,19 @@ def test_a_sheet_keeps_the_class_of_a_template_and_of_what_a_function_gives():
     found = sheet.present(_Data(), _Data()).remarks
     assert found == ("Pair I: film.", "Pair I: oil.", "Pair I: plain.", "jam")
     assert [class_of(note).name for note in found] == ["NEGLECTED", "ASSUMED", "INFORMATION", "FAILS"]
+
+
+def test_notes_of_several_torques_are_one():
+    notes = [f"Encoders {name}, {torque} N m: {part} % below it." for name in ("a", "b")
+             for torque, part in ((60, 1.5), (120, 2.5), (180, 2.0))]  # fmt: skip
+    assert ordered(notes[:3]) == ("Encoders a, 60, 120, 180 N m: 1.5 to 2.5 % below it.",)
+    assert ordered(notes) == ("Encoders a, 60, 120, 180 N m; b, 60, 120, 180 N m: 1.5 to 2.5 % below it.",)
+    assert ordered(notes[2:4]) == ("Encoders a, 180 N m; b, 60 N m: 2.0 and 1.5 % below it.",)
+    assert ordered(notes[:1]) == (notes[0],)
+    read = [f"Encoders {name}: file read with {count} samples left out." for name, count in (("a", 48), ("b", 49))]
+    assert ordered(read) == ("Encoders a, b: file read with 48 and 49 samples left out.",)
+    kinds = [Note(one, NoteClass.FAILS) for one in notes[:2]] + notes[2:3]
+    assert ordered(kinds) == ("Encoders a, 60, 120 N m: 1.5 and 2.5 % below it.", notes[2])
+    assert len(ordered(f"Encoders e{k}, 60 N m: 1 %." for k in range(9))) == 1
+    assert ordered(f"Encoders e{k}, 60 N m: 1 %." for k in range(9))[0].startswith("Encoders e0, 60 N m; e1, 60 N m; ")
+    assert " and 3 more: 1 %." in ordered(f"Encoders e{k}, 60 N m: 1 %." for k in range(9))[0]
