@@ -2,6 +2,7 @@
 
 import copy
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,7 +115,15 @@ def test_a_trace_taken_in_motion_is_found_again(tmp_path):
     for name, wanted in (("offset", 30.0), ("scale", 0.98), ("shift", -50.0)):
         error = values[f"dynamic_measured_{name}_standard_error"]
         assert abs(values[f"dynamic_measured_{name}"] - wanted) < 3.5 * error
-    assert any(one.startswith("Gauge t, in motion: measured strain agrees with") for one in outcome.remarks)
+    assert replace(outcome.data, neglected={}).verdict.startswith("measured strain agrees with")
+    # as at rest the verdict depends on what is not computed, and says so
+    change = outcome.data.neglected["corner_contact"]
+    at_rest = ran({**document, "results": ["gauge"]}, tmp_path)["gauge of t"].data
+    assert change == pytest.approx(at_rest.neglected["corner_contact"], rel=1e-9)
+    assert any(one.startswith("Gauge t, in motion: corner_contact is off; including it changes the quasi-static peak")
+               for one in outcome.remarks)  # fmt: skip
+    assert "computed without corner_contact" in outcome.data.verdict
+    assert not ran(copy.deepcopy(CASE))["dynamic-strain of t"].data.neglected  # nothing is judged
     assert {table.name for table in outcome.tables} == {"dynamic_strain_t", "dynamic_measured_t"}
 
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.base.notes import about
+from fegear.base.printed import percent
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
+from fegear.case.built.neglected_effects import including, remark
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
+from fegear.case.effects import EffectsPart
 from fegear.contact.gauge_strain import gains_of_places
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
@@ -23,7 +28,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
-from fegear.results.pair.loaded_teeth import kind_of, loaded_teeth, needs_teeth
+from fegear.results.pair.loaded_teeth import kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     LEFT_OUT,
     MEASURED,
@@ -41,11 +46,12 @@ from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged,
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.fitted_curve import FittedCurve
+    from fegear.contact.gauge_strain import StrainWith
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.tooth_strain import ToothStrain
     from fegear.engine.sheet.seen import Seen
@@ -78,6 +84,11 @@ class DynamicStrainInputs:
         What makes the computed strain of 3D gears more accurate.
     odd : bool
         Whether some of the teeth differ from the others.
+    neglected : bool
+        Whether it is looked at what effects that are off would change: a trace is judged.
+    tolerance : float
+    off : EffectsPart
+        All of the case, for remedies.
     """
 
     gauge: Gauge
@@ -91,6 +102,9 @@ class DynamicStrainInputs:
     sharper: str = field(compare=False)
     name: str = field(compare=False)
     odd: bool = field(default=False, compare=False)
+    neglected: bool = False
+    tolerance: float = 1.0
+    off: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
 
 
 @dataclass(frozen=True)
@@ -108,6 +122,10 @@ class DynamicStrain(BesideTrace):
         What else may explain the trace.
     sharper : str
         The setting that makes the computed strain of 3D gears more accurate; empty of plane ones.
+    neglected : mapping of str to float
+        Relative change of the quasi-static peak by each effect that is off and changes it by more than the tolerance.
+    including : str
+        What switches these on.
     """
 
     found: ToothStrain
@@ -116,6 +134,8 @@ class DynamicStrain(BesideTrace):
     compared: FittedCurve | None
     otherwise: Otherwise
     sharper: str = ""
+    neglected: Mapping[str, float] = field(default_factory=dict)
+    including: str = ""
 
     @property
     def error(self) -> Array | None:
@@ -135,7 +155,9 @@ class DynamicStrain(BesideTrace):
             self.compared,
             ComputedPeak(
                 found.peak, found.peak_error or 0.0, found.displacement,
-                gains_of_places(self.compared, found.angle, found.displaced), self.load_tolerance, sharper=self.sharper,
+                gains_of_places(self.compared, found.angle, found.displaced), self.load_tolerance,
+                {effect: 1.0 / (1.0 + change) - 1.0 for effect, change in self.neglected.items()}, self.sharper,
+                self.including,
             ),
             self.otherwise, brief=brief,
         )  # fmt: skip
@@ -164,7 +186,12 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     gauge, force = gauge_of(scene, name), Task("tooth-force", _mesh(scene, name))
     if gauge.pair in scene.wide_pairs:
         return (force, *needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
-    return (force, *needs_solution(gauge.gear))
+    return (force, *(needs_teeth(scene, gauge.pair) if _judged(scene, name) else ()), *needs_solution(gauge.gear))
+
+
+def _judged(scene: Scene, name: str) -> bool:
+    """Whether a trace is compared that needs a verdict, and thus what the computation does not have."""
+    return scene.estimates and scene.case.gauge[name].measured is not None
 
 
 def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
@@ -173,7 +200,7 @@ def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
         gauge, _mesh(scene, name), part.one_speed, part.positions,
         scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), gauge.pair in scene.wide_pairs,
         scene.case.pair[gauge.pair].halves, sharper_strain(scene, gauge.pair), name,
-        bool(odd_gears_of(scene, gauge.pair)),
+        bool(odd_gears_of(scene, gauge.pair)), _judged(scene, name), scene.case.accuracy.tolerance, scene.case.effects,
     )  # fmt: skip
 
 
@@ -185,7 +212,31 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
     measured = compared(gauge, found.angle, found.total)
     better = better_described(gauge, measured, found.angle, found.total)
     otherwise = Otherwise(better, gauge.side, found.pair.gear(found.member).teeth)
-    return DynamicStrain(found, alone, gauge.load_tolerance, measured, otherwise, asked.sharper if asked.wide else "")
+    more = _neglected_of(asked, upstream) if asked.neglected else {}
+    neglected = {effect: one.change for effect, one in more.items() if abs(one.change) > asked.tolerance}
+    return DynamicStrain(
+        found, alone, gauge.load_tolerance, measured, otherwise, asked.sharper if asked.wide else "", neglected,
+        including(neglected, asked.off),
+    )  # fmt: skip
+
+
+def _neglected_of(asked: DynamicStrainInputs, upstream: Upstream) -> Mapping[str, StrainWith]:
+    """Quasi-static strain under the nominal load of the pair with each effect that is off."""
+    gauge = asked.gauge
+    if asked.wide:
+        from fegear.contact.wide.gauge_on_face import wide_gauge_neglects
+
+        wide = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
+        body = solid_solution_of(upstream, gauge.gear)
+        place = placed_on_face(gauge, body, wide.pair.gear(gauge.member))
+        return wide_gauge_neglects(wide, gauge.member, gauge.side, gauge.grid, place.middle, gauge.z, body)
+    from fegear.contact.plane.gauge_history import gauge_neglects
+
+    teeth, solved = loaded_pair(upstream, gauge.pair), solution_of(upstream, gauge.gear)
+    place = placed_gauge(gauge, solved)
+    grids, opposite = gauges_on(gauge, place, solved)
+    own = grids.only(int(np.argmin(np.abs(place.displacement))))
+    return gauge_neglects(teeth.spec, teeth.engagement, gauge.member, own, opposite, gauge.tooth)
 
 
 def _in_plane(asked: DynamicStrainInputs, upstream: Upstream, force: ToothForceData) -> ToothStrain:
@@ -228,6 +279,14 @@ def _peak(seen: Seen) -> list[str]:
             "{v[dynamic_peak_strain]}, {v[dynamic_strain_ratio]} times the quasi-static one."
         )
     ]
+
+
+def _neglected(seen: Seen) -> str:
+    """What an effect that is off would change, and the remedy."""
+    effect, change = seen.one
+    asked: DynamicStrainInputs = seen.asked
+    said = f"the quasi-static peak strain by {percent(change, signed=True)}"
+    return remark(f"Gauge {seen.name}, in motion", asked.off, asked.tolerance, effect, [said])
 
 
 _SHEET = Sheet(
@@ -273,11 +332,12 @@ _SHEET = Sheet(
         _peak,
         "Gauge {name}: displaced within its tolerance the dynamic peak changes by up to "
         "{v[dynamic_change_by_placement]}.",
-        figure="dynamic_strain_{name}",
+        figure="dynamic_strain_{name}", rank=lambda seen: seen.data.urgency,
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
         Remark(lambda seen: about(f"Gauge {seen.name}, in motion", seen.data.verdict), when="verdict"),
+        Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
         Remark("Gauge {name}, in motion: {d.unsteady}.", when="unsteady"),
