@@ -46,10 +46,19 @@ def of_key(word: str, known: Collection[str] = ()) -> Meaning | None:
     None for one that is not in the list.
     """
     typed = plain(word)
+    for key, (words, meaning) in _BESIDE.items():
+        if key in known and typed in words:
+            return meaning
     if typed in _KEYS:
-        return _KEYS[typed]
+        return None if known and _a_table_of_others(_KEYS[typed], known) else _KEYS[typed]
     near = difflib.get_close_matches(typed, [*_KEYS, *map(plain, known)], n=1, cutoff=_MISSPELT)
     return _KEYS.get(near[0]) if near and near[0] not in map(plain, known) else None
+
+
+def _a_table_of_others(meaning: Meaning, known: Collection[str]) -> bool:
+    """Whether a word means tables of the case, which have no place beside these keys."""
+    kinds = [key.partition(".") for key in meaning.keys]
+    return bool(kinds) and all(rest == "NAME" and kind not in known for kind, _, rest in kinds)
 
 
 def of_result(word: str) -> Meaning | None:
@@ -303,4 +312,8 @@ def _rows(rows: tuple[tuple[str, tuple[str, ...], str], ...]) -> Iterator[tuple[
 
 
 _KEYS = dict(_rows(_OF_KEYS))
+#: What words mean in a table that has a key: this key.
+_BESIDE = {
+    "samples": (("pairs", "gears", "count", "number"), Meaning(("samples",), "number of random pairs or gears")),
+}
 _RESULTS = dict(_rows(_OF_RESULTS))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,6 +60,7 @@ class Bar:
             self._give_up = self._button("Discard changes", self._give_up_changes)
             with ui.button("Export").props("flat dense no-caps"), ui.menu():
                 ui.menu_item("Case (TOML), current state", lambda: in_words(self._download))
+                ui.menu_item("Gears in mesh as shown (SVG)", lambda: in_words(self._save_gears))
                 for words, what, ending in exports():
                     ui.menu_item(words, partial(in_words, partial(self._ask_folder, what, ending)))
             self._pin = self._button("Pin as A", self._pin_or_not)
@@ -183,6 +185,11 @@ class Bar:
     def _download(self) -> None:
         """Hand the text to the browser, whether or not it can be read or has a file."""
         ui.download.content(self._desk.text.encode(), f"{self._desk.name}.toml", "application/toml")
+
+    def _save_gears(self) -> None:
+        """Have the page save its drawing, with what is switched on; a page without one says so."""
+        none = "document.getElementById('state').textContent = 'no gears in mesh are shown'"
+        ui.run_javascript(f"fegearSaved.gears({json.dumps(self._desk.name)}) || ({none})")
 
     def _ask_folder(self, what: str, ending: str) -> None:
         def chosen(text: str) -> None:

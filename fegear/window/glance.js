@@ -35,6 +35,36 @@ const fegearGlance = (() => {
       "How does the load of one planet change over a mesh cycle?",
     ],
   };
+  // The answer to each of these in a sentence with rounded numbers; none where figures alone show it.
+  const rounded = ({ value, unit }) => `${Number(value.toPrecision(3))} ${unit}`;
+  const share = (part) => `${Math.round(100 * part)} %`;
+  function ofError() {
+    const one = numbers.get(`${pair}.te_peak_to_peak`);
+    return one ? `The peak-to-peak transmission error is ${rounded(one)}. Halve the torque to see whether it falls.` : "";
+  }
+  function ofSharing() {
+    const { data, loadAt } = fegearGears.inside(pair);
+    if (!data || !loadAt) return "";
+    const places = Array.from({ length: 401 }, (_, i) => data.start + (i + 0.5) / 401 * (data.end - data.start));
+    const loads = places.map((x) => loadAt(x, 0) ?? 0), most = Math.max(...loads);
+    if (!(most > 0)) return "";
+    const several = loads.filter((one) => one < 0.999 * most).length / loads.length, ratio = pairs[pair]?.mesh?.ratios?.transverse;
+    if (!(ratio < 2)) return "With a contact ratio of 2 or more at least two tooth pairs carry the load everywhere.";
+    return `Over ${share(several)} of the path of contact (contact ratio ${ratio.toFixed(2)}) more than one tooth pair carries the load; over the other ${share(1 - several)} a single one carries all of it.`;
+  }
+  function ofRoots() {
+    const both = ["driver", "driven"].map((gear) => [gear, numbers.get(`${pair}.${gear}.largest_root_tension`)]);
+    if (both.some(([, one]) => !one)) return "";
+    const [[high, most], [low, least]] = both.sort(([, one], [, other]) => other.value - one.value);
+    const spec = specs.get(`root_stress_history_${pair}`)?.spec, curve = spec && ofPanel(spec, 1).filter(({ name: words }) => words && plain(words).includes(high) && !/compress/.test(plain(words)))[0];
+    let where = "";
+    if (curve) {
+      const y = numbersOf(curve.y), at = y.reduce((best, one, i) => (one > y[best] || !(y[best] === y[best]) ? i : best), 0), axis = plain(spec.layout.xaxis?.title?.text ?? "");
+      where = ` at ${Number(numbersOf(curve.x)[at].toPrecision(3))}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
+    }
+    return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
+  }
+  const ANSWERS = { plane: [ofError, ofSharing, ofRoots], wide: [() => "", ofError, ofRoots], set: [() => "", () => ""] };
   let hiding = false;
   /** The button by which a lecturer writes another question in the place of the one that is asked; an empty one is none. */
   function ownQuestion(asked) {
@@ -72,16 +102,19 @@ const fegearGlance = (() => {
       answer.addEventListener("keydown", (event) => event.stopPropagation());
       const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
       next.onclick = () => { keep({ question: (view.question ?? 0) + 1, words: "" }); ask(); };
-      asked.append(made("p"), answer, next, ownQuestion(asked));
+      asked.append(made("p"), answer, next, ownQuestion(asked), made("output"));
     }
     const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")];
-    const all = QUESTIONS[kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane"];
+    const about = kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane", all = QUESTIONS[about];
     if (words.isContentEditable) return; // it is being written
     const question = view.words || all[Math.abs(view.question ?? 0) % all.length], another = words.textContent !== question;
     words.textContent = question;
     if (another || (!view.revealed && !hiding)) answer.value = ""; // another exercise
     hiding = !view.revealed;
     answer.readOnly = !!view.revealed;
+    const computed = asked.querySelector("output"), sentence = view.revealed && !view.words ? ANSWERS[about][Math.abs(view.question ?? 0) % all.length]() : "";
+    if (computed.textContent !== sentence) computed.textContent = sentence;
+    computed.hidden = !sentence;
   }
 
   // ---- what is shown, and how ---------------------------------------------------------------------------------------
@@ -210,6 +243,7 @@ const fegearGlance = (() => {
       kept.figure.dataset.count = Number(kept.figure.dataset.count ?? 0) + 1; // how often it was drawn
     }
     strip();
+    if (view.exercise && view.revealed) ask(); // its answer follows the numbers
   }
   let due = 0;
   const soon = () => { due ||= requestAnimationFrame(drawAll); };

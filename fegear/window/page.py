@@ -56,6 +56,7 @@ _SCRIPTS = (
     "glance",
     "middle",
     "gears",
+    "saved",
     "crack",
     "sets",
     "gearbox",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 from nicegui import ui
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _offer(name: str, about: str, chosen: Callable[[], None]) -> None:
-    with ui.element("button").classes("offer").props("type=button").on("click", chosen):
+    with ui.element("button").classes("offer").props(f"type=button title={json.dumps(about)}").on("click", chosen):
         if name:
             ui.html(name, tag="b")
         ui.html(about, tag="span")

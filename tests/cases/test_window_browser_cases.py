@@ -199,6 +199,13 @@ def asked_and_answered(browser) -> None:
         assert top >= bottom - 0.5
         assert browser.run(place.format("glance", "bottom")) <= browser.run("innerHeight") + 0.5
         assert browser.run("document.querySelector('#question p').textContent").endswith("?")
+        computed = browser.run("document.querySelector('#asked output').textContent")
+        assert computed.startswith("The peak-to-peak transmission error is ") == (press_first == "to-answers")
+    # the gears as they are shown, as a file that holds by itself
+    svg = "fegearSaved.text(document.querySelector('.mesh-stage'))"
+    drawing = f"new DOMParser().parseFromString({svg}, 'image/svg+xml')"
+    assert browser.run(f"{drawing}.querySelectorAll('path').length") >= 2
+    assert "var(" not in browser.run(svg)
     browser.run("new Promise(done => setTimeout(done, 800))")  # what the server says of the last button has come
     browser.run("document.getElementById('to-answers').click()")  # hides them: then the question's buttons are there
     asked = "document.querySelector('#question p').textContent"

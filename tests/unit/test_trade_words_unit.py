@@ -40,6 +40,7 @@ def said(path, value="1"):
 
 #: What is typed, and the key that is named first or what is told.
 TYPED = {
+    "study.pairs": '"samples" (number of random pairs or gears)',
     # strangers' words, which spelling led astray
     "gear.a.bohrungsdurchmesser": '"bore_diameter"',
     "gear.a.backlash": "use pair.NAME.normal_backlash (made by thickness_allowance of the gears",

@@ -382,7 +382,10 @@ _SHEET = Sheet(
                     ),
                     "mesh_stiffness",
                 ),
-                Over("driver_angle", (Line("te", "transmission error"), Line("te_residual", "residual", "red"))),
+                Over(
+                    "driver_angle",
+                    (Line("te", "transmission error", "green"), Line("te_residual", "residual", "red")),
+                ),
             ),
             of="along",
         ),
