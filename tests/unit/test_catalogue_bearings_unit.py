@@ -122,6 +122,15 @@ def test_a_bearing_of_a_model_that_prints_ratings_is_not_rigid():
     assert "is not possible within the envelope" in text
 
 
+def test_a_bearing_of_a_model_without_a_load_rating_has_a_life_by_its_dimensions():
+    found = case(catalogued(dynamic_capacity=None))["bearing"]["bearing_51"]
+    assert found["life"] == {}
+    assert "dynamic_rating" not in found["catalogue"]
+    assert case(catalogued())["bearing"]["bearing_51"]["life"]["dynamic_rating"] == "22.4 kN"
+    rating = imported(catalogued(dynamic_capacity=None)).case.bearing["bearing_51"].rating
+    assert rating.dynamic_rating == pytest.approx(22.4e3, rel=0.17)  # of a 6305
+
+
 def test_a_catalogue_bearing_goes_to_rexs_and_back():
     scene = imported(catalogued())
     again, _ = there_and_back(scene)
