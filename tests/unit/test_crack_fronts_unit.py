@@ -14,6 +14,7 @@ from fegear.fem.plane.odd.stress_intensity import interaction
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.field import _AtNodes, _Layer, _layer, _von_mises
+from fegear.fem.solid.fillet import SolidFillet, surface_stress
 from fegear.fem.solid.odd.front_intensity import front_rows
 from fegear.fem.solid.section import HUB
 from fegear.geometry.external_tooth import Tooth
@@ -230,3 +231,29 @@ def test_material_is_where_a_zone_spans_its_ends_included_and_hubs_are_longer():
         assert found.stretch == pytest.approx(np.where(section.zone == HUB, 3.0 + place, 1.0))
         assert found.lean == "lean"
     assert (_layer(section, None, 0.0, 1e-6).stretch == 1.0).all()
+
+
+@pytest.mark.parametrize(("tau", "slide"), [(0.0, 0.0), (0.06, 0.0), (-0.06, 0.0), (0.0, 0.2)])
+def test_stress_in_a_surface_is_that_of_the_strain_in_it(tau, slide):
+    """Displacement G X at a straight fillet: by the tensor, along the tangent of the section and square to it."""
+    slope = np.array([[1.0, 0.2, -0.6], [0.1, -0.4, 0.8], [0.7, -0.3, 0.5]])
+    way, start = np.array([math.sin(0.4), math.cos(0.4)]), np.array([1.0, 8.0])
+    node, arc = np.array([0.0, 0.5, 1.0]), np.array([0.2, 0.7])
+    values = np.array([[2.0 * (s - 0.5) * (s - 1.0), -4.0 * s * (s - 1.0), 2.0 * s * (s - 0.5)] for s in arc])
+    slopes = np.array([[4.0 * s - 3.0, 4.0 - 8.0 * s, 4.0 * s - 1.0] for s in arc])
+    place, tangent = start[:, None] + way[:, None] * arc, np.tile(way[:, None], 2)
+    fillet = SolidFillet(np.arange(3), values, slopes, tangent, place, arc, np.full(2, 0.4), 1.0)
+    at, quarter = start[:, None] + way[:, None] * node, np.array([[0.0, -1.0], [1.0, 0.0]])
+    value = slope @ np.vstack([at, 0.0 * node])
+    along = slope[:, :2] @ (tau * quarter @ at + np.array([[slide], [0.0]])) + slope[:, 2:]
+    along[:2] -= tau * quarter @ value[:2]
+    moved = np.stack([value.T, along.T], axis=2)[..., None]  # 1 and the height as functions along the face
+    found = surface_stress(fillet, tau, NU, moved, np.array([[1.0], [0.0]]), np.array([[0.0], [1.0]]), slide)
+    strain = 0.5 * (slope + slope.T)
+    for p in range(2):
+        t, helix = np.append(way, 0.0), np.append(tau * quarter @ place[:, p] + [slide, 0.0], 1.0)
+        b = helix - (helix @ t) * t
+        b /= np.linalg.norm(b)
+        tt, bb, tb = t @ strain @ t, b @ strain @ b, t @ strain @ b
+        expected = [(tt + NU * bb) / (1.0 - NU**2), (bb + NU * tt) / (1.0 - NU**2), tb / (1.0 + NU)]
+        assert found[:, p, 0, 0] == pytest.approx(expected)

@@ -10,12 +10,22 @@ from fegear.base.errors import FegearError, RangeError
 from fegear.contact import load as load_module
 from fegear.contact.compared.population import unevenness
 from fegear.contact.double_helical.double_stress import largest_tension
+from fegear.contact.error_over_pitch import (
+    ErrorOverPitch,
+    TransmissionErrorShift,
+    no_less_than_beside,
+    over_pitch,
+    secant_start,
+)
+from fegear.contact.fourier import effective_error
 from fegear.contact.load import load
 from fegear.contact.pair_spec import PairSpec
+from fegear.contact.plane import moved_outlines
 from fegear.contact.plane.both_flanks import _vertex
 from fegear.contact.plane.largest_on_pair import _beside, _left_of_kink, _smooth
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.peaks import LEFT
+from fegear.contact.plane.shifted_loads import _between_two_places, _of_effective, load_shift
 from fegear.contact.unloaded.manufacture import as_cut
 from fegear.contact.wide_spec import WideSpec
 from fegear.fem.plane.condensation import joined
@@ -253,3 +263,161 @@ def test_parts_without_unknowns_join_nothing():
     dofs, stiffness = joined(one, (np.array([3, 5]), np.array([[4.0, 0.0], [1.0, 6.0]])))
     assert dofs.tolist() == [2, 3, 5]
     assert np.tril(stiffness).tolist() == [[1.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 1.0, 7.0]]
+
+
+# ---- errors and curves over a base pitch -----------------------------------------------------------------------------
+def test_errors_of_amplitudes_add_in_the_effective_one_by_its_slopes():
+    """Against differences of A_e itself, amplitude by amplitude."""
+    amplitude, off = 3.0 / np.arange(1, 15) ** 2, 0.1 + 0.3 * np.random.default_rng(3).random(14)
+
+    def effective(a):
+        return float(effective_error(SimpleNamespace(amplitude=a)))
+
+    step, expected = 1e-6, 0.0
+    for n in range(amplitude.size):
+        more, less = amplitude.copy(), amplitude.copy()
+        more[n] += step
+        less[n] -= step
+        expected += ((effective(more) - effective(less)) / (2.0 * step) * off[n]) ** 2
+    assert _of_effective(amplitude, off) == pytest.approx(math.sqrt(expected), rel=1e-6)
+    assert _of_effective(0.0 * amplitude, off) == pytest.approx(off[0])  # of none, that of the first
+
+
+def test_a_change_that_is_the_same_everywhere_leaves_no_height_and_half_a_step_half_of_it():
+    x = np.linspace(-2.0, 1.0, 3001)[:-1]
+    points = SimpleNamespace(breaks=np.array([-2.0, 0.0, 1.0]), period=3.0, x=x)
+    assert _between_two_places(points, np.full(x.size, 7.0)) == 0.0
+    assert _between_two_places(points, np.where(x < -0.5, 0.0, 4.0)) == pytest.approx(2.0)  # as many alike as apart
+    assert _between_two_places(points, np.where(x < -1.7, 4.0, 0.0)) == 0.0  # few places
+    even = np.sin(2.0 * math.pi * (np.arange(600) + 0.5) / 600.0)
+    wave = _between_two_places(points, np.sin(2.0 * math.pi * x / 3.0))
+    assert wave == pytest.approx(float(np.median(np.abs(even[:, None] - even))), rel=2e-2)
+
+
+def test_loads_of_a_shifted_solution_are_compared_where_both_have_points():
+    one = SimpleNamespace(
+        x=np.array([0.0, 1.0, 2.0, 3.0]), load=np.array([[1.0, 5.0], [2.0, 5.0], [4.0, 5.0], [9.0, 5.0]])
+    )
+    other = SimpleNamespace(x=np.array([0.5, 2.5]), load=np.array([[1.0, 4.0], [5.0, 8.0]]))
+    # between its two points the other goes straight: 2 at 1, 4 at 2, and 5, 7 of the second load
+    assert load_shift(one, other).tolist() == [[0.0, 0.0], [0.0, 0.0], [0.0, 2.0], [0.0, 0.0]]
+
+
+def error_over_pitch(**given):
+    one = SimpleNamespace(
+        mesh_stiffness_mean=200.0, mesh_stiffness_on_path=190.0, local_stiffness_on_path=300.0, at=1,
+        local_stiffness_mean=np.array([100.0, 400.0]), te_mean=np.array([1.0, 5.0]), mesh_compliance_mean=0.02,
+        shift=SimpleNamespace(stiffness=4.0, mean=0.5), shifts=(), **given,
+    )  # fmt: skip
+    one._share_of_error = lambda stiffness: ErrorOverPitch._share_of_error(one, stiffness)
+    one._errors = lambda of: ErrorOverPitch._errors(one, of)
+    return one
+
+
+def test_errors_of_stiffnesses_are_relatively_those_of_the_secant_s_mean():
+    one = error_over_pitch()
+    # 4 of 200: 2 %
+    assert ErrorOverPitch.on_path_error.fget(one) == pytest.approx(0.02 * 190.0)
+    assert ErrorOverPitch.local_on_path_error.fget(one) == pytest.approx(0.02 * 300.0)
+    assert ErrorOverPitch.local_stiffness_error.fget(one) == pytest.approx(0.02 * 400.0)
+    assert ErrorOverPitch.mesh_compliance_error.fget(one) == pytest.approx(0.1 * 0.02)  # 0.5 of 5
+    one.mesh_compliance_mean = one.mesh_stiffness_on_path = None
+    assert ErrorOverPitch.mesh_compliance_error.fget(one) is ErrorOverPitch.on_path_error.fget(one) is None
+    one.shift = None
+    assert ErrorOverPitch.local_stiffness_error.fget(one) is None
+
+
+def test_contact_outside_the_path_stiffens_where_the_change_exceeds_its_error():
+    one = error_over_pitch()
+    stiffens = ErrorOverPitch.off_path_stiffens.fget
+    assert stiffens(one) is True
+    for on_path, expected in ((195.9, True), (196.1, False), (204.1, True), (203.9, False)):
+        one.mesh_stiffness_on_path = on_path
+        assert stiffens(one) is expected
+    one.shift, one.mesh_stiffness_on_path = None, 200.0 * (1.0 - 1e-15)
+    assert stiffens(one) is False  # round-off
+    one.mesh_stiffness_on_path = 199.9
+    assert stiffens(one) is True
+    one.mesh_stiffness_on_path = None
+    assert stiffens(one) is None
+
+
+def test_errors_under_every_load_are_those_of_its_own_shift():
+    shifts = tuple(TransmissionErrorShift(n, 10.0 + n, 20.0 + n, np.zeros(1), 30.0 + n) for n in (1.0, 2.0))
+    one = error_over_pitch()
+    one.shifts = shifts
+    assert ErrorOverPitch.mean_errors.fget(one).tolist() == [1.0, 2.0]
+    assert ErrorOverPitch.peak_to_peak_errors.fget(one).tolist() == [11.0, 12.0]
+    assert ErrorOverPitch.effective_errors.fget(one).tolist() == [21.0, 22.0]
+    one.shifts = ()
+    assert ErrorOverPitch.mean_errors.fget(one) is None
+    empty = TransmissionErrorShift(1.0, 1.0, 1.0, np.zeros(0), 1.0)
+    assert empty.first_harmonic == 0.0
+    assert TransmissionErrorShift(1.0, 1.0, 1.0, np.array([3.0, 4.0]), 1.0).first_harmonic == 3.0
+
+
+def test_no_harmonic_is_surer_than_those_beside_it():
+    error = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0])
+    found = no_less_than_beside(error)
+    assert found == pytest.approx([math.sqrt(5.0)] * 2 + [5.0] + [math.sqrt(5.0)] * 2 + [0.0, 0.0])
+    # at an end the first stands for what is beyond it
+    assert no_less_than_beside(np.array([2.0, 0.0, 0.0, 0.0]))[1] == pytest.approx(math.sqrt(2.0 * 4.0 / 5.0))
+
+
+def test_the_secant_starts_where_it_has_no_force_and_round_off_is_none():
+    te, stiffness = np.array([7.0, 5.0, 5.0]), np.array([100.0, 100.0, 100.0 * (1.0 + 1e-14)])
+    assert secant_start(te, stiffness, 500.0).tolist() == [2.0, 0.0, 0.0]
+
+
+def test_a_curve_over_a_pitch_goes_round_straight_between_its_rows():
+    x, values = np.array([-1.0, 0.0, 1.5, 2.0]), np.array([3.0, 5.0, 2.0, 99.0])
+    part = np.array([0.0, 1.0 / 6.0, 1.0 / 3.0, 5.0 / 6.0, 11.0 / 12.0])
+    # the row a pitch behind the first one is the first one itself
+    assert over_pitch(x, values, 3.0, part) == pytest.approx([3.0, 4.0, 5.0, 2.0, 2.5])
+
+
+# ---- outlines under load ---------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("coupling", [True, False])
+@pytest.mark.parametrize(("member", "forward"), [("driver", 1), ("driven", -1)])
+def test_an_outline_is_moved_by_the_loads_on_all_pairs(member, forward, coupling, monkeypatch):
+    rng = np.random.default_rng(8)
+    loads, radius, width = (
+        rng.uniform(50.0, 90.0, (2, 3, 1)),
+        rng.uniform(1.0, 2.0, (2, 3)),
+        rng.uniform(0.1, 0.2, (2, 3)),
+    )
+    loads[0, 1] = loads[1, 2] = 0.0
+    number = np.array([0, 1])
+    contacts = SimpleNamespace(number=number, radius_driver=radius, radius_driven=radius)
+
+    def moves(k, r, b):
+        return np.array([1.0 + 10.0 * k + r, 2.0 - k + b])
+
+    def displacement(r, patch, b):
+        assert patch == 0.07
+        return {k: np.stack([moves(k, r, b), -moves(k, r, b)], axis=1) for k in (-1, 0, 1)}  # (2, N, P)
+
+    motion = SimpleNamespace(points=np.ones((2, 2)), displacement=displacement)
+    gear_ = SimpleNamespace(module=2.0, material=SimpleNamespace(young_modulus=400.0))
+    e = SimpleNamespace(
+        pair=SimpleNamespace(gear=lambda name: gear_), compliance=SimpleNamespace(face_width=5.0, coupling=coupling)
+    )  # fmt: skip
+    taken = np.full((4, 2, 2), 0.25)
+    monkeypatch.setattr(moved_outlines, "_half_width", lambda *asked: width if asked == (e, state, member) else None)
+    monkeypatch.setattr(moved_outlines, "_removed", lambda *asked: taken)
+    state = SimpleNamespace(grid=SimpleNamespace(contacts=contacts), loads=loads)
+    pairs = (-1, 0, 1, 3)
+    found = moved_outlines.moved_outline(e, state, member, motion, 0.07, pairs)
+    assert found.points == pytest.approx(2.0 * np.ones((2, 2)))
+    assert found.pairs.tolist() == list(pairs)
+    for p in range(3):
+        for t, pair in enumerate(pairs):
+            expected = np.array([0.25, 0.25])
+            for row, other in enumerate(number.tolist()):
+                k = forward * (pair - other)
+                if abs(k) <= 1 and (coupling or k == 0):
+                    own = moves(k, radius[row, p] / 2.0, width[row, p] / 2.0)
+                    expected = expected + own * loads[row, p, 0] / 5.0 / 400.0
+            assert found.displacement[p, t, :, 0] == pytest.approx(expected)
+            assert found.displacement[p, t, :, 1] == pytest.approx(0.5 - expected)
+    assert found.largest == pytest.approx(np.hypot(*np.moveaxis(found.displacement, 2, 0)).max())

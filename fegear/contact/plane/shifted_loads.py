@@ -94,5 +94,5 @@ def load_shift(history: PairHistory, other: PairHistory) -> Array:
     ]
     difference = np.abs(np.stack(columns, axis=1) - history.load)
     # A jump of the load at an end of the path is in the same place in both; outside it one of them may have no point.
-    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1]) if other.x.size else np.zeros(history.x.size, bool)
+    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1])
     return np.where(inside[:, None], difference, 0.0)
