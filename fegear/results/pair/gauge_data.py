@@ -17,6 +17,8 @@ from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged,
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
+#: What puts a gauge whose strain is not linear over torque behind those whose own verdict is of the same class.
+_BY_LINEARITY = 0.25
 
 
 @dataclass(frozen=True)
@@ -194,9 +196,9 @@ class GaugeData(BesideTrace):
 
     @property
     def urgency(self) -> float:
-        """A verdict at one torque is worth little where the strain is not linear over torque."""
+        """A verdict at one torque is worth little where the strain is not linear; behind one that fails itself."""
         own = super().urgency
-        return min(own, float(class_of(self.linearity))) if self.linearity else own
+        return min(own, class_of(self.linearity) + _BY_LINEARITY) if self.linearity else own
 
     @property
     def near_contact(self) -> bool:
