@@ -101,7 +101,7 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
         If the file is no trace, or has none at the nominal torque.
     """
     key = f"gauge.{name}.measured.file"
-    columns = {
+    columns: dict[str, str | tuple[str, ...]] = {
         part.angle_column: "angle", part.strain_column: COLUMN_OF_STRAIN, part.torque_column: "torque",
         part.time_column: "time",
     }  # fmt: skip
