@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 
 from fegear.base.errors import FegearError, RangeError
 from fegear.contact import load as load_module
@@ -27,6 +28,8 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.peaks import LEFT
 from fegear.contact.plane.shifted_loads import _between_two_places, _of_effective, load_shift
 from fegear.contact.unloaded.manufacture import as_cut
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.pair_contact import pair_contact
 from fegear.contact.wide_spec import WideSpec
 from fegear.fem.plane.condensation import joined
 from fegear.fem.plane.odd import growth
@@ -421,3 +424,30 @@ def test_an_outline_is_moved_by_the_loads_on_all_pairs(member, forward, coupling
             assert found.displacement[p, t, :, 0] == pytest.approx(expected)
             assert found.displacement[p, t, :, 1] == pytest.approx(0.5 - expected)
     assert found.largest == pytest.approx(np.hypot(*np.moveaxis(found.displacement, 2, 0)).max())
+
+
+# ---- unloaded contact ------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("hands", "errors"),
+    [
+        (("spur", "spur"), (6, 0, 0)), (("right", "left"), (-6, 2, 0)), (("right", "left"), (6, 0, 1)),
+        (("left", "right"), (4, 4, 3)),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("widths", [(30e-3, 27e-3), (27e-3, 30e-3)])
+def test_the_slope_of_the_transmission_error_is_that_of_its_differences_in_corners_too(hands, errors, widths):
+    """Flanks, edges of tips and of faces, and corners of two of these."""
+    gears = [
+        helical_gear(teeth, 4e-3, math.radians(20.0), 0.0 if hand == "spur" else math.radians(15.0), width, hand)
+        for teeth, width, hand in zip((23, 31), widths, hands, strict=True)
+    ]
+    pair = HelicalPair(*gears, Misalignment(*(math.pi / 10800.0 * one for one in errors), 0.0), 0.4, 0.0, 1e-3)
+    low, high = pair.engagement
+    step, angle = 1e-7, np.linspace(low - 0.3 * (high - low), high + 0.3 * (high - low), 61)
+    found, after, before = (pair_contact(pair, angle + by) for by in (0.0, step, -step))
+    alike = (after.bounds == found.bounds).all(axis=0) & (before.bounds == found.bounds).all(axis=0)
+    alike &= np.isfinite(after.error) & np.isfinite(before.error)  # elsewhere these teeth do not touch
+    assert (found.kind[alike] == "corner").sum() > 10
+    difference = (after.error[alike] - before.error[alike]) / (2.0 * step)
+    assert found.slope[alike] == pytest.approx(difference, abs=2e-8)
+    assert np.abs(found.slope[found.kind == "corner"]).max() > 0.05
