@@ -17,11 +17,14 @@ from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stress_ratio
 from fegear.formulas.iso6336.part5_materials import MATERIALS
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
+from fegear.formulas.iso6336.rating import _root_rating
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.formulas.many.pairs import many_pairs
 from fegear.formulas.many.ratings import ManyLevels, rate_many, rate_many_spectra
 from fegear.formulas.many.shared import ManyConditions, ManyDuties, qualities_of_class
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.rack import BasicRack
 
 GROUPS = tuple(dict.fromkeys(MATERIALS.values()))
 ROUGH = (4.8e-6, 20e-6)
@@ -276,3 +279,74 @@ def test_spectra_of_many_pairs_are_those_of_each_alone():
             for name in ("contact_damage", "bending_damage"):
                 assert getattr(many, name)[:, k] == pytest.approx(getattr(alone, name), rel=1e-9)
     assert rated > 20
+
+
+def test_some_of_many_pairs_are_rated_as_among_all():
+    asked = Group(4, 6).together()
+    whole, rows = rate_many(asked), np.array([4, 1, 5])
+    some = replace(asked, pairs=asked.pairs.at(rows), quality=asked.quality.at(rows), duty=asked.duty.at(rows))
+    found = rate_many(some)
+    for name in ("contact_stress", "contact_safety", "bending_stress", "bending_safety"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(whole, name)[:, rows])
+
+
+@pytest.mark.parametrize(("seed", "line"), [(0, "annex-c"), (5, "annex-c"), (5, "part-2")])
+def test_spectra_of_some_pairs_are_those_of_each_alone_on_either_line_of_the_flanks(seed, line):
+    """Loads high enough that annex C, which bears more at few load cycles, makes a difference."""
+    group = Group(seed, 3)
+    asked = replace(group.together(), annex_c=line == "annex-c")
+    shares = ((1.6, 1e-5), (1.0, 0.3), (0.0, 0.5))
+    many = rate_many_spectra(
+        asked, [ManyLevels(asked.duty.tangential * f, asked.duty.speed, asked.duty.cycles * s) for f, s in shares]
+    )
+    rated = 0
+    for k in range(3):
+        try:
+            conditions, _ = group.rated_alone(k)
+        except (RangeError, ConvergenceError):
+            continue
+        duty = conditions.duty
+        levels = [
+            (replace(duty, tangential=duty.tangential * f) if f else None, (duty.cycles[0] * s, duty.cycles[1] * s))
+            for f, s in shares
+        ]
+        alone = rate_spectrum(replace(conditions, spectrum_line=line), levels, group.computed)
+        for name in ("contact_safety", "bending_safety", "contact_damage", "bending_damage"):
+            assert getattr(many, name)[:, k] == pytest.approx(getattr(alone, name), rel=1e-9)
+        rated += 1
+    assert rated
+
+
+def test_given_transverse_factors_stand_in_for_those_of_the_standard():
+    group = Group(0, 3)
+    group.computed = Replacement(K_Halpha=1.15, K_Falpha=(1.3, 1.3))
+    many = rate_many(group.together())
+    for k in np.flatnonzero(many.rated):
+        _, alone = group.rated_alone(int(k))
+        assert many.bending_stress[:, k] == pytest.approx(alone.bending_stress, rel=1e-12)
+        assert many.contact_stress[:, k] == pytest.approx(alone.contact_stress, rel=1e-12)
+    assert set(many.factors.K_Halpha) == {1.15}
+    assert set(many.factors.K_Falpha) == {1.3}
+
+
+@pytest.mark.parametrize("backup", [None, 0.8, 1.3])
+def test_an_outline_that_a_rack_makes_is_rated_as_the_rack_says_with_a_rim_as_without(backup):
+    """Of spur teeth the section of the outline is that of the standard's equations."""
+    group, m, width = Group(0, 1), 3e-3, 30e-3
+    shapes = [
+        GearShape(z, x, m * (z + 2.0 + 2.0 * x), m * (z - 2.5 + 2.0 * x), width, 1.25, 0.3, generating_shift=x)
+        for z, x in ((25, 0.2), (41, -0.2))
+    ]
+    if backup is not None:
+        shapes = [replace(one, rim_thickness=backup * one.depth) for one in shapes]
+    formed = [replace(one, formed=Tooth(one.teeth, BasicRack(1.0, 1.25, 0.3), one.profile_shift)) for one in shapes]
+    conditions = group.conditions(0)
+    by_rack, by_outline = (
+        replace(conditions, geometry=PairGeometry((both[0], both[1]), m, math.radians(20.0), 0.0, 0.5 * m * 66))
+        for both in (shapes, formed)
+    )
+    for i in (0, 1):
+        one, other = _root_rating(by_rack, i), _root_rating(by_outline, i)
+        for name in ("teeth", "load_diameter", "load_distribution", "rim", "stress"):
+            assert getattr(other, name) == pytest.approx(getattr(one, name), rel=2e-6), name
+        assert (other.rim > 1.0) is (backup == 0.8)
