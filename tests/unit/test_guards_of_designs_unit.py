@@ -1,0 +1,101 @@
+"""Guards that ordinary cases pass by: bounds but for round-off, slopes of nothing, remedies that can be followed."""
+
+import math
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import GeometryError, RangeError
+from fegear.design.flanks.topography import _CHORD, _end_slopes
+from fegear.design.loading import LoadingFunction, refuse_beyond_path
+from fegear.formulas.iso6336.pair_geometry import of_pair
+from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
+from fegear.geometry.asymmetric_tooth import AsymmetricTooth
+from fegear.geometry.custom_fillet_tooth import with_fillet
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.fillet_shapes import EllipseOnSpace
+from fegear.geometry.gear import Gear
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+
+RACK = BasicRack(1.0, 1.25, 0.38)
+
+
+def gear_of(tooth, bore=0.01):
+    return Gear(tooth, 2e-3, bore, 0.02)
+
+
+PAIR = GearPair(gear_of(Tooth(24, RACK, 0.2)), gear_of(Tooth(37, RACK, -0.2)))
+
+
+# ---- design zones ----------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("end", [-1.0, 1.0])
+def test_a_zone_may_end_where_the_path_does_but_for_round_off(end):
+    middle = 0.5 * (PAIR.x_start + PAIR.x_end)
+    for beyond, fits in ((0.0, True), (1e-10, True), (1e-7, False), (0.1, False)):
+        # A zone of 1.2 base pitches whose one end lies so much beyond that of the path.
+        half = 0.6 * PAIR.base_pitch
+        centre = middle + end * (0.5 * PAIR.path_length - half + beyond * PAIR.base_pitch)
+        zone = LoadingFunction(2.0 * half, PAIR.base_pitch, centre)
+        if fits:
+            refuse_beyond_path(zone, PAIR)
+        else:
+            with pytest.raises(RangeError, match="extends beyond the path of contact"):
+                refuse_beyond_path(zone, PAIR)
+
+
+def test_beyond_its_zone_a_relief_goes_on_as_it_ends_and_never_falls():
+    """Two ends whose stations lie on lines; one distance only, and none at all, say nothing about a slope."""
+    loading = SimpleNamespace(over_path=SimpleNamespace(
+        x_start=0.0, x_end=10.0, length=10.0, terms=((0.0, 0.0, 1.0),)))  # fmt: skip
+    x = np.linspace(0.0, 10.0, 201)
+
+    def slopes(relief, present=True):
+        lines = SimpleNamespace(x=x, present=np.broadcast_to(present, x.shape))
+        return _end_slopes(lines, relief, loading)
+
+    falling, rising = 0.3 * np.maximum(1.0 - x, 0.0), 0.2 * np.maximum(x - 9.0, 0.0)
+    assert slopes(falling + rising) == pytest.approx((0.3, 0.2), rel=1e-9)
+    assert slopes(-falling - rising) == (0.0, 0.0)
+    assert slopes(falling + rising, x == 5.0) == (0.0, 0.0)
+    assert slopes(falling + rising, (x == 0.0) | (x == 10.0)) == (0.0, 0.0)
+    # As far as a share of the ramp, and of a short ramp as of one of a twentieth of the zone.
+    for ramp, counts in ((2.0, 2.0), (0.1, 0.5)):
+        loading.over_path.terms = ((0.0, 0.0, ramp),)
+        reach = _CHORD * counts
+        x = np.concatenate([np.linspace(0.0, reach, 41), np.linspace(1.01 * reach, 10.0, 101)])
+        assert slopes(np.maximum(reach - x, 0.0))[0] == pytest.approx(1.0, rel=1e-9)
+        assert slopes(np.maximum(0.9 * reach - x, 0.0))[0] < 0.999
+
+
+# ---- remedies --------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("internal", [False, True])
+def test_a_bore_that_cannot_be_is_refused_with_one_that_can(internal):
+    tooth = InternalTooth(60, PinionCutter(20), tip_radius=29.2) if internal else Tooth(24, RACK)
+    root = tooth.root_radius * 2e-3
+    with pytest.raises(GeometryError, match="bore_radius") as refused:
+        gear_of(tooth, root)
+    usual = float(re.search(r"([0-9.]+) mm", refused.value.remedy)[1]) * 1e-3
+    # A rim of 3.5 modules of an internal gear, else half the root radius.
+    assert usual == pytest.approx(root + 3.5 * 2e-3 if internal else 0.5 * root, rel=1e-3)
+    assert gear_of(tooth, usual).bore_radius == usual
+
+
+# ---- ratings ---------------------------------------------------------------------------------------------------------
+def test_a_rating_takes_the_tool_of_shaped_teeth_and_refuses_uneven_ones():
+    tooth = PAIR.driver.tooth
+    shaped = replace(PAIR.driver, tooth=with_fillet(tooth, EllipseOnSpace(tooth.form_radius + 0.02)))
+    found, plain = (of_pair(GearPair(one, PAIR.driven)) for one in (shaped, PAIR.driver))
+    assert found.gears[0].formed == shaped.tooth
+    assert plain.gears[0].formed is None
+    for name in ("teeth", "profile_shift", "generating_shift", "tip_radius", "tip_diameter", "residual_undercut"):
+        assert getattr(found.gears[0], name) == getattr(plain.gears[0], name)
+    assert found.gears[0].dedendum == pytest.approx(shaped.symmetric_tooth.dedendum)
+    uneven = AsymmetricRack(RackFlank(math.radians(25.0), 0.2), RackFlank(math.radians(18.0), 0.3))
+    gears = [gear_of(AsymmetricTooth(z, uneven).drive) for z in (24, 37)]
+    with pytest.raises(GeometryError):
+        of_pair(GearPair(*gears))
