@@ -138,18 +138,22 @@ def of_results():
     return kept
 
 
-def neutral(name):
-    """Of a module of the other rooms: flags, zeros and ones that are taken where nothing is given."""
+def neutral(name, were=()):
+    """Of a module of the other rooms: flags, zeros and ones that are taken where nothing is given, and what were."""
     declared = of_module(name, None).items()
     found = {known: kept for known, kept in declared if len(kept) == 1}
-    return {known: kept for known, kept in found.items() if known.endswith(UNSEEN) or kept[0] in (0.0, 1.0)}
+    return {
+        known: kept for known, kept in found.items()
+        if known.endswith(UNSEEN) or known in were or kept[0] in (0.0, 1.0)
+    }  # fmt: skip
 
 
-def found():
-    """Of all modules, and of all results."""
+def found(were=None):
+    """Of all modules, and of all results; of what was neutral what it is now."""
+    were = kept() if were is None else were
     every = {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
-    every |= {name: neutral(name) for name, _ in modules(OTHERS)}
-    return {name: kept for name, kept in every.items() if kept}
+    every |= {name: neutral(name, were.get(name, ())) for name, _ in modules(OTHERS)}
+    return {name: of_name for name, of_name in every.items() if of_name}
 
 
 def kept():
@@ -186,6 +190,7 @@ def main():
     asked, new = wishes.parse_args(), found()
     print(*differences(kept(), new), sep="\n")
     if asked.accept:
+        new = found({})
         parts = []
         for module in sorted(new):
             told = {name: [whole(one) for one in of_name] for name, of_name in new[module].items()}
