@@ -8,9 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.base.errors import GeometryError, RangeError
+from fegear.base.errors import GeometryError, InputError, RangeError
 from fegear.design.flanks.topography import _CHORD, _end_slopes
-from fegear.design.loading import LoadingFunction, refuse_beyond_path
+from fegear.design.loading import LoadingFunction, Ramp, refuse_beyond_path
+from fegear.design.root_stress_loading import Allowed, least_root_stress
+from fegear.design.sizing import by_atlas
+from fegear.design.tip_relief import robust
 from fegear.formulas.iso6336.pair_geometry import of_pair
 from fegear.geometry.asymmetric_rack import AsymmetricRack, RackFlank
 from fegear.geometry.asymmetric_tooth import AsymmetricTooth
@@ -99,3 +102,95 @@ def test_a_rating_takes_the_tool_of_shaped_teeth_and_refuses_uneven_ones():
     gears = [gear_of(AsymmetricTooth(z, uneven).drive) for z in (24, 37)]
     with pytest.raises(GeometryError):
         of_pair(GearPair(*gears))
+
+
+# ---- searches --------------------------------------------------------------------------------------------------------
+def test_by_golden_section_each_place_is_the_least_of_all_that_were_looked_at():
+    rng = np.random.default_rng(2)
+    low, high = rng.uniform(0.0, 1.0, 30), rng.uniform(2.0, 3.0, 30)
+    least = rng.uniform(low, high)
+    least[:2] = low[0], high[1]
+    seen = []
+
+    def of(x):
+        seen.append(x)
+        return np.where(x < least, 2.0, 1.0) * np.abs(x - least)
+
+    found = by_atlas._golden(of, low, high)
+    every = np.array(seen)
+    values = np.where(every < least, 2.0, 1.0) * np.abs(every - least)
+    np.testing.assert_array_equal(found, every[values.argmin(axis=0), np.arange(30)])
+    assert ((every >= low) & (every <= high)).all()
+    part = 0.5 * (math.sqrt(5.0) - 1.0)
+    assert (np.abs(found - least) <= part ** len(seen[2:]) * (high - low)).all()
+
+
+def test_steps_lead_to_the_least_within_what_amounts_and_lengths_may_be():
+    """Of a function with a kink in each number; an amount and a length whose least lies outside end where they may."""
+    least, steps, deepest = np.array([12e-6, 0.4, 50e-6, 1.7]), (8e-6, 0.1), 30e-6
+    asked = []
+
+    def quick(p):
+        asked.append(tuple(p))
+        return 1.0 + float(np.abs((np.array(p) - least) / [1e-6, 0.05, 1e-6, 0.05]).sum())
+
+    value, found = robust._led(SimpleNamespace(quick=quick), (2e-6, 0.9, 5e-6, 0.3), steps, deepest)
+    smallest = np.array([steps[0], steps[1]] * 2) * 0.5**robust._HALVINGS
+    wanted = np.array([12e-6, 0.4, deepest, 1.0])
+    assert (np.abs(np.array(found) - wanted) <= smallest).all()
+    assert value == quick(found)
+    every = np.array(asked)
+    assert (every >= [0.0, 0.02, 0.0, 0.02]).all()
+    assert (every <= [deepest, 1.0, deepest, 1.0]).all()
+    low = np.array([-5e-6, 0.001, -5e-6, 0.001])
+    _, found = robust._led(
+        SimpleNamespace(quick=lambda p: 1.0 + float(np.abs(np.array(p) - low).sum())), found, steps, deepest
+    )
+    assert found == pytest.approx((0.0, 0.02, 0.0, 0.02), abs=1e-12)
+
+
+class Stress:
+    """Tensions and pressures that are least at a peak of their own for each exponent."""
+
+    def __init__(self, least):
+        self.least = least
+
+    def worst(self, loading):
+        height, at = self.least[loading.ramp.exponent]
+        assert loading.inner_ramp == Ramp(1.0, loading.ramp.exponent)
+        return height + abs(loading.peak - at)
+
+    def pressure(self, loading):
+        return 4.0 - loading.peak
+
+
+def test_the_loading_of_least_root_stress_is_that_of_all_exponents_that_allow_its_slope():
+    least = {None: (2.0, 0.7), 3: (1.5, 0.8), 5: (1.0, 0.61), 7: (1.2, 0.9), 9: (1.3, 0.95)}
+    pitch = PAIR.base_pitch
+
+    def found(slope, allowed=None, length=2.5, exponents=(None, 3, 5, 7, 9)):
+        start = Ramp(min(slope, 9.0), 9)
+        zone = LoadingFunction(length * pitch, pitch, 0.0, start)
+        return least_root_stress(Stress(least), zone, exponents, allowed)
+
+    for slope, tried in ((1.0, [None, 3, 5, 7, 9]), (2.0, [None, 3, 5, 7, 9]), (2.1, [3, 5, 7, 9]), (3.0, [3, 5, 7, 9]),
+                         (5.1, [7, 9])):  # fmt: skip
+        one = found(slope)
+        assert [r for r, *_ in one.candidates] == tried
+        best = min(tried, key=lambda r: least[r][0])
+        assert one.loading.ramp == Ramp(slope, best)
+        assert one.loading.peak == pytest.approx(least[best][1], abs=1e-4)
+        assert one.stress == pytest.approx(least[best][0], abs=1e-4)
+        assert one.pressure == pytest.approx(4.0 - least[best][1], abs=1e-4)
+        for r, peak, stress, pressure in one.candidates:
+            assert (peak, stress) == pytest.approx((least[r][1], least[r][0]), abs=1e-4)
+            assert pressure == pytest.approx(4.0 - peak)
+    # Where pressure counts more than tension the largest peak is chosen, 1 at a contact ratio of 2.5: it lowers that.
+    pressed = found(1.0, Allowed(100.0, 1.0, 4.0))
+    assert pressed.loading.peak == pytest.approx(1.0, abs=1e-4)
+    assert Allowed(100.0, 1.0, 4.0).used(30.0, 0.1) == pytest.approx(1.2)
+    assert Allowed(100.0, 1.0, 4.0).used(3.0, 0.7) == pytest.approx(1.4)
+    with pytest.raises(InputError, match=r"design\.peak"):
+        found(1.0, length=1.9)
+    with pytest.raises(InputError, match=r"design\.exponent"):
+        found(6.0, exponents=(None, 3, 5))
