@@ -11,6 +11,7 @@ import pytest
 from fegear.base.errors import GeometryError, InputError, RangeError
 from fegear.design.flanks.topography import _CHORD, _end_slopes
 from fegear.design.loading import LoadingFunction, Ramp, refuse_beyond_path
+from fegear.design.preferred import preferred
 from fegear.design.root_stress_loading import Allowed, least_root_stress
 from fegear.design.sizing import by_atlas
 from fegear.design.tip_relief import robust
@@ -24,6 +25,11 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.geometry.rack_and_pinion import RackAndPinion, distance_of_backlash
+from fegear.geometry.rack_cutter import RackFlank as CutFlank
+from fegear.geometry.rack_tooth import RackTooth
+from fegear.geometry.rim_support import RimSupport
+from fegear.geometry.toothed_rack import Rack
 
 RACK = BasicRack(1.0, 1.25, 0.38)
 
@@ -194,3 +200,76 @@ def test_the_loading_of_least_root_stress_is_that_of_all_exponents_that_allow_it
         found(1.0, length=1.9)
     with pytest.raises(InputError, match=r"design\.exponent"):
         found(6.0, exponents=(None, 3, 5))
+
+
+@pytest.mark.parametrize("parabola", [-0.5, 0.0, 1.0])
+@pytest.mark.parametrize("shaped", [False, True])
+def test_a_cut_flank_goes_from_the_form_circle_to_the_tip(parabola, shaped):
+    """The parameters of its ends are those of points on both circles, however the cutter's profile is bent."""
+    gear = PAIR.driver
+    if shaped:
+        gear = replace(gear, tooth=with_fillet(gear.tooth, EllipseOnSpace(gear.tooth.form_radius + 0.05)))
+    flank = CutFlank(gear, parabola)
+    at_form, at_tip = (abs(flank.profile(s)[0]) for s in (flank.s_form, flank.s_tip))
+    assert at_tip == pytest.approx(gear.involute_tip_radius, rel=1e-12)
+    if shaped or parabola == 0.0:
+        assert at_form == pytest.approx(gear.form_radius, rel=1e-12)
+    assert flank.s_form < 0.0 < flank.s_tip
+
+
+# ---- pairs and racks by hand -----------------------------------------------------------------------------------------
+@pytest.mark.parametrize("widths", [(20e-3, 14e-3), (14e-3, 20e-3)])
+def test_a_helical_rack_overlaps_over_the_smaller_face(widths):
+    beta, module, basic, count = math.radians(15.0), 2e-3, BasicRack(), 11
+    tooth = Tooth(20, basic, profile_shift=0.2, thickness_allowance=0.01, helix_angle=beta)
+    pinion = Gear(tooth, module, 0.012, widths[0], hand="right")
+    rack = Rack(RackTooth(basic, helix_angle=beta), module, count, 6.0 * module, widths[1], hand="left")
+    pair = RackAndPinion(pinion, rack, distance_of_backlash(pinion, rack, 40e-6))
+    assert pair.face_width == 14e-3
+    overlap = 14e-3 * math.sin(beta) / (math.pi * module)
+    assert pair.overlap_ratio == pytest.approx(overlap, rel=1e-12)
+    assert pair.total_contact_ratio == pytest.approx(pair.contact_ratio + overlap, rel=1e-12)
+    diameter = 20 * module / math.cos(beta)
+    assert pair.travel_per_turn == pytest.approx(math.pi * diameter, rel=1e-12)
+    # By hand from both tips along the line of action, whose angle is that of the section across the axis.
+    alpha = math.atan(math.tan(math.radians(20.0)) / math.cos(beta))
+    tip = 0.5 * diameter + (1.0 + 0.2) * module
+    far = math.sqrt(tip**2 - (0.5 * diameter * math.cos(alpha)) ** 2) - 0.5 * diameter * math.sin(alpha)
+    near = (module - (pair.distance - 0.5 * diameter)) / math.sin(alpha)
+    pitch = math.pi * module / math.cos(beta) * math.cos(alpha)
+    assert pair.contact_ratio == pytest.approx((far + near) / pitch, rel=1e-9)
+    assert pair.stroke == pytest.approx(((count - 1) * pitch + far + near) / math.cos(alpha), rel=1e-9)
+    assert pair.backlash == pytest.approx(40e-6, rel=1e-9)
+    # Neither tip reaches the end of the mate's flank: the rack's ends at its root rounding of 0.25 modules.
+    depth = 1.25 - 0.25 * (1.0 - math.sin(math.radians(20.0)))
+    flank = (pair.distance - 0.5 * diameter + depth * module) / math.sin(alpha)
+    base, at_pitch_point = 0.5 * diameter * math.cos(alpha), 0.5 * diameter * math.sin(alpha)
+    start = math.sqrt(pinion.form_radius**2 - base**2) - at_pitch_point
+    assert pair.interference == pytest.approx((start + near, far - flank), rel=1e-9)
+    assert max(pair.interference) < 0.0
+
+
+def test_what_carries_a_rim_is_the_same_in_modules():
+    tooth, spread = Tooth(40, RACK), RimSupport(pins=6, width=5e-3, angle=0.1)
+    gear = Gear(tooth, 2e-3, 0.03, 0.02, support=spread)
+    assert gear.support_in_modules == replace(spread, width=pytest.approx(2.5))
+    web = replace(gear, support=RimSupport(web=0.3, inner_radius=0.015))
+    assert web.support_in_modules == RimSupport(web=0.3, inner_radius=pytest.approx(7.5))
+    assert replace(gear, support=None).support_in_modules is None
+
+
+@pytest.mark.parametrize("ratio", [2.5, 3.2])
+def test_peaks_at_the_ends_of_their_range_are_taken_but_for_round_off(ratio):
+    low, high = 1.0 / math.floor(ratio), 1.0 / (math.floor(ratio) - 1.0)
+    for peak in (low * (1.0 - 1e-13), low, high, high * (1.0 + 1e-13)):
+        assert LoadingFunction(ratio, 1.0, peak=peak).peak == peak
+    for peak in (low - 1e-9, high + 1e-9):
+        with pytest.raises(RangeError, match=r"design\.peak"):
+            LoadingFunction(ratio, 1.0, peak=peak)
+    assert LoadingFunction(ratio, 1.0).peak == pytest.approx(0.5 * (low + high))
+
+
+def test_a_single_design_is_the_one_to_be_ground():
+    assert preferred({"a": 1.0}, {}) == ["a"]
+    assert preferred({"a": 1.0}, {"a": 2.0}) == ["a"]
+    assert preferred({"a": 2.0, "b": 1.0}, {}) == ["b", "a"]
