@@ -12,9 +12,11 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
 from fegear.fem.plane.tooth_meshing import mesh_inside, mesh_sector
 from fegear.fem.solid.settings import solid_settings
 from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear, Material
 from fegear.geometry.rack import BasicRack
 
 USUAL = BasicRack(1.0, 1.25, 0.25, math.radians(20.0))
@@ -48,6 +50,31 @@ def qualities(mesh):
     a, b, c = (mesh.points[:, corner] for corner in mesh.triangles[:3])
     area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     return 2.0 * math.sqrt(3.0) * area / sum(((p - q) ** 2).sum(axis=0) for p, q in ((a, b), (b, c), (c, a)))
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.1])
+def test_edges_on_a_tip_rounding_follow_it_where_those_of_the_flank_are_as_short(radius):
+    """Straight ones are an error that all orders of elements share: twice what was stated of c_0 at the flank's end."""
+    tooth = Tooth(13, BasicRack(0.881, 1.221, 0.2573, math.radians(25.0)), 0.196, tip_rounding=radius)
+    for level in (-2.5, -1.0, 1.0):
+        settings = settings_at(level)
+        assert settings.tip_edge_length < 0.26 * radius
+        chain = next(one for one in sector_boundary(tooth, 4.2, settings) if one.name == "tip_rounding")
+        turns = np.arccos((chain.tangents[:, 1:] * chain.tangents[:, :-1]).sum(axis=0))
+        assert turns.max() < 0.26
+        bowed = chain.middles - 0.5 * (chain.vertices[:, 1:] + chain.vertices[:, :-1])
+        assert np.hypot(*bowed) == pytest.approx(radius * (1.0 - np.cos(0.5 * turns)), rel=1e-3)
+
+
+def test_at_the_end_of_a_flank_that_a_rounding_ends_c_0_is_within_its_error():
+    """2.4e-4 of it was true, twice what was stated, with three edges on the rounding that were drawn straight."""
+    tooth = Tooth(13, BasicRack(0.881, 1.221, 0.2573, math.radians(25.0)), 0.196, tip_rounding=0.05)
+    gear = Gear(tooth, 3e-3, 12.6867e-3, 0.02, Material(2.06e11, 0.374), "stress")
+    end, half_width = np.array([max(gear.involute_radii)]), np.full(1, 6e-5)
+    found, error, _ = solve_to_tolerance(gear, 1e-3).contact(end, half_width)
+    exact = solve_gear(gear, settings_at(0.0), estimate_error=False).contact(end, half_width)[0]
+    assert abs(found - exact) < 0.5 * error
+    assert error < 2e-4 * exact
 
 
 @pytest.fixture

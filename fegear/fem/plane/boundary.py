@@ -46,6 +46,9 @@ _LONG_BORE = 0.45
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
 #: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
 _SHARPEST_TURN = 0.26
+#: Edges on a rounding are made to turn by no more than this where those of the flank are as short, for their whole
+#: number may lengthen them.
+_TURN = 0.22
 #: The shortest edges on a sharp fillet, as a share of the usual ones: what keeps edges above nothing where a sharp rack
 #: tip all but reaches the flank. Short edges cost little: a fillet that turns by 70 degrees takes as many of them
 #: however small its radius. With a tenth, two levels missed root tension alike (a radius of .005 modules: 3 %).
@@ -349,7 +352,7 @@ def _back_sizes(tooth: ToothSide, settings: MeshSettings) -> dict[str, Law]:
     last = float(_fillet_size(back, settings)(np.array([_length(back.fillet)]))[0])
     middle = float(front_sizes(tooth, settings)["tip_land"](np.array([_length(tooth.outline["tip_land"])]))[0])
     # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
-    round_ = max(_SHARPEST_TURN * tooth.tip_rounding, settings.tip_edge_length) if tooth.tip_rounding > 0.0 else longest
+    round_ = _longest_on_rounding(tooth, settings, longest)
 
     def size(s: Array) -> Array:
         """By the distance from the start of the flank."""
@@ -374,6 +377,8 @@ def front_sizes(
     # Root tension is looked for down from half of a short fillet: as near to a contact at the flank's start as that.
     joint = settings.junction_edge_length * min(max(fillet / _SHORT_FILLET, _SHORTEST_JOINT), 1.0)
     joint = min(joint, float(root(np.array([fillet]))[0]))
+    # All orders would have a rounding of straight edges in common beside a contact at the end of the flank.
+    on_edge = _longest_on_rounding(tooth, settings, 0.5 * settings.flank_edge_length)
 
     def flank_size(s: Array) -> Array:
         by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))
@@ -385,9 +390,16 @@ def front_sizes(
     return {
         "fillet": lambda s: np.minimum(root(s), joint + grow * (fillet - s)),
         "flank": flank_size,
-        "tip_edge": lambda s: np.minimum(corner + grow * s, 0.5 * settings.flank_edge_length),
+        "tip_edge": lambda s: np.minimum(corner + grow * s, on_edge),
         "tip_land": lambda s: np.minimum(corner + grow * (s + edge), settings.back_edge_length),
     }
+
+
+def _longest_on_rounding(tooth: ToothSide, settings: MeshSettings, longest: float) -> float:
+    """Longest edge on a tip's edge [modules]: one that follows a rounding, if edges beside it are as short."""
+    if tooth.tip_rounding == 0.0:
+        return longest
+    return min(max(_TURN * tooth.tip_rounding, settings.tip_edge_length), longest)
 
 
 def _side(top: Array, bore_radius: float, size: Law, first: float, last: float = 0.0) -> Chain:

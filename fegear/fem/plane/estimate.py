@@ -14,6 +14,7 @@ from fegear.base.plain import read_only
 from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.plane.edge_curves import beyond_the_fillet, moved_by_edges
 from fegear.fem.plane.influence import MOSTLY_TURNED, ROOM_SHARE, SIDES, Influence, Side
+from fegear.fem.plane.own_stress_error import own_stress_error
 from fegear.fem.plane.stress_apart import apart_beside_contacts, apart_beside_ends
 
 #: What errors are estimated of.
@@ -49,20 +50,9 @@ _STRESS_EDGES, _STRESS_POWER, _LEAST_STRESS_SHARE, _LOWER_ORDERS = 3.7, 1.2, 0.1
 #: along a fillet. Of what is usual beside the largest stress so much counts, of that at one contact on the tooth itself
 #: so much, and on the next tooth so much. It counts on long fillets of long edges, and below contacts beside a fillet.
 _SCATTERED, _SCATTERED_HERE, _SCATTERED_NEXT = 0.65, 0.85, 1.2
-#: On a tooth itself the larger of both is more than the error: so much of it is, and so many times the part more, no
-#: more than so much where edges are few (60 random gears and rings, docs/numerics.md). Whether a tolerance is met is
-#: judged by all of it.
-_OWN_STRESS, _OWN_STRESS_BY_SHARE, _MOST_OWN_STRESS = 0.45, 0.55, 0.8
-#: Of scatter, as of the whole, less is error than counts where a tolerance is judged: the usual one, and that at one
-#: contact. Of what a tooth's own stress usually differs by over the flank so many times is error at least; tension,
-#: which bends the whole tooth, differs everywhere by much the same (103 gears and rings need 0.9 at most).
-_OWN_SCATTERED, _OWN_SCATTERED_HERE = 0.5, 0.65
-_OWN_USUAL: dict[Side, float] = {"tension": 1.2, "compression": 1.5}
-#: Both fillets have one shape and edges as long: one errs by no less than the other usually does, should its difference
-#: vanish by chance; by so many times the part less, down to so much of it, for where edges are few those of the
-#: compressed fillet, which are graded where its stress is largest, err by more of their own (of four of 18 gears and
-#: rings tension was stated 10 to 15 times too large at a tolerance of 0.01).
-_LESS_OF_OTHER, _LEAST_OF_OTHER = 0.8, 0.5
+#: Of scatter below a loaded tooth's own contact, and of the usual one, less is error than counts where a tolerance is
+#: judged; of what its stress usually differs by over the flank so many times is at least (`own_stress_error`).
+_OWN_SCATTERED, _OWN_SCATTERED_HERE, _OWN_USUAL = 0.5, 0.65, 1.4
 #: Compression, which is largest nearer to the root land where edges are graded, has so much more of the part.
 _COMPRESSED = 1.15
 #: The compressed fillet of the next tooth lies beside the loaded flank, and its error is that of the edges' own curves,
@@ -112,19 +102,6 @@ class _Stress(NamedTuple):
     difference: Array
     scatter: Array
     beside: Array
-
-
-class _Counts(NamedTuple):
-    """How much counts of what the own fillet's stress usually differs by, of that of the other one, and of scatter."""
-
-    usual: float
-    of_other: float
-    scatter: float
-    scatter_here: float
-
-
-#: Where it is judged whether a tolerance is met.
-_JUDGED = _Counts(_USUAL, 1.0, _SCATTERED, _SCATTERED_HERE)
 
 
 @dataclass(frozen=True)
@@ -180,7 +157,8 @@ class Estimate:
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
         value, place, difference, scatter, beside = self._stress_of(k, side, radius, half_width)
         off = np.maximum(difference, beside)
-        return value, place, self._stress_estimate(k, side, value, off, 0.0 if k < 0 else scatter)
+        up = self._up(radius) if k == 0 else 0.0
+        return value, place, self._stress_estimate(k, side, value, off, 0.0 if k < 0 else scatter, up)
 
     @cached_property
     def largest(self) -> Mapping[str, float]:
@@ -195,8 +173,7 @@ class Estimate:
             errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
-            error = self._own_stress_estimate(side, value, difference, self._scatter[0, side], _JUDGED)
-            errors[f"root_{side}"] = error / _stress_scale(value)
+            errors[f"root_{side}"] = self._judged_stress(side, value, difference) / _stress_scale(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
     @cached_property
@@ -366,7 +343,13 @@ class Estimate:
         return tuple(k for k, side in self.fine.stress if k and side == "tension")
 
     def _stress_estimate(
-        self, k: int, side: Side, value: Array, difference: Array, scatter: Array | float = 0.0
+        self,
+        k: int,
+        side: Side,
+        value: Array,
+        difference: Array,
+        scatter: Array | float = 0.0,
+        up: Array | float = 0.0,
     ) -> Array:
         share = self._stress_share
         if k:
@@ -384,24 +367,38 @@ class Estimate:
             error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
             least = _USUAL * max(self._usual_stress.values())
             return np.asarray(np.maximum(error, _OF_OWN_STRESS[side][k < 0] * least * np.abs(value)))
-        of_other = max(1.0 - _LESS_OF_OTHER * share, _LEAST_OF_OTHER)
-        counts = _Counts(_OWN_USUAL[side], of_other, _OWN_SCATTERED, _OWN_SCATTERED_HERE)
-        found = self._own_stress_estimate(side, value, difference, scatter, counts)
-        return self._own_stress_part * found
+        least = _OWN_USUAL * self._usual_stress[side]
+        of_order, size = self._of_stress_order(side, value, difference, least)
+        of_scatter = np.maximum(_OWN_SCATTERED_HERE * scatter, _OWN_SCATTERED * self._usual_scatter(side) * size)
+        if self.fine.flank.order < 4:
+            return np.asarray(np.hypot(of_order, of_scatter))
+        return own_stress_error(side, share, of_order, of_scatter, up)
 
-    def _own_stress_estimate(
-        self, side: Side, value: Array, difference: Array, scatter: Array | float, counts: _Counts
-    ) -> Array:
-        """All that the loaded tooth's own stress may err by, with so much of what is known of both fillets."""
-        share, own, usual = self._stress_share, self._stress_at_samples(0), self._usual_stress
-        least = counts.usual * max(usual[side], counts.of_other * max(usual.values()))
-        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(own[side][0]).max())
-        if side == "compression":
-            share *= _COMPRESSED
-        error = share * np.maximum(difference, least * size)
-        known = (self._scatter[0, side] / _stress_scale(own[side][0]))[:_SAMPLES]
-        scattered = np.maximum(counts.scatter_here * scatter, counts.scatter * _root_mean_square(known) * size)
-        return np.asarray(np.maximum(error, scattered))
+    def _judged_stress(self, side: Side, value: Array, difference: Array) -> Array:
+        """All that the loaded tooth's own stress may err by at the samples: by this it is judged if a tolerance is met.
+
+        Both fillets have one shape and edges as long: one errs by no less than the other usually does.
+        """
+        of_order, size = self._of_stress_order(side, value, difference, _USUAL * max(self._usual_stress.values()))
+        scattered = np.maximum(_SCATTERED_HERE * self._scatter[0, side], _SCATTERED * self._usual_scatter(side) * size)
+        return np.asarray(np.maximum(of_order, scattered))
+
+    def _of_stress_order(self, side: Side, value: Array, difference: Array, least: float) -> tuple[Array, Array]:
+        """What the order changes of the loaded tooth's own stress, relatively no less than so much, and of what."""
+        size = np.maximum(np.abs(value), _LEAST_STRESS * np.abs(self._stress_at_samples(0)[side][0]).max())
+        share = self._stress_share * (_COMPRESSED if side == "compression" else 1.0)
+        return share * np.maximum(difference, least * size), size
+
+    def _usual_scatter(self, side: Side) -> float:
+        """What scatters of the loaded tooth's own stress over the flank, relatively."""
+        scale = _stress_scale(self._stress_at_samples(0)[side][0])
+        return _root_mean_square((self._scatter[0, side] / scale)[:_SAMPLES])
+
+    def _up(self, radius: Array) -> Array:
+        """How far contacts are from the start of the flank to its end, shape (P,)."""
+        samples = self._samples[:_SAMPLES]
+        first, last = (samples[-1], samples[0]) if self.fine.tooth.internal else (samples[0], samples[-1])
+        return np.clip((np.asarray(radius) - first) / (last - first), 0.0, 1.0)
 
     @property
     def _usual_stress(self) -> dict[Side, float]:
@@ -411,13 +408,6 @@ class Estimate:
             side: _root_mean_square((off / _stress_scale(largest))[:_SAMPLES])
             for side, (largest, off) in stresses.items()
         }
-
-    @property
-    def _own_stress_part(self) -> float:
-        """Less than one of elements of fourth order, which alone were looked at."""
-        if self.fine.flank.order < 4:
-            return 1.0
-        return min(_OWN_STRESS + _OWN_STRESS_BY_SHARE * self._stress_share, _MOST_OWN_STRESS)
 
     @cached_property
     def _stress_share(self) -> float:
