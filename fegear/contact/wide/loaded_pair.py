@@ -53,11 +53,11 @@ if TYPE_CHECKING:
 #: which the load is known by extrapolation alone.
 _SURFACE, _MARGIN = (121, 41), 1e-3
 #: What is taken for an error of root stress, of the parts for single entries of influence: load lies all along a line
-#: (six helical gears need 0.75; one of 116 places of a seventh is 1.36 times as much off). Of the largest stress the
-#: root mean square beside it counts, for it is one number.
-_OF_LINES = 1.0
-#: On teeth that only their neighbours' loads stress both solutions may agree by chance from one position to the next: no
-#: position errs by less than this part of the root mean square of all (eight helical gears; 1.7 times as much was true).
+#: (six helical gears need 0.75; one of 116 places of a seventh is 1.36 times as much off). Of the largest stress of all
+#: positions, which is one number, so much of the root mean square beside it counts (eight pairs need 0.6).
+_OF_LINES, _OF_LARGEST = 1.0, 0.7
+#: On teeth that only their neighbours' loads stress both solutions may agree by chance: no position errs by less than
+#: this part of the root mean square of all (of eight helical gears two had 1.7 times the stated error there).
 _OF_ALL_POSITIONS = 0.25
 #: Both fillets, and the sign of the stress that is looked for.
 _SIDES: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
@@ -351,7 +351,7 @@ class LoadedWidePair:
             for one, two in permutations(apart, 2):
                 part = OF_OTHER_FILLET * scale[one] / scale[two]
                 off[one].append(np.maximum(apart[one], part * apart[two]))
-                off_largest[one].append(max(usual[one], part * usual[two]))
+                off_largest[one].append(_OF_LARGEST * max(usual[one], part * usual[two]))
         stacked = [np.stack(one, axis=1) for one in (*largest.values(), *off.values())]
         tension, compression, tension_off, compression_off = stacked
         between = self._largest_between(member, influence.fine, off_largest)

@@ -156,7 +156,8 @@ def flank_transmission_error_shift(
     known = te.series.amplitude.size
     by_panels, by_gears = _changed(fine, longer, known), _changed(longer, coarse, known)
     by_positions = no_less_than_shown_by_half(_changed(te, fewer, known))
-    amplitude = by_positions + np.hypot(by_panels, of_shape * by_gears)
+    # each has a phase of its own: nothing of the three is known of the others
+    amplitude = np.sqrt(by_positions**2 + by_panels**2 + (of_shape * by_gears) ** 2)
     return TransmissionErrorShift(
         changed("mean", of_mean), changed("peak_to_peak", of_shape), changed("effective_error", of_shape),
         no_less_than_beside(amplitude), changed("mean_secant", of_mean),
