@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -35,6 +36,9 @@ class ShiftedCompliance:
         Added to every c_k [m^2/N].
     farther : float
         By which the distance from the tip's corner is larger that c_0 is taken at.
+    edge : float
+        Length of the flank's longest edges of finite elements, from one to the next of which the error of c_0 may
+        alternate [m]; infinite where it does not.
     """
 
     base: FiniteElementCompliance
@@ -42,6 +46,15 @@ class ShiftedCompliance:
     own_error: Array
     neighbour_error: float = 0.0
     farther: float = 1.0
+    edge: float = math.inf
+
+    def waves(self, pitch: float) -> float:
+        """How often the error may alternate while a contact goes so far along the line of action [m].
+
+        Where it goes fastest along the flank: at its largest distance from the axis.
+        """
+        roll = math.sqrt(max((float(self.radii[-1]) / self.base.influence.gear.base_radius) ** 2 - 1.0, 0.0))
+        return pitch * roll / self.edge
 
     @property
     def reach(self) -> int:
@@ -109,7 +122,7 @@ def shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
     low, high = _flank(base)
     radii = np.linspace(low, high, _POINTS)
     error = known.self_error(radii, base.reference_half_width(radii))
-    return ShiftedCompliance(base, radii, error, known.common_errors()[0], farther=_TIP)
+    return ShiftedCompliance(base, radii, error, known.common_errors()[0], farther=_TIP, edge=known.longest_edge)
 
 
 def neighbours_shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:

@@ -110,6 +110,11 @@ class GearInfluence:
         """2 (1 - nu^2) / (pi E) (no nu in plane stress) [1/Pa]: d c_0 / d ln(1 / half-width)."""
         return self.fine.log_slope / self.gear.material.young_modulus
 
+    @property
+    def longest_edge(self) -> float:
+        """Of the flank's elements [m]."""
+        return float(np.diff(self.fine.flank.arc).max()) * self.gear.module
+
     def _modules(self, radius: ArrayLike) -> Array:
         return np.atleast_1d(np.asarray(radius, dtype=float)) / self.gear.module
 
