@@ -104,6 +104,11 @@ class AtlasGear(ReadOnlyArrays):
         return np.asarray(self._own(self._length(radius)) + self.log_slope * np.log(nominal / np.asarray(half_width)))
 
     @property
+    def longest_edge(self) -> float:
+        """Infinite: what is interpolated between gears is smooth along the flank."""
+        return math.inf
+
+    @property
     def states_error(self) -> bool:
         """They are."""
         return True

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fegear.atlas.shipped import shipped_atlas
 from fegear.contact.plane.engagement import Engagement, solve_again
 from fegear.contact.plane.maker import finite_element_compliance, shifted_sources
 from fegear.contact.plane.pair_compliance import PairCompliance
@@ -17,6 +18,7 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +47,11 @@ def test_so_many_edges_pass_over_a_base_pitch_where_the_flank_passes_fastest(eng
     waves = shifted_by_error(source).waves(pitch)
     assert passed < waves < passed * distance / (distance - 0.51 * pitch)
     assert neighbours_shifted_by_error(source).waves(pitch) == 0.0
+
+
+def test_what_an_atlas_interpolates_does_not_alternate():
+    gear = Gear(Tooth(40, BasicRack(1.0, 1.25, 0.38)), 3e-3, 0.03, 0.02)
+    assert shifted_by_error(shipped_atlas("A").compliance(gear)).waves(9e-3) == 0.0
 
 
 def test_no_harmonic_that_edges_may_have_errs_by_less_than_a_wave_of_them():

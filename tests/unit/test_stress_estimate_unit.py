@@ -85,15 +85,31 @@ def test_the_error_of_a_neighbours_stress_is_relatively_no_less_than_a_part_of_w
         assert known == pytest.approx(wanted)
 
 
-@pytest.mark.parametrize("side", ["tension", "compression"])
-def test_where_edges_are_long_the_order_counts_the_less_on_the_smooth_fillets_of_neighbours(side):
+@pytest.mark.parametrize(("k", "side"), [(1, "tension"), (-1, "tension"), (-1, "compression")])
+def test_where_edges_are_long_the_order_counts_the_less_on_the_smooth_fillets_of_neighbours(k, side):
     """At a tolerance of 0.01 errors of unloaded teeth beside loaded ones were stated 17 times too large."""
     samples = np.ones(17)
     own = {"tension": (100.0 * samples, 0.0 * samples), "compression": (-100.0 * samples, 0.0 * samples)}
-    found = estimate([0.3 / 3] * 3, {0: own, -1: dict.fromkeys(own, (0.0 * samples, 0.2 * samples))})
-    assert found._stress_estimate(-1, side, np.zeros(1), np.zeros(1)) == pytest.approx([_MOST_SMOOTH[side] * 0.2])
+    found = estimate([0.3 / 3] * 3, {0: own, k: dict.fromkeys(own, (0.0 * samples, 0.2 * samples))})
+    part = _MOST_SMOOTH[side][k < 0]
+    assert found._stress_estimate(k, side, np.zeros(1), np.zeros(1)) == pytest.approx([part * 0.2])
     found.fine.flank.order = 3
-    assert found._stress_estimate(-1, side, np.zeros(1), np.zeros(1)) == pytest.approx([_SMOOTH_STRESS[side] * 0.2])
+    assert found._stress_estimate(k, side, np.zeros(1), np.zeros(1)) == pytest.approx([_SMOOTH_STRESS[side] * 0.2])
+
+
+@pytest.mark.parametrize(("count", "part"), [(40, 0.35), (9, 0.35), (5, 0.2), (3, 0.2)])
+def test_tension_behind_the_loaded_tooth_errs_relatively_by_the_less_where_edges_are_long(count, part):
+    """At a tolerance of 0.01 it was stated 16 times too large in the median of 64 gears and rings."""
+    samples = np.ones(17)
+    own = {"tension": (100.0 * samples, 0.1 * samples), "compression": (-100.0 * samples, 0.1 * samples)}
+    behind = {"tension": (75.0 * samples, 0.0 * samples), "compression": (-75.0 * samples, 0.0 * samples)}
+    found = estimate([0.3 / count] * count, {0: own, -1: behind})
+    least = _USUAL * 1e-3 * 75.0
+    for side, wanted in (("tension", part), ("compression", _OF_OWN_STRESS["compression"][1])):
+        known = found._stress_estimate(-1, side, np.array([75.0]), np.zeros(1))
+        assert known == pytest.approx([wanted * least])
+    found.fine.flank.order = 3
+    assert found._stress_estimate(-1, "tension", np.array([75.0]), np.zeros(1)) == pytest.approx([0.35 * least])
 
 
 def test_the_error_of_a_neighbours_fillet_that_is_hardly_stressed_does_not_vanish_and_is_not_that_of_the_other():

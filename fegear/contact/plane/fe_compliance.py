@@ -66,6 +66,10 @@ class SolvedTeeth(Protocol):
         """Maximum radius of the flank [m]."""
 
     @property
+    def longest_edge(self) -> float:
+        """Of finite elements on the flank [m]; infinite where they leave nothing of themselves in compliances."""
+
+    @property
     def tabulated(self) -> dict[str, Any]:
         """What has been tabulated of it, by name."""
 

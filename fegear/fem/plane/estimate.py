@@ -60,12 +60,14 @@ _COMPRESSED = 1.15
 #: the usual scatter.
 _NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _NEIGHBOUR_SCATTER = 1.15, 0.75, 1.5
 #: A neighbour's other fillets are smooth: so many times a tooth's own part. Where edges are long the order tells more
-#: than the error is: of elements of fourth order no more than so much counts (64 gears and rings, docs/numerics.md).
+#: than the error is: of elements of fourth order no more than so much counts on the tooth ahead of the loaded one, and
+#: on that behind it (64 gears and rings, docs/numerics.md).
 _SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
-_MOST_SMOOTH: dict[Side, float] = {"tension": 0.55, "compression": 0.7}
+_MOST_SMOOTH: dict[Side, tuple[float, float]] = {"tension": (0.55, 0.3), "compression": (0.7, 0.7)}
 #: Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs by: on the tooth ahead
-#: of the loaded one, and on that behind it.
+#: and on that behind, and there on the tension side where edges are long, from the first of these shares to the second.
 _OF_OWN_STRESS: dict[Side, tuple[float, float]] = {"tension": (0.6, 0.35), "compression": (0.9, 0.9)}
+_OF_OWN_BEHIND, _LONG_BEHIND = 0.2, (0.36, 0.55)
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
@@ -363,10 +365,13 @@ class Estimate:
                 scattered *= _NEIGHBOUR_SCATTER
             else:
                 share *= _SMOOTH_STRESS[side]
-                share = min(share, _MOST_SMOOTH[side]) if self.fine.flank.order == 4 else share
+                share = min(share, _MOST_SMOOTH[side][k < 0]) if self.fine.flank.order == 4 else share
             error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
             least = _USUAL * max(self._usual_stress.values())
-            return np.asarray(np.maximum(error, _OF_OWN_STRESS[side][k < 0] * least * np.abs(value)))
+            part = _OF_OWN_STRESS[side][k < 0]
+            if k < 0 and side == "tension" and self.fine.flank.order == 4:
+                part = np.interp(self._stress_share, _LONG_BEHIND, (part, _OF_OWN_BEHIND))
+            return np.asarray(np.maximum(error, part * least * np.abs(value)))
         least = _OWN_USUAL * self._usual_stress[side]
         of_order, size = self._of_stress_order(side, value, difference, least)
         of_scatter = np.maximum(_OWN_SCATTERED_HERE * scatter, _OWN_SCATTERED * self._usual_scatter(side) * size)
