@@ -197,8 +197,8 @@ def test_tension_errs_by_less_below_contacts_up_the_flank_where_edges_are_rather
         return found / found[0]
 
     for share in (0.6, 0.65, 0.75):
-        assert beside_start("tension", share, 1.0, 0.0) == pytest.approx([1.0, 1.0 - 0.325, 0.35])
-        assert beside_start("tension", share, 0.0, 1.0) == pytest.approx([1.0, 1.0 - 0.225, 0.55])
+        assert beside_start("tension", share, 1.0, 0.0) == pytest.approx([1.0, 1.0 - 0.25 * 0.65, 0.35])
+        assert beside_start("tension", share, 0.0, 1.0) == pytest.approx([1.0, 1.0 - 0.25 * 0.45, 0.55])
         assert beside_start("compression", share, 1.0, 1.0) == pytest.approx(np.ones(3))
     for share in (0.16, 0.3, 0.36, 0.85, 1.0):  # short edges, and so few that little is known
         assert beside_start("tension", share, 1.0, 1.0) == pytest.approx(np.ones(3))

@@ -25,7 +25,8 @@ _OF_ORDER, _MOST_OF_ORDER = 0.93, 0.9
 _OF_SCATTER, _OF_SCATTER_OF_FEW, _FEW = 0.55, 0.8, (0.7, 0.85)
 #: The farther up the flank a contact, the less its pressure has to do with the fillet: at the end of the flank tension
 #: errs by so much less of what the order changes and of what scatters where edges are rather long, from the first of
-#: these shares on and wholly from the second. Where edges are fewer than the third, up to the fourth, it does not.
+#: these shares on and wholly from the second. Where edges are fewer than the third, up to the fourth, it does not. It
+#: goes with the square of the way: at half of it the error still is the whole one.
 _LESS_ORDER_UP, _LESS_SCATTER_UP, _LONG = 0.65, 0.45, (0.36, 0.6, 0.75, 0.85)
 
 
@@ -45,7 +46,7 @@ def own_stress_error(
     up : array_like, shape (P,)
         How far up the flank contacts are: 0 at its start, 1 at its end.
     """
-    far = np.interp(share, _LONG, (0.0, 1.0, 1.0, 0.0)) * np.asarray(up) * (side == "tension")
+    far = np.interp(share, _LONG, (0.0, 1.0, 1.0, 0.0)) * np.asarray(up) ** 2 * (side == "tension")
     order = min(_OF_ORDER * share**0.5, _MOST_OF_ORDER) * (1.0 - _LESS_ORDER_UP * far)
     scatter = np.interp(share, _FEW, (_OF_SCATTER, _OF_SCATTER_OF_FEW)) * (1.0 - _LESS_SCATTER_UP * far)
     return np.hypot(order * np.asarray(of_order), scatter * np.asarray(of_scatter))
