@@ -125,6 +125,7 @@ def on_paper(figure):
             kept[f"axes {number}"] = told(
                 [axes.get_position().bounds, axes.get_xlim(), axes.get_ylim(), axes.yaxis.label.get_position(),
                  [axes.title.get_position()[1], axes.xaxis.get_visible(), axes.yaxis.get_visible()],
+                 axes.titleOffsetTrans.get_matrix()[1, 2:],
                  [one.get_visible() for one in axes.spines.values()],
                  [line.get_visible() for line in (*axes.get_xgridlines(), *axes.get_ygridlines())[:1]],
                  to_rgba(axes.get_facecolor())],

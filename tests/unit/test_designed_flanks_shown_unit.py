@@ -230,6 +230,13 @@ def test_rows_and_charts_begin_with_what_is_to_be_ground_then_by_what_is_left():
     assert axis.limits[1] - axis.limits[0] == pytest.approx(height + 2.0 * (chart.lower.min() * 1e6 - axis.limits[0]))
 
 
+def test_a_tip_relief_of_one_gear_only_has_its_charts():
+    found = shown()
+    only = GroundRelief(driven_tip=5e-6, driven_tip_length=1e-3)
+    found.design.found["lead"] = replace(found.design.found["lead"], relief=only)
+    assert [one.profile.min() * 1e6 for one in found.profile_charts["lead"]] == pytest.approx([0.0, -5.0])
+
+
 def sheet_ordinate(chart):
     from fegear.results.relief.lead_charts import _ordinate
 
