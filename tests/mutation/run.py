@@ -358,8 +358,8 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
 
 
 def _own_tree() -> Path:
-    """The copy of the repository that this process changes."""
-    tree = WORK / f"run-{os.getpid()}"
+    """The copy of the repository that this process changes; named after the draw's own, for others may run beside it."""
+    tree = WORK / f"run-{os.getppid()}-{os.getpid()}"
     return tree if tree.exists() else copied(tree)
 
 
@@ -458,7 +458,7 @@ def report(mutants: list[Mutant], known: Record, workers: int, budget: float, ke
         for outcome in pool.map(tried, left):
             outcomes.append(outcome)
             said(outcome)
-    for tree in WORK.glob("run-*"):
+    for tree in WORK.glob(f"run-{os.getpid()}-*"):
         shutil.rmtree(tree)
     rooms = defaultdict(list)
     for outcome in outcomes:
