@@ -358,7 +358,7 @@ def tried(asked: tuple[Mutant, list[str], dict[str, float], float]) -> Outcome:
 
 
 def _own_tree() -> Path:
-    """The copy of the repository that this process changes; named after the draw's own, for others may run beside it."""
+    """The copy of the repository that this process changes: its name has that of the draw, others may run beside it."""
     tree = WORK / f"run-{os.getppid()}-{os.getpid()}"
     return tree if tree.exists() else copied(tree)
 
