@@ -14,9 +14,12 @@ from fegear.fem.plane.odd.stress_intensity import interaction
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.tooth_meshing import mesh_sector
 from fegear.fem.solid.field import _AtNodes, _Layer, _layer, _von_mises
-from fegear.fem.solid.fillet import SolidFillet, surface_stress
+from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
+from fegear.fem.solid.influence import sample_lines
 from fegear.fem.solid.odd.front_intensity import front_rows
-from fegear.fem.solid.section import HUB
+from fegear.fem.solid.section import HUB, make_section
+from fegear.fem.solid.sector import section_mesh
+from fegear.fem.solid.settings import SolidSettings
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.rack import BasicRack
 
@@ -257,3 +260,60 @@ def test_stress_in_a_surface_is_that_of_the_strain_in_it(tau, slide):
         tt, bb, tb = t @ strain @ t, b @ strain @ b, t @ strain @ b
         expected = [(tt + NU * bb) / (1.0 - NU**2), (bb + NU * tt) / (1.0 - NU**2), tb / (1.0 + NU)]
         assert found[:, p, 0, 0] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("name", ["fillet", "back_fillet"])
+def test_points_of_a_fillet_give_back_places_and_their_slopes(name):
+    """Of functions of the section: constants, and the place itself, whose slope along the arc is the tangent."""
+    mesh = section_mesh(TOOTH, 9.0, SolidSettings().scaled(2.0).section, None)
+    section = make_section(mesh, 3, 0.0, NU, TOOTH.base_radius)
+    found = solid_fillet(section, name)
+    assert found.nodes.size == np.unique(found.nodes).size
+    assert found.values.sum(axis=1) == pytest.approx(np.ones(found.arc.size))
+    assert found.slopes.sum(axis=1) == pytest.approx(np.zeros(found.arc.size), abs=1e-9)
+    nodes = section.places[:, found.nodes]
+    assert found.values @ nodes.T == pytest.approx(found.place.T, abs=2e-5)
+    assert found.slopes @ nodes.T == pytest.approx(found.tangent.T, abs=2e-3)
+    assert np.hypot(*found.tangent) == pytest.approx(np.ones(found.arc.size))
+    # along the arc: from the root land up, by steps that are the way between the points
+    assert (np.diff(found.arc) > 0.0).all()
+    assert 0.0 < found.arc[0] < found.arc[-1] < found.length
+    chord = np.hypot(*np.diff(found.place))
+    assert ((np.diff(found.arc) >= chord) & (np.diff(found.arc) < 1.004 * chord)).all()
+    ends = mesh.points[:, np.unique(mesh.edges[name][:2])]
+    low, high = np.argmin(np.hypot(*ends)), np.argmax(np.hypot(*ends))
+    way = np.column_stack([ends[:, low], found.place, ends[:, high]])
+    assert found.length == pytest.approx(np.hypot(*np.diff(way)).sum(), rel=3e-3)
+    assert (np.diff(np.hypot(*found.place)) > -1e-9).all()
+    # between the tangent and the centre line of the tooth: from across it to nearly along it
+    assert found.tangent_angle == pytest.approx(np.arccos(found.tangent[1]), abs=1e-9)
+    assert found.tangent_angle[0] > 1.0 > 0.6 > found.tangent_angle[-1] > 0.0
+    assert math.isnan(found.mouth)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_contact_lines_that_errors_are_sampled_on_have_two_stations_at_least(side):
+    """All on the flank, off its ends; the steeper they climb the fewer stations of a line are on it."""
+    base, low, high = 9.0, 10.0, 11.0
+    flank = SimpleNamespace(
+        lowest_radius=low, highest_radius=high, flank_start=1.0, flank_end=2.0,
+        arc_of_radius=lambda r: 2.0 - (r - low) if side < 0 else 1.0 + (r - low),
+        radius_of_arc=lambda s: low + (2.0 - s if side < 0 else s - 1.0),
+    )  # fmt: skip
+    fewest, every = [], []
+    for lean in (0.0, 0.1, 0.3, 0.5, 0.7, 1.2):
+        tooth = SimpleNamespace(base_radius=base, side=side)
+        lines = list(sample_lines(SimpleNamespace(flank=flank, width=2.0, tau=lean / base, tooth=tooth)))
+        for radius, stations, above in lines:
+            assert ((radius > low) & (radius < high)).all()
+            assert radius.size == stations.size == above.size >= 2
+            roll = side * np.sqrt(radius**2 - base**2)
+            assert np.diff(roll) == pytest.approx(-lean * np.diff(stations), abs=1e-9)
+            place = flank.arc_of_radius(radius) - 1.0
+            assert place.min() > 0.0
+            assert (place[above].min(initial=1.0) > place[~above].max(initial=0.0)) or not above.any()
+        every.append(len(lines))
+        fewest.append(min(radius.size for radius, *_ in lines))
+    assert fewest[0] == 5
+    assert 2 in fewest
+    assert every[0] >= every[-1]
