@@ -14,6 +14,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.flanks.flank_design import FlankDesign
 from fegear.design.flanks.trials import Tried
 from fegear.design.quick_sharing import quick_sharing
+from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.design.tip_relief.search import _are_like, _even
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.external_tooth import Tooth
@@ -163,3 +164,24 @@ def test_a_relief_is_long_enough_by_its_share_of_the_active_profile():
                     refuse_relief_elsewhere(relief, low, high)
     inside = replace(EndRelief(9e-6, 0.5, high), amount=0.0)
     refuse_relief_elsewhere(inside, low, high)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_extremes_are_those_of_many_more_positions(pair, power):
+    """What tip reliefs leave from peak to peak by 40 positions and what lies between, beside 6000 of them."""
+    loads = np.array([0.6 * LOAD])
+    trials = Trials(_even(pair, 40), loads, power, "peak_to_peak")
+    rng = np.random.default_rng(5)
+    p = np.stack([rng.uniform(*ends, 6) for ends in ((8e-6, 40e-6), (0.15, 0.6)) * 2], axis=1)
+    tried = trials.exact(p)
+    found = trials.left(tried.seen, tried.low)
+    of, gears = pair.pair, (pair.pair.driver, pair.pair.driven)
+    even = of.x_start + of.base_pitch * (np.arange(6000) + 0.5) / 6000
+    grid = pair.grid(np.union1d(even, trials.bench.points.x))  # with both sides of every change of pairs
+    for one, left in zip(p, found, strict=True):
+        reliefs = [
+            relief_over_path(gear, of.path_length, *one[2 * g : 2 * g + 2], power) for g, gear in enumerate(gears)
+        ]
+        ground = replace(pair, driver_relief=reliefs[0], driven_relief=reliefs[1])
+        error = ground.solve(grid, loads).transmission_error[:, 0]
+        assert 1.0 - 5e-4 < np.ptp(error) / left < 1.0 + 1e-5
