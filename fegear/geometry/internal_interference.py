@@ -316,17 +316,16 @@ def _past_fillets(planet: InvoluteSide, ring: InvoluteSide, distance: float) -> 
     The planet's tooth stands `turn` ahead of the line between the axes, its leading flank on the ring's.
     """
     inv_working = float(inv(math.acos((ring.base_radius - planet.base_radius) / distance)))
-    ratio, half_pitch = planet.teeth / ring.teeth, math.pi / ring.teeth
-    front = planet.base_half_angle - inv_working
-    behind = half_pitch - ring.base_half_angle - inv_working
+    ratio = planet.teeth / ring.teeth
+    front, ahead = planet.base_half_angle - inv_working, ring.base_half_angle + inv_working
     (tip1, own), (tip3, other) = _edge(planet), _edge(ring)
 
     def of_planet(turn: Array) -> tuple[Array, Array]:
         x, y = distance + tip1 * np.cos(turn + own), tip1 * np.sin(turn + own)
-        return np.hypot(x, y), half_pitch + (turn + front) * ratio - behind - np.arctan2(y, x)
+        return np.hypot(x, y), (turn + front) * ratio + ahead - np.arctan2(y, x)
 
     def of_ring(turn: Array) -> tuple[Array, Array]:
-        at = (turn + front) * ratio - behind + half_pitch - other
+        at = (turn + front) * ratio + ahead - other
         x, y = tip3 * np.cos(at) - distance, tip3 * np.sin(at)
         return np.hypot(x, y), np.arctan2(y, x) - turn
 
