@@ -8,10 +8,19 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import RangeError
-from fegear.design import relief_bound
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.design import relief_bench, relief_bound
+from fegear.design.charts import ReliefChart, unit_length
+from fegear.design.fillet.fillet_search import Found
 from fegear.design.loading import LoadingFunction
 from fegear.design.tip_relief import tolerated
 from fegear.design.tip_relief.tip_tolerance import OF_LENGTH, TipTolerance
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import UNMODIFIED, EndRelief
 
 PITCH = 6e-3
@@ -192,3 +201,77 @@ def test_the_tolerance_decides_by_which_halved_least_is_left_under_each_load(mon
         assert (one.member, one.number) == (("driver", "driven")[best // 2], ("amount", "length")[best % 2])
         assert one.most == pytest.approx(most[load] * half[load, best] / whole[load], rel=1e-9)
         assert one.given == (5e-6, (0.8e-3, 0.4e-3)[best // 2])[best % 2]
+
+
+# ---- charts and benches ----------------------------------------------------------------------------------------------
+def chart_of(worst, amounts, lengths, loads=(100.0,)):
+    values = np.repeat(np.asarray(worst)[:, :, None], len(loads), axis=2)
+    return ReliefChart(np.asarray(amounts), np.asarray(lengths), np.asarray(loads), 1e-3, values, values)
+
+
+def test_a_boundary_is_where_so_much_more_is_left_and_parts_of_it_are_apart():
+    """Two cones of one depth: circles about both, with a gap between them."""
+    amounts, lengths = np.linspace(0.0, 4.0, 81), np.linspace(0.0, 8.0, 161)
+    a, b = np.meshgrid(amounts, lengths, indexing="ij")
+    cones = np.minimum(np.hypot(a - 2.0, b - 2.0), np.hypot(a - 2.0, b - 6.0)) + 10.0
+    chart = chart_of(cones, amounts, lengths)
+    found_a, found_b = chart.boundary(0.1)
+    apart = np.isnan(found_a)
+    assert apart.sum() == 1
+    assert (apart == np.isnan(found_b)).all()
+    away = np.minimum(np.hypot(found_a - 2.0, found_b - 2.0), np.hypot(found_a - 2.0, found_b - 6.0))[~apart]
+    assert away == pytest.approx(1.0, abs=2e-3)
+    assert (found_b[~apart] < 4.0).sum() == pytest.approx(0.5 * away.size, abs=1)
+    assert chart.boundary(-0.1)[0].size == 0
+    one = chart_of(cones[:1], amounts[:1], lengths)
+    assert one.boundary(0.1)[0].size == one.boundary(0.1)[1].size == 0
+
+
+@pytest.mark.parametrize("loads", [(100.0,), (100.0, 100.0, 100.0)])
+def test_a_finer_chart_divides_all_cells_about_what_leaves_at_most_twice_the_least(loads):
+    amounts, lengths = np.array([0.0, 1.0, 2.0, 4.0, 7.0]), np.array([0.1, 0.3, 0.5, 0.8])
+    worst = np.full((5, 4), 5.0)
+    worst[1, 2], worst[2, 2], worst[2, 1] = 1.0, 1.9, 2.0
+    chart = chart_of(worst, amounts, lengths, loads)
+    finer_a, finer_b = chart.finer()
+    assert finer_a == pytest.approx(np.concatenate([np.linspace(0.0, 2.0, 9), np.linspace(2.5, 4.0, 4)]))
+    assert finer_b == pytest.approx(np.concatenate([np.linspace(0.1, 0.5, 9), np.linspace(0.575, 0.8, 4)]), abs=1e-12)
+    # Many cells are divided by less, so that no more than some 5000 points are tried.
+    many = chart_of(np.ones((41, 41)), np.arange(41.0), np.arange(41.0), loads)
+    a, b = many.finer()
+    parts = max(int((5000 / (1600 * len(loads))) ** 0.5), 1)
+    assert (a.size, b.size) == (40 * parts + 1, 40 * parts + 1)
+    assert (a[0], a[-1], b[0], b[-1]) == (0.0, 40.0, 0.0, 40.0)
+
+
+def test_the_unit_of_lengths_is_what_lies_beyond_the_base_pitches_in_single_contact():
+    def unit(ratio):
+        return unit_length(SimpleNamespace(contact_ratio=ratio, path_length=ratio * PITCH, base_pitch=PITCH)) / PITCH
+
+    # To the highest point of single contact; beyond the innermost pitch, half on each side.
+    assert [unit(one) for one in (1.4, 1.999, 2.0, 2.6, 3.0, 3.3)] == pytest.approx([0.4, 0.999, 0.5, 1.1, 0.5, 0.8])
+
+
+def test_cases_of_a_bench_are_loaded_alike_in_parts_and_at_once(monkeypatch):
+    rack = BasicRack(1.0, 1.25, 0.2)
+    gears = [Gear(Tooth(z, rack), 3e-3, 0.01, 0.03) for z in (24, 36)]
+    engagement = Engagement(
+        PairCompliance(GearPair(*gears), *(closed_form_compliance(one, "cornell") for one in gears))
+    )
+    table = relief_bench.bench(engagement, order=3, waves=2)
+    cases = 1e-6 * np.arange(5) * np.ones((*table.grid.contacts.x.shape, 1))
+    cases[0] *= 0.0
+    loads = np.linspace(1000.0, 5000.0, 5)
+    whole = table.errors(cases, loads)
+    for size in (1, 2 * table.points.x.size, 3 * table.points.x.size):
+        monkeypatch.setattr(relief_bench, "_BATCH", size)
+        parts = table.errors(cases, loads)
+        for name in ("effective_error", "peak_to_peak", "mean", "transmission_error"):
+            np.testing.assert_allclose(getattr(parts, name), getattr(whole, name), rtol=1e-12)
+    assert whole.of("effective_error") is whole.effective_error
+    assert whole.of("peak_to_peak") == pytest.approx(np.ptp(whole.transmission_error, axis=0))
+
+
+def test_limits_that_are_broken_by_a_thousandth_are_kept():
+    assert Found(np.zeros(1), None, 1.0, 1, -0.95e-3).kept
+    assert not Found(np.zeros(1), None, 1.0, 1, -1.05e-3).kept
