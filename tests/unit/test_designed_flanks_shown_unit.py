@@ -389,3 +389,102 @@ def test_a_design_is_made_of_the_flanks_without_relief_and_the_coarser_gears(mon
     assert data == FlankDesignData(PAIR, "design", "bent")
     task = ("part", PAIR, 300.0, "over", "tolerance")
     assert asked["given"] == (flanks, {"driver": "coarse", "driven": "w"}, "known", apart, task, "progress")
+
+
+def speaking(**more):
+    """What sentences read, with torques of 11.28 and 33.83 N m."""
+    found = shown(**more)
+    d = found.design
+    d.finer, d.decisive, d.ground = 0, (), d.states[2:]
+    d.alike, d.within_tolerance = lambda state: False, lambda state: True
+    d.left_under, d.worst_load = lambda state: state.over_peak_to_peak, lambda left: int(np.argmax(left))
+    return Seen(found, found.asked, "I")
+
+
+def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its_tolerances():
+    """Without relief 8 and 12 um are left, with the best 1.9 and 2.85, within its tolerances 5.7 and 7.6."""
+    seen = speaking()
+    ground, within, further = sheet._grind(seen)
+    assert "grind 12 µm from d " in ground
+    assert " on gear p, 24 µm from d " in ground
+    assert ground.endswith(
+        "transmission error 12 -> 2.8 µm (within tolerances at most 7.6 µm) at 33.83 N m, 8 -> 1.9 µm (at most 5.7 µm) "
+        "at 11.28 N m, peak to peak."
+    )
+    # 5.7 of 8 is more than 7.6 of 12.
+    assert "at most 5.7 µm at 11.28 N m (8 µm without relief)" in within
+    assert "± 1 µm on gear p, ± 3 µm on gear w" in within
+    assert further.endswith(
+        "profile-and-lead (2 modifications) is only 47 % better than profile (2), by modifications below their "
+        "tolerances (5 ± 1 µm crowning)."
+    )
+    design = seen.data.design
+    design.within_tolerance = lambda state: False
+    assert list(sheet._grind(seen))[-1].endswith(
+        "is better than profile (2) as drawn (1.5, not 2.8 µm at 33.83 N m), but worse within its tolerances (at most "
+        "4, not 7.6 µm at 33.83 N m)."
+    )
+    design.alike = lambda state: True
+    assert list(sheet._grind(seen))[-1].endswith("is only 47 % better than profile (2), within the estimated error.")
+    design.least = design.best
+    assert len(list(sheet._grind(seen))) == 2
+    design.best.over_most = None
+    (only,) = sheet._grind(seen)
+    assert "tolerances" not in only
+    design.best.over_most = 1e-6 * np.array([9.0, 13.0])  # more than without relief at both torques
+    design.finer = 2
+    lost, ground = sheet._grind(seen)
+    assert "the transmission error is smaller without relief at every torque: 12 µm at 33.83 N m" in lost
+    assert "± 0.5 µm on gear p, ± 1.5 µm on gear w" in lost  # two classes finer
+    assert ": without deviations grind 12 µm" in ground
+
+
+def test_tolerances_of_all_that_is_ground_are_said_by_their_kinds_and_finer_by_classes():
+    seen = speaking()
+    rows = [row for row in seen.data.grinding if row.design == "profile-and-lead"]
+    assert sheet._allowed(seen, rows, 0).endswith(", ± 1 µm crowning")
+    finer = sheet._allowed(seen, rows, 2)  # each class by the root of two
+    assert finer.endswith(", ± 0.5 µm crowning")
+    assert finer.startswith("± 0.5 µm on gear p, ± 1.5 µm on gear w")
+    only = [row for row in seen.data.grinding if row.design == "lead"]
+    assert sheet._allowed(seen, only, 0) == "± 1 µm crowning, ± 2 µm helix slope"
+
+
+def test_the_exact_topography_is_said_to_leave_more_at_other_torques_where_it_does():
+    seen = speaking()
+    assert list(sheet._exact(seen)) == [
+        "Pair I: the exact topography reduces the transmission error from 8 to 0 µm at 33.83 N m."
+    ]
+    seen.data.design.exact.over_peak_to_peak = 1e-6 * np.array([9.0, 0.0])
+    (said,) = sheet._exact(speaking_of(seen))
+    assert said.endswith("; at 11.28 N m it is 9 µm, more than without relief (8 µm).")
+
+
+def speaking_of(seen):
+    return Seen(FlanksShown(seen.data.data, seen.asked), seen.asked, "I")
+
+
+def test_a_relief_for_scattered_alignment_is_chosen_by_its_mean_and_another_is_better_aligned():
+    seen = speaking()
+    (said,) = sheet._scattered(seen)
+    assert "profile is chosen by the mean over the scatter of misalignment (maximum over the torques" in said
+    assert ": 14 -> 3.4 µm at 33.83 N m, 9.6 -> 2.3 µm at 11.28 N m" in said
+    assert said.endswith("; aligned as specified profile-and-lead leaves less, 1.5 µm at 33.83 N m.")
+    seen.data.design.states[3].over_peak_to_peak = 1e-6 * np.array([1.0, 2.75])  # within five per cent
+    (said,) = sheet._scattered(speaking_of(seen))
+    assert "aligned as specified" not in said
+    assert list(sheet._scattered(speaking(scattered=False))) == []
+    seen.data.design.ground = ()
+    assert list(sheet._scattered(seen)) == []
+
+
+def test_ends_of_the_search_are_said_of_what_is_ground_and_of_what_leaves_least(monkeypatch):
+    monkeypatch.setattr(
+        sheet, "end_notes", lambda head, best, pair, gears: [(head, best.family, pair, gears["driven"])]
+    )
+    seen = speaking()
+    assert list(sheet._ends(seen)) == [
+        (f"Pair I, {label}", label, PAIR, "w") for label in ("profile", "profile-and-lead")
+    ]
+    seen.data.design.least = seen.data.design.best
+    assert len(list(sheet._ends(seen))) == 1
