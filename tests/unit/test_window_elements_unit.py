@@ -475,7 +475,9 @@ def test_exports_go_into_the_folder_that_is_named(client, bench, tmp_path, monke
         for one in client.elements.values()
         if isinstance(one, ui.menu_item)
     }
-    assert len(items) == 1 + len(exports())
+    others = set(items) - {words for words, _, _ in exports()}  # written by the page itself
+    assert sorted(one.partition(" ")[0] for one in others) == ["Case", "Gears"]
+    assert len(items) == 2 + len(exports())
     assert {what for _, what, _ in exports()} == {"report", "tables", *formats()}
     for words, what, ending in exports():
         press(items[words])
@@ -671,6 +673,93 @@ def test_a_page_is_called_as_the_case_on_the_desk(tmp_path):
     refused = Desk(TEXT.replace("3 mm", "3 kg"), "c", tmp_path)
     assert refused.refusal is not None
     assert page_module._title(SimpleNamespace(desk=refused)) == "c"
+
+
+def test_who_opens_the_page_gets_its_files_the_first_drawing_and_what_is_allowed(client, tmp_path, monkeypatch):
+    head, body, made = [], [], []
+    bench = Bench(None)
+    monkeypatch.setattr(page_module, "_serve_files", lambda of: made.append(of))
+    monkeypatch.setattr(ui, "add_head_html", head.append)
+    monkeypatch.setattr(ui, "add_body_html", body.append)
+    monkeypatch.setattr(page_module, "Page", lambda of, *, looks: made.append((of, looks)))
+    monkeypatch.setattr(page_module, "first_drawing", lambda pairs, view, title: (pairs, view, title))
+    scope = {}
+    monkeypatch.setattr(ui, "context", SimpleNamespace(client=SimpleNamespace(request=SimpleNamespace(scope=scope))))
+    page_module.show(bench)
+    assert made == [bench, (bench, False)]
+    assert [re.findall(r'(?:href|src)="([^"]*)"', one)[0] for one in head] == [
+        "/fegear/page.css", "/fegear/window.css", "/fegear/scripts.js"
+    ]  # fmt: skip
+    assert body == []
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    monkeypatch.setattr(bench, "shown_now", lambda: [("done", {}), ("hands", {"pairs": ["I"]})])
+    scope["fegear_looks"] = True
+    page_module.show(bench)
+    assert made[2:] == [bench, (bench, True)]
+    assert body == [(["I"], bench.view, "x")]
+
+
+def test_what_cannot_be_changed_by_hand_is_said_on_the_page(client):
+    def refused():
+        raise InputError("gear.a", "1", "is wrong")
+
+    Page._by_hand(refused)
+    Page._by_hand(lambda: tomllib.loads("= 3"))
+    assert client.said[0] == "gear.a = 1: is wrong."
+    assert client.said[1].startswith("The case is not valid TOML: ")
+    assert client.said[1].endswith("Correct the text first.")
+
+
+def test_a_case_file_is_opened_by_its_path_or_its_name_is_refused_beside_it(client, tmp_path, monkeypatch):
+    path = tmp_path / "mine.toml"
+    path.write_text(TEXT)
+    monkeypatch.chdir(tmp_path)
+    bench, opened = Bench(None), []
+    monkeypatch.setattr(bench, "from_file", lambda named: opened.append(named) or (_ for _ in ()).throw(
+        InputError("case", str(named), "is none")) if "none" in str(named) else opened.append(named))  # fmt: skip
+    page_of(client, bench)
+    (field,) = [one for one in client.elements.values() if isinstance(one, ui.input) and "case file" in str(one.props)]
+    field.set_value(" mine.toml ")
+    press(button(client, "Open"))
+    assert [Path(one).name for one in opened] == ["mine.toml"]
+    assert field.props["error"] is None
+    field.set_value("none.toml")
+    press(field, "keydown.enter")
+    assert field.props["error"] is True
+    assert "is none" in field.props["error-message"]
+
+
+def test_cases_that_were_left_unsaved_are_offered_first_and_taken_up_once(client, monkeypatch):
+    left = SimpleNamespace(kept=SimpleNamespace(name="mine", when="yesterday"))
+    monkeypatch.setattr("fegear.window.start_page.left_behind", lambda path: [left] if path is None else [])
+    bench, taken = Bench(None), []
+
+    def take(one):
+        if taken:
+            raise InputError("case", "mine", "is open in another window")
+        taken.append(one)
+
+    monkeypatch.setattr(bench, "from_left", take)
+    page_of(client, bench)
+    offers = [one for one in client.elements.values() if "offer" in one.classes]
+    texts = [getattr(one, "content", "") for one in client.elements.values()]
+    assert "unsaved, last changed yesterday" in texts
+    press(offers[0])
+    press(offers[0])
+    assert taken == [left]
+    assert "is open in another window" in client.said[-1]
+
+
+def test_a_run_that_is_done_reaches_the_form_of_a_page_that_is_laid_again(client, tmp_path, monkeypatch):
+    bench, heard = Bench(None), []
+    bench.desk = Desk(TEXT, "c", tmp_path)
+    done = {"moving": False, "remarks": []}
+    monkeypatch.setattr(bench, "shown_now", lambda: [("figures", {}), ("done", done)])
+    monkeypatch.setattr(Inputs, "hear", lambda self, what, content: heard.append((what, content)))
+    page_of(client, bench)
+    assert heard == [("done", done)]
+    sent = [one for one in client.scripts if one.startswith("fegear.hearAll(")]
+    assert [what for one in sent for what, _ in json.loads(one[len("fegear.hearAll(") : -1])] == ["figures", "done"]
 
 
 # ---- messages --------------------------------------------------------------------------------------------------------
