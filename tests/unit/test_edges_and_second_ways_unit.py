@@ -36,7 +36,7 @@ from fegear.geometry.curves import Arc, Line, Stretched
 from fegear.geometry.custom_fillet_tooth import with_fillet
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.fillet_curves import TurnedCurve, turned_curve
-from fegear.geometry.fillet_shapes import ArcFillet, EllipseOnSpace
+from fegear.geometry.fillet_shapes import ArcFillet, ControlFillet, EllipseOnSpace, PointsFillet
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_interference import _shortest_cut
 from fegear.geometry.internal_tooth import PinionCutter
@@ -46,6 +46,7 @@ from fegear.geometry.over_balls import over_balls, touching_ball
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief
+from fegear.shafts.axial_factors import ribs_of
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25), 0.1, 0.02)
 UNEVEN = AsymmetricTooth(
@@ -402,3 +403,51 @@ def test_a_design_for_a_range_is_compared_with_reliefs_for_one_load_and_with_the
         )
     assert list(found.for_one_load) == ["linear"]
     assert found.finer == 0
+
+
+def angle_between(one, other):
+    """Of two unit vectors [deg]."""
+    return math.degrees(math.asin(abs(float(one[0] * other[1] - one[1] * other[0]))))
+
+
+def controlled(end, degrees):
+    """The generated fillet by control points, one end's leg turned about its end."""
+    fillet = TOOTH.fillet
+    points = fillet.points(np.linspace(fillet.start, fillet.end, 9)).T
+    control = np.array(with_fillet(TOOTH, PointsFillet(tuple(map(tuple, points)))).fillet.control).T
+    at, beside = (0, 1) if end == "root" else (-1, -2)
+    turn = math.radians(degrees)
+    matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    control[:, beside] = control[:, at] + matrix @ (control[:, beside] - control[:, at])
+    return with_fillet(TOOTH, ControlFillet(tuple(map(tuple, control.T))))
+
+
+@pytest.mark.parametrize("end", ["root", "flank"])
+@pytest.mark.parametrize("degrees", [-2.0, -0.3, 0.3, 2.0])
+def test_a_fillet_of_control_points_touches_flank_and_root_circle_where_it_nearly_does(end, degrees):
+    """Three degrees off it is refused; less is taken for round-off of a drawing."""
+    tooth = controlled(end, degrees)
+    fillet, flank = tooth.fillet, tooth.involute
+    assert angle_between(fillet.normals(fillet.end), flank.normals(flank.start)) < 1e-6
+    assert angle_between(fillet.normals(fillet.start), fillet.points(fillet.start) / tooth.root_radius) < 1e-6
+    with pytest.raises(GeometryError, match="deg"):
+        controlled(end, 3.0 if end == "flank" else math.copysign(3.2, degrees))
+
+
+@pytest.mark.parametrize(("apart", "equal"), [(1.5e-6, False), (0.5e-6, True)])
+def test_points_of_a_fillet_closer_than_a_millionth_of_a_module_are_equal(apart, equal):
+    """What is less close may be refused for other reasons."""
+    fillet = TOOTH.fillet
+    points = fillet.points(np.linspace(fillet.start, fillet.end, 9)).T
+    more = np.insert(points, 4, points[3] + apart * (points[4] - points[3]) / math.dist(points[4], points[3]), axis=0)
+    with pytest.raises(GeometryError) as refused:
+        with_fillet(TOOTH, PointsFillet(tuple(map(tuple, more))))
+    assert (refused.value.value == "two equal points") is equal
+
+
+def test_ribs_that_carry_axial_force_follow_from_the_series():
+    """NUP 2 and 3 are narrow, NUP 22 and 23 wide; other bearings of cylindrical rollers have none."""
+    for narrow, wide in (("NUP205", "NUP2205"), ("NUP310", "NUP2310")):
+        assert ribs_of(narrow) == (0.6, 0.2)
+        assert ribs_of(wide) == (0.4, 0.3)
+    assert ribs_of("NU2205") is ribs_of("6205") is None

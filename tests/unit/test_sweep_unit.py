@@ -331,3 +331,28 @@ def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path, 
     assert told[2][0]["gear-solution of a"]["seconds_when_computed"] > 0.0
     assert set(found["origin"].values()) == {"computed"}
     assert all(results == told[0][2] for _, _, results in told)
+
+
+@pytest.mark.parametrize("changed", [False, True])
+def test_only_where_a_sweep_has_asked_for_an_atlas_itself_points_are_not_bothered_with_it(
+    monkeypatch, tmp_path, changed
+):
+    from fegear.studies import sweep
+
+    given, asked = {"title": "given"}, {"title": "asked"}
+    monkeypatch.setattr(sweep, "read_document", lambda path, overrides: given)
+    monkeypatch.setattr(sweep, "_check", lambda axes, document: None)
+    monkeypatch.setattr(sweep, "_by_atlas", lambda axes, document: asked if changed else document)
+    monkeypatch.setattr(sweep, "_grid", lambda document, axes: [{"n": 1}, {"n": 2}])
+    monkeypatch.setattr(sweep, "_neglecting", lambda number, document: document | {"number": number})
+    monkeypatch.setattr(sweep, "count_kept", lambda compute, points, cache, key: len(points) + 5)
+    failure = sweep.Failure("f", "words")
+    monkeypatch.setattr(
+        sweep, "map_points", lambda compute, points, executor, cache, **how: [points[0], failure],
+    )  # fmt: skip
+    monkeypatch.setattr(sweep, "_point", lambda item, unasked: (item, unasked))
+    found = sweep.sweep_case(tmp_path / "c.toml", ["axis"])
+    item = {"document": {"n": 1, "number": 0}, "name": "c", "folder": str(tmp_path)}
+    assert found.points == ((item, changed), failure)
+    assert (found.title, found.axes) == ("asked" if changed else "given", ("axis",))
+    assert found.kept == 7
