@@ -1,6 +1,7 @@
 """What ordinary cases come by seldom: ends of searches, second fillets, other outlines, standards' other branches."""
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -39,7 +40,7 @@ from fegear.geometry.fillet_curves import TurnedCurve, turned_curve
 from fegear.geometry.fillet_shapes import ArcFillet, ControlFillet, EllipseOnSpace, PointsFillet
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_interference import _shortest_cut
-from fegear.geometry.internal_tooth import PinionCutter
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.mass import _ring
 from fegear.geometry.outline import _turned_edge, rack_tooth, tool_in_gear, turned
 from fegear.geometry.over_balls import over_balls, touching_ball
@@ -451,3 +452,41 @@ def test_ribs_that_carry_axial_force_follow_from_the_series():
         assert ribs_of(narrow) == (0.6, 0.2)
         assert ribs_of(wide) == (0.4, 0.3)
     assert ribs_of("NU2205") is ribs_of("6205") is None
+
+
+RING = InternalTooth(
+    60, PinionCutter(25, profile_shift=0.1, addendum=1.25, tip_radius=0.2), profile_shift=-0.3, tip_radius=29.5
+)
+
+
+@pytest.mark.parametrize(("tooth", "off"), [(TOOTH, 0.3), (RING, 0.2)])
+def test_the_root_circle_named_for_an_ellipse_is_the_deepest_that_has_one(tooth, off):
+    form = tooth.form_radius + tooth.side * off
+    with pytest.raises(GeometryError, match="no ellipse that is tangent") as refused:
+        with_fillet(tooth, EllipseOnSpace(form, tooth.root_radius - 0.3 * tooth.side))
+    said = re.search(r"must be (above|below) ([0-9.]+) modules", refused.value.rule)
+    assert said[1] == ("above" if tooth.side > 0 else "below")
+    limit = 0.5 * float(said[2])
+    made = with_fillet(tooth, EllipseOnSpace(form, limit + 2e-3 * tooth.side))
+    assert made.root_radius == limit + 2e-3 * tooth.side
+    with pytest.raises(GeometryError, match="no ellipse that is tangent"):
+        with_fillet(tooth, EllipseOnSpace(form, limit - 2e-3 * tooth.side))
+
+
+@pytest.mark.parametrize("radii", [(1.5, 0.3), (0.6, 0.3)])
+@pytest.mark.parametrize("tooth", [TOOTH, RING], ids=["gear", "ring"])
+def test_two_arcs_have_their_radii_and_touch_flank_root_circle_and_each_other(tooth, radii):
+    made = with_fillet(tooth, ArcFillet(radii, tooth.form_radius + 0.02 * tooth.side))
+    fillet = made.fillet
+    ends = fillet.start, fillet.end
+    assert angle_between(fillet.normals(fillet.end), made.involute.normals(made.involute.start)) < 1e-6
+    bottom = np.array(fillet.points(fillet.start))
+    assert angle_between(fillet.normals(fillet.start), bottom / np.hypot(*bottom)) < 1e-6
+    assert np.hypot(*bottom) == pytest.approx(tooth.root_radius, rel=1e-12)
+    found = [1.0 / abs(float(fillet.curvatures(end))) for end in ends]
+    assert found == pytest.approx([radii[1], radii[0]], rel=1e-9)
+    u = np.linspace(*ends, 2001)
+    normals = fillet.normals(u)
+    turns = np.abs(normals[0, 1:] * normals[1, :-1] - normals[1, 1:] * normals[0, :-1])
+    assert turns.max() < 3.0 * math.pi / 2000.0  # nowhere a corner
+    assert (np.diff(np.hypot(*fillet.points(u))) * tooth.side > -1e-12).all()

@@ -28,8 +28,7 @@ from fegear.geometry.relief import EndRelief
 LOAD = 9000.0
 
 
-def engaged(z1=24, z2=36):
-    rack = BasicRack(1.0, 1.25, 0.2)
+def engaged(z1=24, z2=36, rack=BasicRack(1.0, 1.25, 0.2)):  # noqa: B008
     gears = [Gear(Tooth(z, rack), 3e-3, 0.1 * z * 3e-3, 0.03) for z in (z1, z2)]
     sources = [closed_form_compliance(gear, "cornell") for gear in gears]
     return Engagement(PairCompliance(GearPair(*gears), *sources, hertz="linear", nominal_load=LOAD))
@@ -40,31 +39,76 @@ def pair():
     return engaged()
 
 
+@pytest.fixture(scope="module")
+def high():
+    """Two or three pairs bear."""
+    found = engaged(45, 60, BasicRack(1.35, 1.55, 0.1))
+    assert found.pair.contact_ratio > 2.1
+    return found
+
+
 def bent(trials, p):
     """Where the error of one relief bends."""
-    shared = trials._shared(trials._removed(p)[0]).loads
-    loads = np.moveaxis(shared.reshape(*shared.shape[:2], len(p), 1), 1, 2)
-    return trials._between.bends(p, loads)
+    return trials._between.bends(p, carried(trials, p)[1])
+
+
+def carried(trials, p):
+    """Errors and loads of one relief at all positions."""
+    shared = trials._shared(trials._removed(p)[0])
+    loads = np.moveaxis(shared.loads.reshape(*shared.loads.shape[:2], len(p), 1), 1, 2)
+    return np.moveaxis(shared.transmission_error.reshape(-1, len(p), 1), 1, 0), loads
+
+
+def reliefs(teeth, count):
+    size = 1.0 if teeth == "pair" else 0.6
+    ends = ((8e-6 * size, 40e-6 * size), (0.15, 0.6)) * 2
+    return np.stack([np.random.default_rng(8 + k).uniform(*one, count) for k, one in enumerate(ends)], axis=1)
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0])
-def test_places_where_pairs_part_and_touch_move_as_their_derivatives_say(pair, power):
+@pytest.mark.parametrize("teeth", ["pair", "high"])
+def test_places_where_pairs_part_and_touch_move_as_their_derivatives_say(request, teeth, power):
     """By differences: places, and of starts of straight reliefs also how much the slope jumps there."""
-    trials = Trials(_even(pair, 60), np.array([0.6 * LOAD]), power, "effective_error")
-    here, step = np.array([18e-6, 0.33, 25e-6, 0.41]), 1e-4 * np.array([20e-6, 1.0, 20e-6, 1.0])
-    found = bent(trials, here[None])
-    assert len(found) == (2 if power == 1.0 else 1)
-    assert found[0].x.size >= 2
-    for k in range(4):
-        ends = [bent(trials, (here + sign * step * np.eye(4)[k])[None]) for sign in (1.0, -1.0)]
-        for kind, (one, up, down) in enumerate(zip(found, *ends, strict=True)):
-            assert up.where.tolist() == down.where.tolist() == one.where.tolist()
-            moved = (up.x - down.x) / (2.0 * step[k])
-            scale = np.abs(one.moved * step).max() / step[k]
-            np.testing.assert_allclose(one.moved[:, k], moved, atol=2e-3 * scale)
+    trials = Trials(_even(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "effective_error")
+    step, seen = 1e-4 * np.array([20e-6, 1.0, 20e-6, 1.0]), 0
+    for here in reliefs(teeth, 5):
+        every = here + np.concatenate([np.zeros((1, 4)), np.diag(step), -np.diag(step)])
+        for kind, kinds in enumerate(zip(*(bent(trials, one[None]) for one in every), strict=True)):
+            if len({str(one.where.tolist()) for one in kinds}) > 1 or not kinds[0].x.size:
+                continue
+            one, seen = kinds[0], seen + kinds[0].x.size
+            moved = np.array([one.x for one in kinds])
+            moved = (moved[1:5] - moved[5:]).T / (2.0 * step)
+            scale = np.abs(one.moved * step).max() / step
+            np.testing.assert_allclose(one.moved / scale, moved / scale, atol=3e-3)
             if kind == 1:
-                grown = (up.jump - down.jump) / (2.0 * step[k])
-                np.testing.assert_allclose(one.grown[:, k], grown, atol=0.1 * np.abs(one.grown * step).max() / step[k])
+                grown = np.array([one.jump for one in kinds])
+                grown = (grown[1:5] - grown[5:]).T / (2.0 * step)
+                scale = np.abs(one.grown * step).max() / step
+                np.testing.assert_allclose(one.grown / scale, grown / scale, atol=0.25)
+    assert seen > 6
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+@pytest.mark.parametrize("teeth", ["pair", "high"])
+def test_peaks_and_troughs_between_positions_grow_as_their_derivatives_say(request, teeth, power):
+    """As if they stayed: a peak that moves along a slope of nothing grows by what changes there."""
+    trials = Trials(_even(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "peak_to_peak")
+    step, seen = 2e-5 * np.array([20e-6, 1.0, 20e-6, 1.0]), np.zeros(3, dtype=int)
+    for here in reliefs(teeth, 6):
+        every = here + np.concatenate([np.zeros((1, 4)), np.diag(step), -np.diag(step)])
+        found = [trials._between.extremes(one[None], *carried(trials, one[None]))[:3] for one in every]
+        for kind in range(3):
+            kinds = [one[kind] for one in found]
+            if len({str(one.where.tolist()) for one in kinds}) > 1 or not kinds[0].values.size:
+                continue
+            seen[kind] += kinds[0].values.size
+            values = np.array([one.values for one in kinds])
+            grown = (values[1:5] - values[5:]).T / (2.0 * step)
+            scale = max((np.abs(kinds[0].slopes) * step).max(), 2e-11) / step
+            np.testing.assert_allclose(kinds[0].slopes / scale, grown / scale, atol=5e-3)
+    assert seen[0] > 2
+    assert seen[1] + seen[2] > 2
 
 
 @pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
