@@ -156,6 +156,19 @@ def test_largest_root_stresses_are_those_of_a_pair(pairs, many):
     assert np.isnan(found.tension[:, 1]).all()
 
 
+@pytest.mark.parametrize("followed", [False, True])
+def test_pairs_without_fillets_have_no_root_stress_none_of_them(many, followed):
+    known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS, root_stress=True)
+    fillets = replace(known.fillets, length=np.nan * known.fillets.length)
+    found = many_roots.root_stresses(known.engagements, fillets, LOADS, samples=2, followed=followed)
+    for one in (found.tension, found.compression, found.tension_range):
+        assert one.shape == (2, 2, 2)
+        assert np.isnan(one).all()
+    at = many_roots.root_stress_at(known.engagements, fillets, LOADS[0], [0.2, 0.7])
+    assert np.isnan(at.stress).all()
+    assert at.first.tolist() == [-1, -1]
+
+
 @pytest.mark.dear
 def test_followed_root_stresses_are_those_of_a_pair_to_round_off(pairs, many):
     known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS, root_stress=True)

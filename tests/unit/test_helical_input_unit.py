@@ -53,6 +53,9 @@ def gear(teeth=30, hand="left", beta=30.0, **more):
         ),
         (lambda: HelicalPair(gear(), gear(100, "right"), parabola=1e3), GeometryError, "no regular flank"),
         (lambda: HelicalPair(gear(), gear(100, "right"), crown=100.0), GeometryError, "tenth of the pitch"),
+        (lambda: Misalignment(shaft_angle=math.radians(3.01)), RangeError, "is not small"),
+        (lambda: Misalignment(lead_angle=-math.radians(3.01)), RangeError, "is not small"),
+        (lambda: Misalignment(profile_angle=math.nan), RangeError, "is not small"),
         (lambda: Misalignment(shaft_angle=0.2), RangeError, "is not small"),
         (lambda: Misalignment(lead_angle=math.nan), RangeError, "is not small"),
         (lambda: Misalignment(centre_distance=math.nan), InputError, "finite"),
@@ -63,6 +66,13 @@ def gear(teeth=30, hand="left", beta=30.0, **more):
 def test_nonsense_is_refused_with_value_and_rule(build, error, words):
     with pytest.raises(error, match=words):
         build()
+
+
+def test_errors_of_three_degrees_are_small():
+    for sign in (-1.0, 1.0):
+        found = Misalignment(*(sign * math.radians(3.0),) * 3)
+        assert not found.aligned
+    assert Misalignment(centre_distance=1e-3).aligned
 
 
 def test_results_are_read_only():
