@@ -107,7 +107,6 @@ def k_chart(of: str) -> Chart:
         Mapping of designs to sequences of `ProfileChart`.
     """
     plain = {"markers": False}
-    along = {"x": "roll_length"}
     return Chart(
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
         "Pair {name}: profile of each gear over roll length, material removed below zero, tip at right. Dashed: limits "
@@ -117,10 +116,10 @@ def k_chart(of: str) -> Chart:
             Over(
                 lambda seen: Axis(f"roll length of {seen.one.gear}", "mm"),  # an axis for each: they lie far apart
                 (
-                    Line("profile", "nominal", "designed", look={**plain, "width": 2.4}, **along),
-                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}, **along),
-                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}, **along),
-                    Line("present", "present relief", "present relief", look=plain, **along),
+                    Line("profile", "nominal", "designed", look={**plain, "width": 2.4}, x="roll_length"),
+                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}, x="roll_length"),
+                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}, x="roll_length"),
+                    Line("present", "present relief", "present relief", look=plain, x="roll_length"),
                 ),
                 _ordinate,
                 title="{one.gear}: {one.words}", each=lambda seen: seen.one,
