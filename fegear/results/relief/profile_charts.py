@@ -117,7 +117,10 @@ def k_chart(of: str) -> Chart:
                 lambda seen: Axis(f"roll length of {seen.one.gear}", "mm"),  # an axis for each: they lie far apart
                 (
                     Line("profile", "nominal", "designed", look={**plain, "width": 2.4}, x="roll_length"),
-                    Line("upper", "limits of amount and length", "grey", look={**plain, "dash": "dash"}, x="roll_length"),
+                    Line(
+                        "upper", "limits of amount and length", "grey",
+                        look={**plain, "dash": "dash"}, x="roll_length",
+                    ),
                     Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}, x="roll_length"),
                     Line("present", "present relief", "present relief", look=plain, x="roll_length"),
                 ),
