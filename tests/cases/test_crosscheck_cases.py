@@ -166,8 +166,10 @@ def test_parts_add_up_and_the_pair_is_symmetric(cornell_case):
         one = rows_of(pair, name)
         assert one["compliance"] == pytest.approx(one["compliance"][::-1], rel=1e-9)
         assert one["compliance_fe"] == pytest.approx(one["compliance_fe"][::-1], rel=1e-9)
-    # As measured: textbook pairs are within 10 % of FE here; ISO's c' within 5 %.
-    assert np.nanmax(np.abs(pair["ratio_to_fe"] - 1.0)) < 0.1
+    # As measured: textbook pairs are within 10 % of FE here, the tooth without fillet within 18 %; ISO's c' within 5 %.
+    for name in SOURCES:
+        beyond = np.nanmax(np.abs(rows_of(pair, name)["ratio_to_fe"] - 1.0))
+        assert beyond < (0.18 if name == "potential-energy-simplified" else 0.1), name
     assert values["I.single_stiffness_iso"] == pytest.approx(
         values["I.single_stiffness_iso.ratio_to_fe"] * values["I.single_stiffness_fe"], rel=1e-12
     )
@@ -208,7 +210,7 @@ def test_unloaded_pairs_say_which_load_they_use():
     assert any("no load was given" in remark for remark in results.remarks)
     tables, _, results = run("cornell_test_gear", "stiffness={gear='test', positions=3}", "pair.I.load='1270 N'")
     assert not any("no load was given" in remark for remark in results.remarks)
-    assert len(tables["crosscheck_compliance_I"]["x"]) == 9
+    assert len(tables["crosscheck_compliance_I"]["x"]) == 3 * len(SOURCES)
 
 
 def test_c_prime_outside_the_stated_range_is_remarked_and_where_it_has_no_value_the_reason_is():
