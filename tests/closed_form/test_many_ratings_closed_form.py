@@ -350,3 +350,19 @@ def test_an_outline_that_a_rack_makes_is_rated_as_the_rack_says_with_a_rim_as_wi
         for name in ("teeth", "load_diameter", "load_distribution", "rim", "stress"):
             assert getattr(other, name) == pytest.approx(getattr(one, name), rel=2e-6), name
         assert (other.rim > 1.0) is (backup == 0.8)
+
+
+def test_a_spectrum_takes_given_factors_where_the_standard_has_none_of_its_own():
+    """K_v by method C ends at some speed: given ones serve for the S-N curves too, whichever level comes first."""
+    group = Group(3, 1)
+    assert group.method == "C"
+    conditions = group.conditions(0)
+    duty = replace(conditions.duty, speed=1e4 * conditions.duty.speed)
+    conditions, given = replace(conditions, duty=duty), Replacement(K_v=1.3)
+    with pytest.raises(RangeError, match="K_v"):
+        rate_pair(conditions)
+    loaded, idle = (duty, (1e6, 4e5)), (None, (1e3, 4e2))
+    found = rate_spectrum(conditions, [idle, loaded], [None, given])
+    alone = rate_spectrum(conditions, [loaded], given)
+    for name in ("contact_safety", "bending_safety", "contact_damage", "bending_damage"):
+        assert getattr(found, name) == pytest.approx(getattr(alone, name), rel=1e-12)

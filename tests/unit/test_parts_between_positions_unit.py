@@ -14,6 +14,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.flanks.flank_design import FlankDesign
 from fegear.design.flanks.trials import Tried
 from fegear.design.quick_sharing import quick_sharing
+from fegear.design.tip_relief import ground
 from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.design.tip_relief.search import _are_like, _even
 from fegear.design.tip_relief.trials import Trials
@@ -232,3 +233,33 @@ def test_extremes_are_those_of_many_more_positions(pair, power):
         ground = replace(pair, driver_relief=reliefs[0], driven_relief=reliefs[1])
         error = ground.solve(grid, loads).transmission_error[:, 0]
         assert 1.0 - 5e-4 < np.ptp(error) / left < 1.0 + 1e-5
+
+
+@pytest.mark.parametrize("loads", [1, 2])
+def test_along_rounded_steps_what_harmonics_leave_curves_by_one(loads):
+    """At the load that leaves most; the curvature by second differences of the metric itself."""
+    rng, harmonics = np.random.default_rng(3), 5
+    curved = [
+        ground._Curved(
+            (1.0 + 0.3 * k) * rng.normal(size=10), rng.normal(size=(10, 4)),
+            rng.normal(size=10)[:, None, None] * np.array([[3, 1, 0, 1], [1, 2, 1, 0], [0, 1, -1, 1], [1, 0, 1, 4.0]]),
+        )
+        for k in range(loads)
+    ]  # fmt: skip
+    problem = ground._Problem(tuple(curved), tuple(curved), harmonics)
+    most = max(curved, key=lambda one: ground._effective(one.value, harmonics)[0])
+
+    def left(d):
+        parts = most.at(d)
+        each = np.hypot(parts[:harmonics], parts[harmonics:])
+        return float(each[0] + np.sqrt((each**2).sum()))
+
+    step, eye = 1e-4, 1e-4 * np.eye(4)
+    bent = np.array([
+        [left(a + b) - left(a - b) - left(b - a) + left(-a - b) for b in eye] for a in eye
+    ]) / (4.0 * step**2)  # fmt: skip
+    ways = problem.rounded()
+    round_ = ways.T @ bent @ ways
+    np.testing.assert_allclose(np.abs(round_), np.eye(4), atol=2e-4)
+    straight = ground._Problem(tuple(curved), tuple(curved), 0)
+    np.testing.assert_array_equal(straight.rounded(), np.eye(4))
