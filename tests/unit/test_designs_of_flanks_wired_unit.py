@@ -217,7 +217,9 @@ def designed(monkeypatch):
 
     monkeypatch.setattr(tip_design, "within_tolerances", within)
     monkeypatch.setattr(
-        tip_design, "decisive_tips", lambda trials, pair, numbers, tolerance, most: (trials.tip_power, numbers, most)
+        tip_design,
+        "decisive_tolerances",
+        lambda trials, pair, numbers, tolerance, most: (trials.tip_power, numbers, most),
     )
 
     def made(task, present=False):

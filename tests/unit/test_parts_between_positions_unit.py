@@ -156,6 +156,9 @@ def test_pressure_counts_on_the_smooth_flank_only_at_each_misalignment_and_load(
     [
         ((9e-6, 0.0, 9e-6), (9e-6, 2e-6, 9e-6), 0.5, True),  # one more, below its tolerance
         ((9e-6, 0.0, 9e-6), (9e-6, 7e-6, 9e-6), 0.5, False),  # one more, above it
+        ((9e-6, 0.0, 9e-6), (9e-6, 4.9e-6, 9e-6), 0.5, True),  # just below it
+        ((9e-6, 0.0, 9e-6), (9e-6, 5e-6, 9e-6), 0.5, False),  # as large as it
+        ((9e-6, 0.0, 9e-6), (9e-6, 5.2e-6, 9e-6), 0.5, False),
         ((9e-6, 0.0, 9e-6), (0.0, 2e-6, 9e-6), 0.5, False),  # another one
         ((9e-6, 0.0, 9e-6), (9e-6, 0.0, 9e-6), 0.5, False),  # the same ones
         ((9e-6, 0.0, 9e-6), (9e-6, 2e-6, 9e-6), 1.5, False),  # more is left than without
