@@ -356,3 +356,25 @@ def test_panels_share_what_names_their_axes():
     assert [list(sheet._column(column)) for column in range(2)] == [[0, 2, 4], [1, 3]]
     alike = Sheet(None, [(a, ""), (plain("t", "y"), "")], 2)
     assert [alike._beside(i) for i in range(2)] == [False, True]
+
+
+def test_rows_of_words_have_a_height_each_and_other_panels_one_by_their_share():
+    def height(*panels):
+        return plotly_json(Figure("f", "F", "C.", panels))["layout"]["height"]
+
+    x = np.linspace(0.0, 1.0, 5)
+
+    def rows(count, share=1.0):
+        words = tuple(f"row {k}" for k in range(count))
+        return Panel(Axis("x"), Axis(categories=words), (Points(x[:2], [0.0, 1.0], "p", "ink"),), height=share)
+
+    def plain(share=1.0):
+        return Panel(Axis("x"), Axis("y"), (Curve(x, x, "c"),), height=share)
+
+    more = height(rows(9)) - height(rows(5))
+    assert more == pytest.approx(4.0 * 26)  # a line of text and some room
+    assert height(rows(9)) == height(rows(9, 2.0))  # by their rows, not by their share
+    alone = height(plain(2.0)) - height(plain())
+    stacked = (height(plain(2.0), plain(2.0)) - height(plain(), plain())) / 2.0
+    assert height(plain(3.0)) - height(plain()) == pytest.approx(2.0 * alone)
+    assert alone > stacked > 100.0

@@ -15,6 +15,7 @@ from fegear.engine.stage import Task
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
+from fegear.results.helical import transmissibility
 from fegear.results.pair import loaded_flanks
 from fegear.results.planetary import planet_revolution, planet_vibration_revolution
 from fegear.results.shafts.gearbox_scheme import _of_gear, _pieces
@@ -315,3 +316,23 @@ def test_a_shaft_is_boxes_of_its_pieces_without_those_of_no_length():
     assert boxes == [
         [pytest.approx(1.05), 0.7, pytest.approx(0.1), 0.06], [pytest.approx(1.25), 0.7, pytest.approx(0.3), 0.06]
     ]  # fmt: skip
+
+
+# ---- modes of two parameters beside those of the whole mesh ----------------------------------------------------------
+@pytest.mark.parametrize(
+    ("own", "full", "mode", "change"),
+    [
+        ([0.0, 10.0, 20.0], [0.0, 11.0, 25.0], 3, "+25 %"), ([0.0, 10.0, 20.0], [0.0, 8.0, 21.0], 2, "−20 %"),
+        ([0.0, 10.0, 20.0], [5.0, 11.0, 0.0], 2, "+10.0 %"),  # what moves freely in one of both is no change
+        ([0.0, 10.0], [3.0, 0.0], 0, ""), ([4.0, 10.0], [], 0, ""),
+    ],
+)  # fmt: skip
+def test_the_frequency_that_one_kappa_changes_most_is_said(own, full, mode, change):
+    own, full = 2.0 * np.pi * np.array(own), 2.0 * np.pi * np.array(full)
+    data = SimpleNamespace(modes=SimpleNamespace(frequency=own), full=full)
+    said = transmissibility._two_parameters(SimpleNamespace(name="I", data=SimpleNamespace(data=data)))
+    assert len(said) == bool(mode)
+    for one in said:
+        assert (
+            f"change by up to {change.replace('−', '-')} (mode {mode}, {own[mode - 1] / (2.0 * np.pi):.5g} Hz)" in one
+        )
