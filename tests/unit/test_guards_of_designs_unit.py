@@ -60,11 +60,11 @@ def test_a_zone_may_end_where_the_path_does_but_for_round_off(end):
 def test_beyond_its_zone_a_relief_goes_on_as_it_ends_and_never_falls():
     """Two ends whose stations lie on lines; one distance only, and none at all, say nothing about a slope."""
     loading = SimpleNamespace(over_path=SimpleNamespace(
-        x_start=0.0, x_end=10.0, length=10.0, terms=((0.0, 0.0, 1.0),)))  # fmt: skip
+        x_start=2.0, x_end=12.0, length=10.0, terms=((0.0, 0.0, 1.0),)))  # fmt: skip
     x = np.linspace(0.0, 10.0, 201)
 
     def slopes(relief, present=True):
-        lines = SimpleNamespace(x=x, present=np.broadcast_to(present, x.shape))
+        lines = SimpleNamespace(x=2.0 + x, present=np.broadcast_to(present, x.shape))
         return _end_slopes(lines, relief, loading)
 
     falling, rising = 0.3 * np.maximum(1.0 - x, 0.0), 0.2 * np.maximum(x - 9.0, 0.0)
