@@ -12,6 +12,8 @@ _MOST = 10
 _ROUGH = 0.5
 #: Above this one `rounded` keeps a single digit, fewer than a single value has that is printed with its error.
 _SAID = 0.1
+#: Counts that sentences write out.
+_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 
 
 def percent(share: float, signed: bool = False, whole: bool = False) -> str:
@@ -46,6 +48,11 @@ def percents(low: float, high: float) -> str:
     """A range of shares in per cent, as `percent`: ``"41 % to 52 %"``; one value where both read the same."""
     first, last = percent(low), percent(high)
     return first if first == last else f"{first} to {last}"
+
+
+def in_words(count: int) -> str:
+    """A count of a sentence: ``"three"``, ``"14"``."""
+    return _COUNTS[count] if count < len(_COUNTS) else str(count)
 
 
 def plain(value: float) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from fegear.engine.table import Table
 
 #: Sentences of one result, and of all wanted results together unless more are wanted.
@@ -37,6 +39,10 @@ class Answered:
         Whether it stands before the others, whatever the order asked for: what the case is about, as odd teeth.
     overviews : tuple of Table
         A table with a row for each of several subjects, the one to act on first; of one subject its row.
+    fact : object
+        What it adds to the common sentence of several subjects.
+    common : callable, optional
+        That sentence, before those of the subjects, from all their facts; empty for none.
     """
 
     sentences: tuple[str, ...]
@@ -48,3 +54,5 @@ class Answered:
     tables: tuple[str, ...] = ()
     leads: bool = False
     overviews: tuple[Table, ...] = ()
+    fact: Any = None
+    common: Callable[[Sequence[Any]], str] | None = None

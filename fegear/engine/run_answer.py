@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
-from fegear.base.printed import rounded, unit_said
+from fegear.base.printed import in_words, rounded, unit_said
 from fegear.base.spoken_names import spoken
 from fegear.engine.answered import MOST, Answered
 from fegear.engine.declared import stacked
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 _FIRST = 2
 #: Subjects from which on a table has them all.
 _OVERVIEW = 3
-_COUNTS = ("", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 
 
 class RunAnswer(NamedTuple):
@@ -158,10 +157,12 @@ def joined(answers: Sequence[Answered]) -> Answered:
     first = ordered[0]
     rows = [list(one.sentences) for one in ordered]
     if first.among and rows[0] and first.rank is not None:
-        clause = first.among.format(count=_counted(len(answers)))
+        clause = first.among.format(count=in_words(len(answers)))
         rows[0][0] = f"{rows[0][0].removesuffix('.')}, {clause}."
+    common = "" if first.common is None else first.common([one.fact for one in answers])
     return Answered(
-        _within(rows)[:MOST], first.figure, covers=first.covers, background=first.background,
+        (*filter(None, [common]), *_within(rows))[:MOST], first.figure, covers=first.covers,
+        background=first.background,
         tables=tuple(table for one in ordered for table in one.tables), leads=any(one.leads for one in ordered),
         overviews=_below_each_other([table for one in ordered for table in one.overviews]),
     )  # fmt: skip
@@ -191,7 +192,3 @@ def _plain_sentence(value: Value) -> str:
     meaning = value.meaning.partition(";")[0]
     start = f"{': '.join(subject.split('.'))}: " if dot else ""
     return f"{start}{name} {number}" + (f" ({meaning})." if meaning else ".")
-
-
-def _counted(count: int) -> str:
-    return _COUNTS[count] if count < len(_COUNTS) else str(count)

@@ -79,6 +79,9 @@ def test_the_other_fillet_is_named():
 )  # fmt: skip
 def test_a_ratio_with_a_reason_is_named_by_it(ratio, words):
     assert words in judged(ratio * strain(), torques={"150 N m": 0.7})
+    half = Otherwise(torques={"150 N m": 0.51}).of_ratio(0.505, 0.02)
+    both = ", as computed at 150 N m, or as of a quarter bridge evaluated as a half bridge; check torque and bridge"
+    assert half == both
     assert Otherwise().of_ratio(1.0, 0.01) == Otherwise().of_ratio(1.3, 0.01) == ""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from fegear.engine.answered import MOST, Answered
 from fegear.engine.sheet.rows import Rows
@@ -40,6 +40,10 @@ class Answer:
         Whether it does, as of `Answered`.
     overview : Rows, optional
         A table of one row, which several subjects make one table.
+    fact : callable, optional
+        As of `Answered`, from all that is seen.
+    common : callable, optional
+        As of `Answered`.
     """
 
     said: tuple[str | _Says | Callable[[Seen], Iterable[str]], ...]
@@ -51,15 +55,19 @@ class Answer:
     tables: tuple[str, ...]
     leads: Where | None
     overview: Rows | None
+    fact: Callable[[Seen], Any] | None
+    common: Callable[[Sequence[Any]], str] | None
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
         among: str = "", covers: tuple[str, ...] = (), background: bool = False, tables: tuple[str, ...] = (),
         leads: Where | None = None, overview: Rows | None = None,
+        fact: Callable[[Seen], Any] | None = None, common: Callable[[Sequence[Any]], str] | None = None,
     ) -> None:  # fmt: skip
         for name, given in (
             ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
             ("background", background), ("tables", tables), ("leads", leads), ("overview", overview),
+            ("fact", fact), ("common", common),
         ):  # fmt: skip
             object.__setattr__(self, name, given)
 
@@ -72,6 +80,7 @@ class Answer:
             found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
             self.background, self.tables, self.leads is not None and seen.holds(self.leads),
             () if self.overview is None else tuple(self.overview.tables(seen)),
+            None if self.fact is None else self.fact(seen), self.common,
         )  # fmt: skip
 
 

@@ -26,6 +26,7 @@ from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import GaugeData
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
+from fegear.results.pair.gauges_together import GaugeGain, of_all_gauges
 from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
@@ -136,13 +137,14 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     better = better_described(gauge, found, history.angle, strain, opposite)
     more = {effect: one for effect, one in followed.more.items() if abs(one.change) > asked.tolerance}
     neglected = {effect: one.change for effect, one in more.items()}
-    torques = _torques(history, teeth.loads, at, asked.halves)
+    levels = over_torque(gauge, found, history, teeth.loads, at)
+    torques = {} if levels else _torques(history, teeth.loads, at, asked.halves)  # a measured torque is known
     return GaugeData(
         teeth.loads, at, history, followed.place.place, followed.clearance, followed.place.clipped,
         gauge.load_tolerance, asked.speed, found,
         Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, torques),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
-        over_torque(gauge, found, history, teeth.loads, at), neglected, including(neglected, asked.effects),
+        levels, neglected, including(neglected, asked.effects),
         _gains(gauge, found, more),
     )  # fmt: skip
 
@@ -240,6 +242,12 @@ def _row(seen: Seen) -> GaugeRow:
     data: GaugeData = seen.data
     torque = data.loads[data.at] * data.history.pair.driver.base_radius * seen.asked.halves
     return GaugeRow.of(seen.name, data, torque, float(data.peak_strain[data.at]))
+
+
+def _gain(seen: Seen) -> GaugeGain | None:
+    """What the gauge adds to the sentence about all of them; None without a verdict."""
+    data: GaugeData = seen.data
+    return data.gain_beside_others(seen.name)
 
 
 #: Of a history, in the order of its columns.
@@ -367,6 +375,7 @@ _SHEET = Sheet(
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
         overview=gauge_rows("gauges", "Measured and computed strain of all gauges", _row),
+        fact=_gain, common=of_all_gauges,
     ),
     remarks=(
         Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.verdict), when="verdict"),

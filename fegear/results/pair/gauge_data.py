@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.notes import Note, class_of
+from fegear.base.notes import Note, NoteClass, class_of
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, gains_of_places, reach_of_places
+from fegear.results.pair.gauges_together import GaugeGain
 from fegear.results.pair.trace_levels import OverTorque
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, alike, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
@@ -205,19 +206,34 @@ class GaugeData(BesideTrace):
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
 
+    def gain_beside_others(self, name: str) -> GaugeGain | None:
+        """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict.
+
+        Nor has one of which the ratio depends on the torque a ratio to compare.
+        """
+        found, judged = self.compared, self.judged
+        if found is None or not judged or (self.linearity and self.over_torque and not self.over_torque.linear):
+            return None
+        limits = self._computed(found).limits_of(found)
+        return GaugeGain(
+            name, found.gain, limits.together(-1.0), limits.together(1.0), self.load_tolerance,
+            judged.kind is NoteClass.INFORMATION, alike(found, self.otherwise),
+        )  # fmt: skip
+
+    def _computed(self, found: FittedCurve) -> ComputedPeak:
+        """What the trace is judged by."""
+        error = self.peak_error
+        return ComputedPeak(
+            float(self.peak_strain[self.at]), 0.0 if error is None else float(error[self.at]),
+            self.history.displacement,
+            gains_of_places(found, self.history.angle, self.history.displaced[:, self.at]),
+            self.load_tolerance, self.gains, self.sharper, self.including,
+        )  # fmt: skip
+
     def _verdict(self, *, brief: bool) -> Judged:
         if self.compared is None or not self.estimated:
             return Judged("")
-        peak, error = float(self.peak_strain[self.at]), self.peak_error
-        judged = verdict(
-            self.compared,
-            ComputedPeak(
-                peak, 0.0 if error is None else float(error[self.at]), self.history.displacement,
-                gains_of_places(self.compared, self.history.angle, self.history.displaced[:, self.at]),
-                self.load_tolerance, self.gains, self.sharper, self.including,
-            ),
-            self.otherwise, brief=brief,
-        )  # fmt: skip
+        judged = verdict(self.compared, self._computed(self.compared), self.otherwise, brief=brief)
         if not brief or self.over_torque is None or not self.linearity or self.over_torque.linear:
             return judged
         return Judged(

@@ -180,8 +180,8 @@ class OverTorque:
         """How the gain changes over torque, a sentence without a subject; empty for a single torque."""
         if not self.several or min(one.gain for one in self.levels) <= 0.0:
             return Note("")
-        by_gain = sorted(self.levels, key=lambda one: one.gain_at_mean)
-        ends = " to ".join(f"{one.gain_at_mean:.3f} ({_torque(one.torque)})" for one in (by_gain[0], by_gain[-1]))
+        by_torque = sorted(self.levels, key=lambda one: one.torque)  # of several gauges the same, whose notes are one
+        ends = " and ".join(f"{one.gain_at_mean:.3f} at {_torque(one.torque)}" for one in (by_torque[0], by_torque[-1]))
         start = f"measured / computed strain over {len(self.levels)} torques is {ends}"
         changes, limits = self._changes, self._limits
         if self.linear:

@@ -114,6 +114,10 @@ class ComputedPeak:
         known = Limits(lower, upper, self.load_tolerance, self.error / size, scatter)
         return replace(known, neglected=abs(self.missing))
 
+    def limits_of(self, found: FittedCurve) -> Limits:
+        """How far a trace may differ by its own scatter."""
+        return self.limits(_CERTAIN * found.gain_scatter)
+
     @property
     def missing(self) -> float:
         """Relative change of measured / computed strain with all effects that the computation does not have."""
@@ -182,13 +186,13 @@ class Otherwise(BetterDescribed):
         if unit := of_unit(ratio, "the strain"):
             return unit
         near = min(max(limit, 0.01), _NEAR)
-        for said, factor in self.torques.items():
-            if abs(ratio / factor - 1.0) <= near:
-                return f", as computed at {said}; check the torque of the trace"
-        for factor, said in _FACTORS.items():
-            if abs(ratio / factor - 1.0) <= near:
-                return f", as of {said}; check torque and bridge"
-        return ""
+        torque = next((one for one, factor in self.torques.items() if abs(ratio / factor - 1.0) <= near), "")
+        cause = next((one for factor, one in _FACTORS.items() if abs(ratio / factor - 1.0) <= near), "")
+        if torque and cause:  # half the torque is often among those of the pair
+            return f", as computed at {torque}, or as of {cause.rpartition(', or ')[2]}; check torque and bridge"
+        if torque:
+            return f", as computed at {torque}; check the torque of the trace"
+        return f", as of {cause}; check torque and bridge" if cause else ""
 
 
 class Judged(Note):
@@ -285,6 +289,11 @@ def thinned(found: FittedCurve) -> FittedCurve:
     )  # fmt: skip
 
 
+def alike(found: FittedCurve, otherwise: Otherwise) -> bool:
+    """Whether only the ratio may be wrong: shapes agree, and no other description fits the trace better."""
+    return found.gain > 0.0 and found.likeness >= _ALIKE and not otherwise.better
+
+
 def verdict(
     found: FittedCurve, peak: ComputedPeak, otherwise: Otherwise | None = None, *, brief: bool = False
 ) -> Judged:  # fmt: skip
@@ -303,7 +312,7 @@ def verdict(
         Without the parts of the limit and the residual.
     """
     size, otherwise = abs(peak.strain), otherwise or Otherwise()
-    limits, off = peak.limits(_CERTAIN * found.gain_scatter), found.gain - 1.0
+    limits, off = peak.limits_of(found), found.gain - 1.0
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
     if better := otherwise.said(found, size):
         as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"

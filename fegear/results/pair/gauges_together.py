@@ -1,0 +1,157 @@
+"""What several gauges say together: that all agree, that one is off, or that one cause explains all of them.
+
+A torque, a gauge factor and the supply of the bridges scale every gauge alike, a grid elsewhere scales its own only.
+Gauges that differ from the computation therefore have a common cause where one factor brings each of them within its
+own limit, and most of them are beyond it without that factor.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.printed import figures, in_words, percent
+from fegear.results.pair.trace_verdict import Otherwise
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Gauges from which on something is said of all of them.
+_SEVERAL = 3
+#: Standard errors by which a mean that is not one is more than chance.
+_CERTAIN = 2.0
+#: Gauges that a common sentence names.
+_NAMED = 6
+
+
+@dataclass(frozen=True)
+class GaugeGain:
+    """Measured / computed strain of one gauge, and how far it may be from one.
+
+    Parameters
+    ----------
+    name : str
+    gain : float
+    below, above : float
+        Relative limits of a measured strain below and above the computed one.
+    load : float
+        What load and gauge factor are uncertain by, relative.
+    agrees : bool
+        Whether its own verdict is that both agree.
+    alike : bool
+        Whether only the ratio may be wrong: the shapes agree, and nothing else explains the trace better.
+    """
+
+    name: str
+    gain: float
+    below: float
+    above: float
+    load: float
+    agrees: bool
+    alike: bool
+
+    def within(self, factor: float) -> bool:
+        """Whether the strain agrees with a computed one that is multiplied by a factor."""
+        off = self.gain / factor - 1.0
+        return self.alike and abs(off) <= (self.above if off >= 0.0 else self.below)
+
+    @property
+    def limit(self) -> float:
+        """Mean of both."""
+        return 0.5 * (self.below + self.above)
+
+
+def common_factor(gauges: Sequence[GaugeGain]) -> float:
+    """Mean of measured / computed strain, geometric, each gauge weighted by its limit."""
+    weights = [1.0 / max(one.limit, 1e-6) ** 2 for one in gauges]
+    return math.exp(float(np.average([math.log(one.gain) for one in gauges], weights=weights)))
+
+
+def of_all_gauges(gauges: Sequence[GaugeGain | None]) -> str:
+    """Sentence about all gauges that have a trace; empty for fewer than three.
+
+    Parameters
+    ----------
+    gauges : sequence of GaugeGain or None
+        None for a gauge without a verdict.
+    """
+    measured = [one for one in gauges if one is not None]
+    if len(measured) < _SEVERAL:
+        return ""
+    failing = [one for one in measured if not one.agrees]
+    if not failing:
+        return _all_agree(measured)
+    if 2 * len(failing) >= len(measured) and (cause := _common_cause(measured)):
+        return cause
+    if len(failing) == len(measured):
+        return (
+            f"None of {in_words(len(measured))} gauges agrees with the computed strain, and no common factor explains "
+            "them: check each of them."
+        )
+    agree = f"{in_words(len(measured) - len(failing)).capitalize()} of {in_words(len(measured))} gauges agree"
+    if 2 * len(failing) < len(measured):
+        its = "its" if len(failing) == 1 else "their"
+        return (
+            f"{agree} with the computed strain, {_names(failing)} {'does' if len(failing) == 1 else 'do'} not: check "
+            f"{its} bridge, bond and position before the torque, which the others confirm."
+        )
+    return f"{agree} with the computed strain; no common factor explains the others: check each of them."
+
+
+def _all_agree(gauges: Sequence[GaugeGain]) -> str:
+    """With the mean, whose error is smaller than the limit of a single gauge."""
+    gains = np.array([one.gain for one in gauges])
+    off = float(gains.mean()) - 1.0
+    error = float(gains.std(ddof=1)) / math.sqrt(gains.size)
+    said = (
+        f"All {in_words(len(gauges))} gauges agree with the computed strain: measured / computed {gains.min():.3f} to "
+        f"{gains.max():.3f}, mean {1.0 + off:.3f} (standard error {error:.2g})"
+    )
+    chance = max(_CERTAIN * error, _mean_limit(gauges), *(one.load for one in gauges))
+    if abs(off) <= chance or ((gains - 1.0) * off <= 0.0).any():
+        return f"{said}."
+    side, way = ("above", "higher") if off > 0.0 else ("below", "lower")
+    return (
+        f"{said}; all are {side} it: a torque or gauge factor {percent(abs(off))} {way} is more likely than "
+        f"{in_words(len(gauges))} displaced grids."
+    )
+
+
+def _mean_limit(gauges: Sequence[GaugeGain]) -> float:
+    """Limit of the mean of gauges whose positions are independent."""
+    return math.sqrt(sum(one.limit**2 for one in gauges)) / len(gauges)
+
+
+def _common_cause(gauges: Sequence[GaugeGain]) -> str:
+    """What one factor explains: all gauges, or all but one; empty for none."""
+    sound = [one for one in gauges if one.alike]
+    if len(sound) < max(_SEVERAL, len(gauges) - 1):
+        return ""
+    factor = common_factor(sound)
+    explained = [one for one in sound if one.within(factor)]
+    if len(explained) < len(sound) == len(gauges) > _SEVERAL:  # one that is far off must not draw the mean
+        far = max(sound, key=lambda one: abs(math.log(one.gain / factor)) / one.limit)
+        rest = [one for one in sound if one is not far]
+        factor = common_factor(rest)
+        explained = [one for one in rest if one.within(factor)]
+    if len(explained) < max(_SEVERAL, len(gauges) - 1):
+        return ""
+    off = factor - 1.0
+    reason = Otherwise().of_ratio(factor, max(_mean_limit(explained), 0.01)) or (
+        f", as of a torque, gauge factor or bridge supply {percent(abs(off))} {'higher' if off > 0.0 else 'lower'}; "
+        "check these before the grids"
+    )
+    left = [one for one in gauges if one not in explained]
+    which = f"all {in_words(len(gauges))} gauges" if not left else (
+        f"{in_words(len(explained))} of {in_words(len(gauges))} gauges (not {_names(left)})"
+    )  # fmt: skip
+    return f"One cause explains {which}: measured strain is {figures(factor)} times the computed one{reason}."
+
+
+def _names(gauges: Sequence[GaugeGain]) -> str:
+    names = [one.name for one in gauges[:_NAMED]]
+    more = f" and {len(gauges) - _NAMED} more" if len(gauges) > _NAMED else ""
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 and not more else ", ".join(names) + more
