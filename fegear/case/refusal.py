@@ -11,7 +11,7 @@ from fegear.case.nearest import nearest
 from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from pydantic import ValidationError
     from pydantic_core import ErrorDetails
@@ -114,8 +114,22 @@ def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) ->
         return InputError(key, _show(value), f"must be {context['expected']}", of_value(key, value))
     if kind in ("too_short", "too_long"):
         return InputError(key, _show(value), _entries(kind, context), of_value(key, value))
+    if kind == "model_type":
+        return InputError(key, _show(value), _KINDS[kind], of_value(key, value) or _as_table(loc, value))
     rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
     return InputError(key, _show(value), rule[0].lower() + rule[1:], of_value(key, value))
+
+
+#: A table with more keys than these is not written out in a remedy.
+_FEW_KEYS = 8
+
+
+def _as_table(loc: Sequence[str], value: object) -> str:
+    """How a table is written in whose place there is a single value: with the value as its source, or which keys."""
+    known = keys_at(loc)
+    if "source" in known and isinstance(value, str):
+        return f"use {loc[-1]} = {{ source = {shown(value, PATH)} }}"
+    return f"use {loc[-1]} = {{ ... }} with its keys: {', '.join(known)}" if 0 < len(known) <= _FEW_KEYS else ""
 
 
 def _entries(kind: str, context: Mapping[str, Any]) -> str:

@@ -244,6 +244,24 @@ def test_override_values_are_toml_and_else_text():
     assert document["accuracy"] == {"tolerance": 0.01}
 
 
+@pytest.mark.parametrize(
+    ("override", "remedy"),
+    [
+        ("pair.I.compliance=cornell", 'use compliance = { source = "cornell" }'),
+        ("pair.I.compliance=5", "use compliance = { ... } with its keys: file, fit, of, source"),
+        ("effects=true", ""),  # too many keys to be written out
+    ],
+)
+def test_a_single_value_for_a_table_is_answered_with_the_table(override, remedy):
+    with pytest.raises(InputError) as refused:
+        scene_with(override)
+    assert (refused.value.rule, refused.value.remedy) == ("must be a table of keys and values", remedy)
+
+
+def test_the_remedy_for_a_single_value_is_accepted():
+    assert scene_with('pair.I.compliance={ source = "cornell" }').case.pair["I"].compliance.source == "cornell"
+
+
 def test_a_list_for_a_table_is_named_as_it_was_written():
     for given, key, rule in (("[]", "torques", "must not be empty"), ('["1 N*m", "1 mm"]', "torques[1]", "is not a"),
                              ("{values=[]}", "torques.values", "must not be empty")):  # fmt: skip
