@@ -24,7 +24,7 @@ CAUSES: tuple[Cause, ...] = ("bearings", "housing", "bending", "torsion")
 
 
 #: Torques of a shaft's meshes are printed with few digits: a smaller share of them all is what rounding leaves.
-_ROUNDED = 5e-4
+ROUNDED = 5e-4
 #: What a gap departs from a straight line by less than this share of the largest one is round-off.
 _STRAIGHT = 1e-12
 
@@ -136,7 +136,7 @@ class Gearbox:
                 loads.append(np.array([[0.0] * 5 + [-sum(part[:, 5].sum() for part in loads)]]))
             whole = np.vstack(loads)
             torques, most = whole[:, 5], np.abs(whole[:, 5])
-            if coupling is None and on and 0.0 < abs(torques.sum()) <= _ROUNDED * most.sum():
+            if coupling is None and on and 0.0 < abs(torques.sum()) <= ROUNDED * most.sum():
                 torques -= torques.sum() * most / most.sum()
             found.append(replace(one, loads_at=np.concatenate(at), loads=whole))
         return tuple(found)

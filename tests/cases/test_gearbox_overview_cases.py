@@ -209,6 +209,17 @@ def test_a_life_below_the_required_one_fails_in_a_note_and_its_change_stays_besi
     assert any("bearing A of shaft in: life 214 h of 5000 h" in one for one in beside)
 
 
+def test_a_weak_mesh_is_changed_before_a_second_bearing():
+    """Three bearings with short lives hid what the weakest mesh needs."""
+    lives = tuple(bearing(name, 1e9, margin) for name, margin in (("A", 0.4), ("B", 0.6), ("C", 0.7)))
+    weak, uneven = mesh(margin=0.79), replace(mesh(factor=1.8), pair="II")
+    box = GearboxData(None, None, (weak, uneven), lives, 1.8e7)
+    assert [one.part for one in box.changes] == ["bearing A of shaft in", "pair I", "bearing B of shaft in"]
+    # load that is uneven fails nothing: every failure comes before it
+    box = GearboxData(None, None, (uneven,), lives[:2], 1.8e7)
+    assert [one.part for one in box.changes] == ["bearing A of shaft in", "bearing B of shaft in", "pair II"]
+
+
 def bearing(name, life, margin, exponent=3.0):
     hours = 5000.0 * margin**exponent
     return BearingAtGlance(name, "in", 1000.0, 0.0, life, 3600.0 * hours, margin, exponent)

@@ -76,6 +76,20 @@ def test_cases_that_come_with_fegear_keep_their_pairs(name):
     assert loads[1] == pytest.approx(loads[0], rel=1e-10)
 
 
+def test_a_shaft_between_two_stages_gets_no_torque_from_rounded_ones():
+    """The torque of stage II had six digits: 6e-5 N m were left, and became a coupling in the model."""
+    document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    torque = document["pair"]["II"]["torque"]
+    assert "coupling" not in document["shaft"]["mid"]
+    document["pair"]["II"]["torque"] = f"{float(torque.split()[0]) * (1.0 + 1e-6)} N*m"
+    again, _ = there_and_back(build_scene(document, "box", Path()))
+    couplings = {name: part.coupling for name, part in again.case.shaft.items()}
+    assert couplings == {"in": 0.0, "mid": None, "out": pytest.approx(0.12)}
+    assert again.case.pair["II"].normal_load(again.pairs["II"]) == pytest.approx(
+        read_scene(CASES / "two_stage_shafts.toml", ()).case.pair["II"].normal_load(again.pairs["II"]), rel=1e-5
+    )
+
+
 def test_what_has_no_attribute_is_said_and_a_case_without_pairs_refused():
     document = tomllib.loads(case_of(model_of(in_json(two_stages()), HERE)))
     document["gear"]["gear_11"] |= {"thickness_allowance": "50 um", "relief": {"table": [

@@ -15,6 +15,7 @@ from fegear.exchange.rexs.operation import OILS
 from fegear.exchange.rexs.written import Found, Part, Written
 from fegear.exchange.rexs.written_gears import left_out, write_gear
 from fegear.exchange.rexs.written_shafts import place, write_shaft, write_shaft_results
+from fegear.shafts.gearbox import ROUNDED
 
 #: Keys of tables that are written, or say how fegear computes.
 _PAIR = frozenset(
@@ -63,7 +64,7 @@ _OF_GEAR = {
 #: What marks the second gear of a pair that names one twice.
 _LIKE = ", identical stage"
 _NOTHING = Found()
-#: A torque below so much of the largest on its shaft balances.
+#: A torque below so much of all on its shaft balances.
 _BALANCED = 1e-9
 
 
@@ -345,8 +346,10 @@ def _drives(written: Written, scene: Scene, bodies: _Bodies) -> None:
     shafts = [one for one in written.parts if one.type == "shaft"]
     net = {}
     for shaft in shafts:
-        parts = bodies.torques.get(shaft.id, [])
-        if abs(sum(parts)) > _BALANCED * max(map(abs, parts), default=0.0):
+        parts, end = bodies.torques.get(shaft.id, []), ends.get(shaft.name)
+        # Torques of a shaft that nothing but its gears turns balance but for the digits that they are typed with.
+        least = _BALANCED if end is None or end.coupling is not None else ROUNDED
+        if abs(sum(parts)) > least * sum(map(abs, parts)):
             net[shaft.id] = sum(parts)
     driving = {n for n, torque in net.items() if torque * bodies.speed.get(n, bodies.sense.get(n, 1.0)) > 0.0}
     # One torque of every train follows from the others: the last that leaves it.

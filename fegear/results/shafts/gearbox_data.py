@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -174,14 +174,17 @@ class GearboxData:
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:
-        """At most three, the most urgent first: what cannot be built or fails, what wastes load, then the weakest."""
-        every = (
-            *map(_of_mesh, self.meshes), *map(_of_shaft, self.checked), *map(_of_tilt, self.bearings),
-            *map(self._of_bearing, self.bearings),
-        )  # fmt: skip
-        urgent = [one for one in every if one is not None]
+        """At most three, the most urgent first: what cannot be built or fails, what wastes load, then the weakest.
+
+        Of what fails, the weakest mesh, shaft and bearing come before a second one of their kind: three short-lived
+        bearings would hide what a mesh needs.
+        """
+        of_bearings = (*map(_of_tilt, self.bearings), *map(self._of_bearing, self.bearings))
+        kinds = [_in_order(kind) for kind in (map(_of_mesh, self.meshes), map(_of_shaft, self.checked), of_bearings)]
+        ranked = [(one.margin >= 1.0, n, one) for kind in kinds for n, one in enumerate(kind)]
+        urgent = [one for _, _, one in sorted(ranked, key=lambda found: (found[0], found[1], found[2].margin))]
         named = {one.part for one in urgent}
-        found = [*map(_of_failure, self.failures), *sorted(urgent, key=lambda one: one.margin)]
+        found = [*map(_of_failure, self.failures), *urgent]
         for one in self._improvements():
             if one.part not in named:
                 found.append(one)
@@ -230,6 +233,11 @@ class GearboxData:
             one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
             f"life {figures(one.duration / 3600.0)} h of {figures(self.required_hours / 3600.0)} h", remedy,
         )  # fmt: skip
+
+
+def _in_order(changes: Iterable[Change | None]) -> list[Change]:
+    """Those that are necessary, the least margin first."""
+    return sorted((one for one in changes if one is not None), key=lambda one: one.margin)
 
 
 def _times(margin: float) -> str:
