@@ -181,8 +181,8 @@ class Results(Alike):
             spared = sum(timing.when_computed for timing in recalled.values())
             said.append(f"From cache: {', '.join(map(str, recalled))} ({spared:.2f} s saved).")
         said += [
-            f"{task}: {timing.from_disk} solutions taken from the disk cache; their {timing.spared:.2f} s are not "
-            "included in the times reported here."
+            f"{task}: {timing.from_disk} solution{'' if timing.from_disk == 1 else 's'} taken from the disk cache; "
+            f"{timing.spared:.2f} s of computing are not included in the times reported here."
             for task, timing in self.timings.items()
             if timing.from_disk
         ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -114,6 +114,12 @@ class Table(Alike):
         lengths = {column.name: len(column) for column in self.columns}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"table {self.name} has columns of different length: {lengths}")
+
+    @property
+    def filled(self) -> Table:
+        """The same without columns in which no row has a number."""
+        columns = tuple(one for one in self.columns if one.si.dtype.kind != "f" or not np.isnan(one.si).all())
+        return self if len(columns) == len(self.columns) else replace(self, columns=columns)
 
     def column(self, name: str) -> Column:
         """Column of a name or a head (``speed`` or ``speed [rpm]``).

@@ -56,7 +56,7 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
 def answer_lines(answer: RunAnswer) -> list[str]:
     """Lines of an answer: its first sentence, tables of several subjects, the other sentences."""
     first = 1 if answer.overviews else len(answer.sentences)
-    rows = [line for table in answer.overviews for line in row_lines(table)]
+    rows = [line for table in answer.overviews for line in row_lines(table.filled)]
     return [*answer.sentences[:first], *rows, *answer.sentences[first:]]
 
 

@@ -74,6 +74,14 @@ def test_every_gauge_has_its_row_and_the_one_that_fails_is_first(tmp_path):
     assert "gauges" not in run({"one": {}, "two": {"grid_length": "0.2 mm"}}).tables  # sentences say both
 
 
+def test_columns_of_traces_are_not_shown_where_nothing_was_measured():
+    found = run({"one": {}, "two": {"grid_length": "0.2 mm"}, "three": {"fillet": "compression"}})
+    lines = answer_lines(found.answer)
+    assert lines[1].split() == ["gauge", "torque", "[N.m]", "computed_peak", "[um/m]", "verdict"]
+    assert [line.split()[0] for line in lines[2:5]] == ["one", "two", "three"]
+    assert {"scale", "shift [deg]"} <= {column.head for column in found.tables["gauges"].columns}  # the file has all
+
+
 def test_tables_of_subjects_are_joined_in_the_order_of_their_ranks():
     def of(name, rank):
         table = Table("all", (Column("name", np.array([name])), Column("size", np.array([rank]), "mm")), "All")

@@ -93,7 +93,7 @@ def _answer(
     first = 1 if answer.overviews else len(answer.sentences)
     blocks: tuple[Block, ...] = (
         *(Notes(part, "answer") for part in (answer.sentences[:first],) if part),
-        *(DataTable(table, brief=True) for table in answer.overviews),
+        *(DataTable(table.filled, brief=True) for table in answer.overviews),
         *(Notes(part, "answer") for part in (answer.sentences[first:],) if part),
     )
     if figure is None:
