@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import fegear
+from fegear.base.notes import NoteClass, class_of
+from fegear.base.printed import percent
 from fegear.contact.compared.population import drawn_gears
 from fegear.contact.compared.stiffness_study import MESH, SINGLE, compare_stiffness, drawn_pairs
 from fegear.fem.plane.settings import MeshSettings
@@ -61,6 +63,21 @@ def test_quantiles_are_those_of_the_rows(found):
         assert max(1.0, ratio.max()) < high < max(1.0, ratio.max()) + 0.15
         assert "ISO 6336-1" in {curve.name for curve in panel.items if hasattr(curve, "name")}
     assert figure.panels[1].title == "mean mesh stiffness c_γ"
+
+
+def test_errors_that_are_due_to_few_pairs_say_so_and_those_of_alike_pairs_do_not(found):
+    few = next(one for one in found.remarks if "study.samples" in one)
+    assert class_of(few) is NoteClass.BEYOND_TOLERANCE
+    table = found.tables["stiffness_study_quantiles"]
+    column = {one.name: np.asarray(one.values) for one in table.columns}
+    worst = max((column[f"{one}_error"] / column[one]).max() for one in ("median", "percentile_5", "percentile_95"))
+    assert few == (
+        f"Study of stiffness: estimated errors of medians and percentiles, up to {percent(worst)}, are due to the "
+        f"number of pairs (12; finite elements {percent(found.values['fe_error'].si)}); increase study.samples "
+        "to reduce them."
+    )
+    alike = fegear.run(case(teeth=[40, 41], profile_shift=[0.0, 0.01]), progress=False)
+    assert not [one for one in alike.remarks if "study.samples" in one]
 
 
 def test_a_pair_of_the_study_has_the_stiffness_of_a_run_and_of_a_solved_gear(found):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.notes import exceeding
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.engine.citation import Citation, citing
@@ -45,6 +46,8 @@ _KNOWN, _SOLVED = 0.2, 2.0
 #: What is compared, in words; formulas by the names that people use.
 _QUANTITIES = {"single_stiffness": "stiffness c' of one tooth pair", "mesh_stiffness": "mean mesh stiffness c_gamma"}
 _FORMULAS = {"iso-6336-1": "ISO 6336-1", **COMPLIANCES}
+#: Errors of quantiles above this share are noted, as those of any value.
+_DRAWN = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,7 +254,29 @@ def _remarks(seen: Seen) -> tuple[str, ...]:
         f"path of contact only, {seen.asked.line_load * 1e-3:.6g} N/mm; mates have the rack of the first gear, teeth "
         "and profile shift of another drawn one, no backlash. FE: full gears with coupling of neighbouring teeth."
     )
-    return about, *silent
+    return about, *silent, *_few_pairs(seen.data)
+
+
+def _few_pairs(data: ShownStiffness) -> tuple[str, ...]:
+    """What to do about quantiles that hang on the draw, where a finer solution of the teeth would not help."""
+    off = [
+        error / ratio
+        for one in data.quantiles
+        for error, ratio in (
+            (one.median_error, one.median), (one.percentile_5_error, one.percentile_5),
+            (one.percentile_95_error, one.percentile_95),
+        )
+    ]  # fmt: skip
+    worst = max(off, default=0.0)
+    if worst <= max(_DRAWN, 2.0 * data.fe_error):
+        return ()
+    return (
+        exceeding(
+            f"Study of stiffness: estimated errors of medians and percentiles, up to {percent(worst)}, are due to the "
+            f"number of pairs ({data.pairs}; finite elements {percent(data.fe_error)}); increase study.samples "
+            "to reduce them."
+        ),
+    )
 
 
 _SHEET = Sheet(
