@@ -2,6 +2,7 @@
 
 import copy
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -161,6 +162,19 @@ def test_bad_gearboxes_are_refused_in_one_sentence(keys, word):
     with pytest.raises(InputError, match=word) as error:
         gearbox_of(_scene(**keys))
     assert "\n" not in str(error.value)
+
+
+def test_axes_to_a_hundredth_of_a_millimetre_are_taken_and_a_refusal_names_the_place_that_fits():
+    """130 mm at 40 degrees below the horizontal: 99.586, -83.562 mm beyond the middle shaft."""
+    gearbox_of(_scene(shaft__out__axis=["208.34 mm", "-83.56 mm"]))  # 130.002 mm
+    with pytest.raises(InputError) as error:
+        gearbox_of(_scene(shaft__out__axis=["208.3 mm", "-83.5 mm"]))
+    fitting = re.search(r'axis = \["([-.\d]+) mm", "([-.\d]+) mm"\]', str(error.value))
+    assert fitting
+    x, y = (float(one) for one in fitting.groups())
+    assert math.hypot(x - 108.75, y) == pytest.approx(130.0, abs=1e-4)
+    assert y / (x - 108.75) == pytest.approx(-83.5 / (208.3 - 108.75), rel=1e-5)
+    gearbox_of(_scene(shaft__out__axis=[f"{x} mm", f"{y} mm"]))
 
 
 def test_gears_that_stand_askew_on_their_shafts_are_refused_where_flanks_are_loaded():

@@ -26,8 +26,11 @@ if TYPE_CHECKING:
     from fegear.shafts.held import Around
     from fegear.shafts.mesh import MeshPlace
 
-#: By so much the distance of two axes may differ from a pair's centre distance [m].
+#: By so much places along and of coaxial shafts may differ [m].
 _APART = 1e-6
+#: By so much the distance of two axes may differ from a pair's centre distance [m]: coordinates have 0.01 mm. Of the
+#: axes a mesh takes only their direction, which this turns by 0.01 degrees at 100 mm.
+_DISTANCE = 15e-6
 #: Faces on one shaft may overlap by this share of the narrower one, as rounded places do.
 _OVERLAP = 0.01
 #: Keys of what rolls in a bearing.
@@ -142,11 +145,15 @@ def _mesh(scene: Scene, name: str, ends: tuple[tuple[str, float], tuple[str, flo
     first, second = (scene.case.shaft[shaft] for shaft, _ in ends)
     across = np.subtract(second.axis, first.axis)
     apart = float(np.hypot(*across))
-    if abs(apart - pair.centre_distance) > _APART:
+    if abs(apart - pair.centre_distance) > _DISTANCE:
+        remedy = "correct the position of one axis"
+        if apart > 0.0:
+            x, y = np.round(1e3 * (np.array(first.axis) + across * (pair.centre_distance / apart)), 4) + 0.0
+            remedy += f', such as axis = ["{x:.10g} mm", "{y:.10g} mm"] in the same direction'
         raise InputError(
-            f"shaft.{ends[1][0]}.axis", f"{apart * 1e3:.6g} mm from shaft {ends[0][0]}",
-            f"is not at the centre distance of pair {name}, {pair.centre_distance * 1e3:.6g} mm",
-            "correct the position of one axis",
+            f"shaft.{ends[1][0]}.axis", f"{apart * 1e3:.7g} mm from shaft {ends[0][0]}",
+            f"is not at the centre distance of pair {name}, {pair.centre_distance * 1e3:.7g} mm (to within "
+            f"{_DISTANCE * 1e3:g} mm)", remedy,
         )  # fmt: skip
     middles = first.start + ends[0][1], second.start + ends[1][1]
     if abs(middles[0] - middles[1]) >= 0.5 * (pair.driver.face_width + pair.driven.face_width):
