@@ -90,6 +90,14 @@ def test_a_shaft_between_two_stages_gets_no_torque_from_rounded_ones():
     )
 
 
+def test_a_yield_strength_that_is_not_written_is_said():
+    document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    document["shaft"]["mid"]["yield_strength"] = "700 MPa"
+    _, remarks = there_and_back(build_scene(document, "box", Path()))
+    (said,) = (one for one in remarks if one.startswith("Shaft "))
+    assert said == "Shaft mid: yield_strength not written to REXS."
+
+
 def test_what_has_no_attribute_is_said_and_a_case_without_pairs_refused():
     document = tomllib.loads(case_of(model_of(in_json(two_stages()), HERE)))
     document["gear"]["gear_11"] |= {"thickness_allowance": "50 um", "relief": {"table": [

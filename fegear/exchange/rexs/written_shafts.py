@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 #: Keys that are written.
 _BEARING = frozenset({"radial", "axial", "tilting", "fixed", "radial_clearance", "elements", "life",
                       "designation", "catalogue"})  # fmt: skip
+_SHAFT = frozenset({"axis", "start", "sections", "material", "rigid", "gears", "bearings", "coupling", "loads",
+                    "clockwise"})  # fmt: skip
 #: Stiffness of a body that does not bend [Pa]: the import takes it for rigid.
 _RIGID = 1e16
 #: Every shaft lies along u; where v begins does not matter.
@@ -47,6 +49,7 @@ def write_shaft(
         Components of the gears by name.
     """
     part = scene.case.shaft[name]
+    left_out(written, f"Shaft {name}", part, _SHAFT)
     made = place(holders[name], (part.start, part.axis[0], part.axis[1]))
     begin = 0.0
     for one in part.sections:
