@@ -197,7 +197,7 @@ class DesignPart(Part):
     )
     metric: Literal["effective_error", "peak_to_peak"] = Field(
         default="peak_to_peak",
-        description="Objective of the chart: peak-to-peak transmission error or effective error A_e.",
+        description="Objective of the search for tip relief: peak-to-peak transmission error or effective error A_e.",
     )
     chart: ChartPart = Field(
         default_factory=ChartPart,

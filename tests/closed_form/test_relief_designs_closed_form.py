@@ -20,13 +20,14 @@ from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, r
 from fegear.design.oil_film import Coated, OilFilm
 from fegear.design.quick_sharing import quick_sharing
 from fegear.design.relief_bench import bench
+from fegear.engine.sheet.seen import Seen
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import TabulatedRelief, normalised_tip_relief
 from fegear.results.relief.harris import HarrisMap
-from fegear.results.relief.relief_chart import ReliefChartData
+from fegear.results.relief.relief_chart import ReliefChartData, _optimum_in_words
 
 MODULE, FACE, SOFT = 3e-3, 10e-3, (4e-11, 6e-11)
 EACH = sum(SOFT) / FACE  # of a pair of teeth [m/N]
@@ -129,6 +130,22 @@ def test_the_contour_of_a_bent_valley_has_no_point_off_its_level():
     assert middle[np.isfinite(middle)] == pytest.approx(level, abs=0.01)
     alone = replace(chart, amounts=amounts[:1], effective_error=values[:1])
     assert alone.boundary()[0].size == 0
+
+
+def test_the_equal_reliefs_named_for_comparison_have_the_minimum_of_what_is_stated_of_them():
+    """A_e is least at 2 um over 1 mm, the peak-to-peak value at 3 um over 2 mm, with 4 um at the larger load."""
+    amounts, lengths, loads = np.array([2e-6, 3e-6]), np.array([0.5, 1.0]), np.array([50.0, 100.0])
+    effective, peaks = np.full((2, 2, 2), 9e-6), np.full((2, 2, 2), 8e-6)
+    effective[0, 0], peaks[1, 1] = 1e-6, (1e-6, 4e-6)
+    chart = ReliefChart(amounts, lengths, loads, 2e-3, effective, peaks)
+    tip = SimpleNamespace(relief=SimpleNamespace(amount=1e-6), member="driver")
+    pair = SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(base_radius=0.1)))
+    asked = SimpleNamespace(said_by_relief=True, part=SimpleNamespace(shape="linear"))
+    (said,) = _optimum_in_words(Seen(SimpleNamespace(chart=chart, tips=[tip], pair=pair), asked, "I"))
+    assert said == (
+        "Pair I: for comparison, equal linear tip relief on both gears, 3 µm over 2 mm, gives 4 µm at 10 N m, 1 µm at "
+        "5 N m, peak to peak."
+    )
 
 
 def test_a_chart_marks_optimum_present_reliefs_and_the_worst_of_all_loads():
@@ -421,7 +438,7 @@ def test_where_no_zone_does_the_largest_load_is_named():
     words = str(refused.value)
     assert words.startswith("design.load = 1e+09 N")
     allowed = float(words.split("limit is ")[1].split(" N", maxsplit=1)[0])
-    per_face = float(words.split(" N (")[1].split(" N/mm", maxsplit=1)[0])
+    per_face = float(words.split("limit is ")[1].split(" N/mm", maxsplit=1)[0].rsplit(" ", 1)[-1])
     assert per_face == pytest.approx(allowed / 10.0, rel=0.01)
     longest = engaged().pair.contact_ratio * (1.0 - 1e-12)
     designed(longest, 0.99 * allowed)

@@ -319,6 +319,7 @@ def test_a_relief_is_drafted_for_a_range_of_torques(text, helix):
     scene = build_scene(tomllib.loads(drafted), "x", Path())
     torques = np.array(design_range(scene, "I").loads) * scene.pairs["I"].driver.base_radius
     assert torques == pytest.approx([120.0, 220.0, 320.0])
+    assert "load_factors" not in tomllib.loads(drafted).get("design", {}).get("robustness", {})
     assert make_plan(scene, STAGES).idle_effects == ()
 
 

@@ -26,7 +26,7 @@ def left(values, most=None, finer=0, load=LOAD):
     return LeftOverRange(0.05 * load, load, np.ones(2), *numbers, finer=finer)
 
 
-def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8):
+def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, spectrum=()):
     """With linear reliefs to be ground."""
     rows = tuple(
         Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
@@ -39,7 +39,9 @@ def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, s
         "linear tip relief for one load": left((3.9, single), load=load),
     }  # fmt: skip
     data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
-    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2)
+    asked = SimpleNamespace(
+        tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2, spectrum=spectrum
+    )
     return list(said_of_range(Seen(data, asked, "I")))
 
 
@@ -52,6 +54,13 @@ def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_to
     )
     assert single.endswith(
         "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
+    )
+
+
+def test_a_load_spectrum_that_is_not_designed_for_is_named_with_the_remedy():
+    assert said((3.3, 4.5), (3.5, 5.0), spectrum=(180.0, 420.0))[1] == (
+        "Pair I: designed for one load, not for its load spectrum; for all torques of the spectrum set "
+        'pair.I.torques = ["180 N*m", "420 N*m"] instead of the load.'
     )
 
 
@@ -161,7 +170,7 @@ def test_at_one_torque_relief_that_is_worse_within_its_tolerances_is_not_to_be_g
     """Half of the torque counts for nothing: the relief is for the larger one."""
     rows = tuple(Grinding("pw"[n], one, "", TIP, "linear", 6e-6, start_diameter=0.06) for n, one in enumerate(MEMBERS))
     over = {"no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), (3.0, most), 2 if told else 0)}
-    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS, 5),) * 2)
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS, 5),) * 2, spectrum=())
     seen = Seen(SimpleNamespace(grinding=rows, over_range=over, load=2000.0), asked, "I")
     first, *_ = said_at(seen, (1,), (1,))
     start = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length the transmission error is smaller without relief"

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 import fegear
 from fegear.base.cache_keys import content_key
 from fegear.base.errors import InputError
-from fegear.case.built.design_range import design_range
+from fegear.case.built.design_range import design_range, unused_spectrum
 from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.reading import build_scene
 from fegear.cli import program
@@ -103,6 +103,25 @@ def test_a_range_of_torques_is_loads_of_the_pair(written):
     assert part.all_loads(pair) == pytest.approx(wanted)
     assert part.normal_load(pair) == pytest.approx(wanted[-1])
     assert design_range(found, "I").loads == pytest.approx(wanted)
+
+
+SPECTRUM = "operation = { spectrum = [LEVELS] }"
+
+
+@pytest.mark.parametrize(
+    ("pair", "design", "levels", "unused"),
+    [
+        ('torque = "300 N*m"', "", '{torque = "300 N*m", share = 0.1}, {torque = "100 N*m", share = 0.9}', (100, 300)),
+        ('torque = "300 N*m"', "", "{load_factor = 1, share = 0.4}, {load_factor = 0.5, share = 0.6}", (150, 300)),
+        ('torque = "300 N*m"', "", "{load_factor = 0, share = 0.4}, {load_factor = 1, share = 0.6}", ()),
+        ('torque = "300 N*m"', "", '{torque = "200 N*m", share = 1}', (200,)),
+        ('torque = "300 N*m"', 'over = "load"', "{load_factor = 1, share = 0.4}, {load_factor = 0.5, share = 0.6}", ()),
+        (TORQUES, "", "{load_factor = 1, share = 0.4}, {load_factor = 0.2, share = 0.6}", ()),
+    ],
+)
+def test_the_torques_of_a_spectrum_that_a_design_is_not_for(pair, design, levels, unused):
+    pair = f"{pair}\n{SPECTRUM.replace('LEVELS', levels)}"
+    assert unused_spectrum(scene(pair, design), "I") == pytest.approx(unused)
 
 
 def test_weights_belong_to_the_torques_as_they_are_written():

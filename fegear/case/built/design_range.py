@@ -38,3 +38,21 @@ def design_range(scene: Scene, name: str) -> LoadRange | None:
     ordered = tuple(sorted(given))
     alike = len(set(given.values())) == 1
     return LoadRange(ordered, None if alike else tuple(given[load] for load in ordered))
+
+
+def unused_spectrum(scene: Scene, name: str) -> tuple[float, ...]:
+    """Driver torques [N m] of the load spectrum of a pair whose reliefs are designed for another load only.
+
+    In ascending order; empty without a spectrum, where all of it is the design load, where a range is given, and where
+    ``over = "load"`` says that one load is meant.
+    """
+    part, pair = scene.case.pair[name], scene.pairs[name]
+    design = scene.case.design or DesignPart()
+    bins = part.operation.spectrum
+    if not bins or design.over == "load" or design_range(scene, name) is not None:
+        return ()
+    lever = pair.driver.base_radius * part.halves
+    nominal, designed = ((load or 0.0) * lever for load in (part.normal_load(pair), design.load))
+    found = ((one.load_factor or 0.0) * nominal if one.torque is None else one.torque for one in bins)
+    torques = tuple(sorted({float(f"{torque:.4g}") for torque in found if torque > 0.0}))
+    return () if torques == (float(f"{designed or nominal:.4g}"),) else torques

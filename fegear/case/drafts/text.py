@@ -177,6 +177,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
+        "load_factors": _load_factors(answers),
         "half_width": length(_HALF_WIDTH * answers.si("module")),
         "relief": _ON if _modified_by_assumption(answers) else _EFFECTS["tip_relief"][not answers.has("tip_relief")],
         "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
@@ -307,6 +308,13 @@ def _range(answers: Answers) -> str:
         return "# weights = [1, 1, 1]     # weight of each torque"
     start, stop = (toml_string(f"{share * answers.si('torque'):.3g} N*m") for share in (0.5, 1.0))
     return f"# torques = {{ start = {start}, stop = {stop}, count = 3 }}     # relief for a range, instead of torque"
+
+
+def _load_factors(answers: Answers) -> str:
+    """Loads at which the robustness of a relief is evaluated: by default those of a range."""
+    if answers.has("torque") and ends(answers["torque"]):
+        return "# load_factors = [0.5, 1.0]     # of the design load; default: the torques of the range"
+    return "load_factors = [0.5, 0.75, 1.0, 1.25]     # of the design load"
 
 
 def _train(answers: Answers) -> Mapping[str, str]:

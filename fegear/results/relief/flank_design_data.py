@@ -59,6 +59,8 @@ class FlankDesignInputs:
         Of what is ground.
     misaligned : str
         The misalignment that counts as given, in words; empty for none.
+    spectrum : tuple of float
+        Driver torques of a load spectrum that the design is not for [N m].
     """
 
     part: FlankDesignPart
@@ -67,6 +69,7 @@ class FlankDesignInputs:
     over: LoadRange | None
     tolerance: FlankTolerance
     misaligned: str = field(default="", compare=False)
+    spectrum: tuple[float, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

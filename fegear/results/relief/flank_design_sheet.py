@@ -33,6 +33,7 @@ from fegear.results.relief.relief_over_range import (
     RANGE_CHART,
     left_words,
     lost_words,
+    said_of_spectrum,
     within_words,
 )
 
@@ -187,6 +188,7 @@ def _grind(seen: Seen) -> Iterator[str]:
         yield f"Pair {seen.name}: {lost}."
     do = f"{'without deviations ' if lost else ''}grind {', '.join(words) or 'nothing'}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    yield from said_of_spectrum(seen)
     if within is not None and not lost:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
         yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."

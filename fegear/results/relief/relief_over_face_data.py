@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
@@ -53,6 +53,8 @@ class TipReliefInputs:
         Names by member.
     misaligned : str
         Keys of the misalignment that they are designed for; empty for none.
+    spectrum : tuple of float
+        Driver torques of a load spectrum that the design is not for [N m].
     """
 
     part: DesignPart
@@ -62,6 +64,7 @@ class TipReliefInputs:
     name: str
     gears: Mapping[Member, str]
     misaligned: str = ""
+    spectrum: tuple[float, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.design.preferred import CLEARLY
 from fegear.engine.colours import ROLES
@@ -114,6 +115,17 @@ def said_of_range(seen: Seen) -> Iterator[str]:
         yield from said_at(seen, tuple(range(-1, -1 - _first(seen).torque.size, -1)), (-1, 0))
 
 
+def said_of_spectrum(seen: Seen) -> Iterator[str]:
+    """That a load spectrum is not what the relief is designed for, and how it would be."""
+    if not seen.asked.spectrum:
+        return
+    torques = ", ".join(f'"{figures(torque, 4)} N*m"' for torque in seen.asked.spectrum)
+    yield (
+        f"Pair {seen.name}: designed for one load, not for its load spectrum; for all torques of the spectrum set "
+        f"pair.{seen.name}.torques = [{torques}] instead of the load."
+    )
+
+
 def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterator[str]:
     """The same of some torques of the table, by their numbers in it; what tolerances may leave at any of them."""
     d = seen.data
@@ -133,6 +145,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         yield f"Pair {seen.name}: {lost}."
         do = f"without deviations {do}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
+    yield from said_of_spectrum(seen)
     single = d.over_range.get(f"{shape} tip relief for one load")
     if single and len(every) > 1:  # beside other results a design has room for two sentences
         yield from _said_of_small_torques(seen, best, single)
