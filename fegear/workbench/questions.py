@@ -482,7 +482,8 @@ def dynamic_factor(
         "torque": {"driver": torque}, "balance": "driven",
     }  # fmt: skip
     several = speeds if isinstance(speeds, Mapping) else listed(speeds, "speeds") or [speeds]
-    document["dynamics"] = {"speeds": several, **table(dynamics, "dynamics")}
+    whose = {"speed_of": "driver"} if train is None else {}
+    document["dynamics"] = {"speeds": several, **whose, **table(dynamics, "dynamics")}
     found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache, neglected=neglected)
     if train is not None:
         return found

@@ -170,10 +170,28 @@ def test_dynamic_factor_is_the_case_s(pair):
         "mesh": {"I": {"driver": "driver", "driven": "driven", "damping_ratio": 0.1}},
         "torque": {"driver": "90 N*m"}, "balance": "driven",
     }  # fmt: skip
-    more = {"train": train, "dynamics": {"speeds": speeds}, "pair.I.torque": "90 N*m"}
+    more = {"train": train, "dynamics": {"speeds": speeds, "speed_of": "driver"}, "pair.I.torque": "90 N*m"}
     same(found, CASE, {**more, "effects": {**EFFECTS, "parametric": True, "contact_loss": True}}, ["dynamic-factor"])
     assert found.tables["dynamic_factor_I"]["speed [rpm]"] == pytest.approx([9000.0], rel=1e-12)
     assert any("Damping ratio of the mesh not specified, 0.1 assumed" in remark for remark in found.remarks)
+    assert not any("speed_of" in remark for remark in found.remarks)  # those of the driver, as the function says
+
+
+def test_speeds_of_another_body_and_of_a_train_of_one_s_own(pair):
+    linear = {"contact_loss": False, "parametric": False}
+    asked = {"torque": "90 N*m", "damping_ratio": 0.05, "effects": linear}
+    driver = fegear.dynamic_factor(pair, speeds="5700 rpm", **asked)
+    driven = fegear.dynamic_factor(pair, speeds="2300 rpm", dynamics={"speed_of": "driven"}, **asked)
+    factors = [one.tables["dynamic_factor_I"]["dynamic_factor"][0] for one in (driver, driven)]
+    assert factors[0] == pytest.approx(factors[1], rel=1e-6)
+    train = {
+        "body": {"motor": {"gears": ["pinion"]}, "brake": {"gears": ["wheel"]}},
+        "mesh": {"I": {"driver": "motor", "driven": "brake", "damping_ratio": 0.05}},
+        "torque": {"motor": "90 N*m"}, "balance": "brake",
+    }  # fmt: skip
+    own = fegear.dynamic_factor(pair, torque="90 N*m", speeds="5700 rpm", train=train, effects=linear)
+    assert own.tables["dynamic_factor_I"]["dynamic_factor"][0] == pytest.approx(factors[0], rel=1e-9)
+    assert any("speed_of not specified: speeds refer to motor" in remark for remark in own.remarks)
 
 
 def test_speeds_may_be_a_range(pair):

@@ -172,13 +172,13 @@ def test_two_gears_turn_between_steady_torques_where_no_train_is_given(pair, mon
         "mesh": {"I": {"driver": "driver", "driven": "driven", "damping_ratio": 0.1}},
         "torque": {"driver": "90 N*m"}, "balance": "driven",
     }  # fmt: skip
-    assert document["dynamics"] == {"speeds": ["9000 rpm"]}
+    assert document["dynamics"] == {"speeds": ["9000 rpm"], "speed_of": "driver"}  # as the function says
     assert found.plan.remarks[0] == "first"
     assert found.plan.remarks[1].endswith("Damping ratio of the mesh not specified, 0.1 assumed.")
     told = fegear.dynamic_factor(pair, torque="90 N*m", speeds=["1 rpm", "2 rpm"], damping_ratio=0.0,
                                  dynamics={"direction": "up"})  # fmt: skip
     assert documents[1]["train"]["mesh"]["I"]["damping_ratio"] == 0.0
-    assert documents[1]["dynamics"] == {"speeds": ["1 rpm", "2 rpm"], "direction": "up"}
+    assert documents[1]["dynamics"] == {"speeds": ["1 rpm", "2 rpm"], "speed_of": "driver", "direction": "up"}
     assert told.plan.remarks[1].endswith("without shafts.")
     own = fegear.dynamic_factor(pair, torque="90 N*m", speeds={"start": "1 rpm"}, train={"balance": "x"})
     assert (documents[2]["train"], documents[2]["dynamics"]) == ({"balance": "x"}, {"speeds": {"start": "1 rpm"}})
