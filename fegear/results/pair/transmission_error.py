@@ -88,7 +88,10 @@ def _compute(asked: Reads[TransmissionErrorPart], upstream: Upstream, work: Work
 def _flanks_said(teeth: LoadedTeeth) -> str:
     """A design beside it states the value that it leaves: which of both this is."""
     engagement = getattr(teeth, "engagement", None)
-    plain = engagement is not None and engagement.driver_relief == engagement.driven_relief == UNMODIFIED
+    if engagement is None:
+        return ""
+    # Each with the plain flank: two tables of a designed relief have no equality of their own.
+    plain = all(relief == UNMODIFIED for relief in (engagement.driver_relief, engagement.driven_relief))
     return ", without relief" if plain else ""
 
 
