@@ -70,6 +70,8 @@ class BearingLoads:
     force_y: Array = shown("N", "bearing force on the shaft, y")
     force_axial: Array = shown("N", "bearing reaction on the shaft")
     force_radial: Array = shown("N", "radial bearing force")
+    moment_x: Array = shown("N.m", "moment of the bearing on the shaft about x")
+    moment_y: Array = shown("N.m", "moment of the bearing on the shaft about y")
     shift: Array = shown("um", "displacement of the shaft at the bearing")
     tilt: Array = shown("arcsec", "tilt of the shaft at the bearing")
     life: Array = shown("", "basic rating life L_10, in revolutions (ISO 281)")
@@ -145,8 +147,8 @@ class Deflection:
                 turns[n] = life.revolutions(float(radial[n]), float(force[n, 2]))
         at = np.array([seat.at for seat in self.loaded.seats])
         return BearingLoads(
-            at, force[:, 0], force[:, 1], force[:, 2], radial, np.hypot(ring[:, 0], ring[:, 1]),
-            np.hypot(ring[:, 3], ring[:, 4]), turns, loads,
+            at, force[:, 0], force[:, 1], force[:, 2], radial, force[:, 3], force[:, 4],
+            np.hypot(ring[:, 0], ring[:, 1]), np.hypot(ring[:, 3], ring[:, 4]), turns, loads,
         )  # fmt: skip
 
     @property

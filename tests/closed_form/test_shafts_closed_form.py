@@ -271,6 +271,10 @@ def test_what_a_bearing_carries_is_told_column_by_column():
     np.testing.assert_array_equal(forces, found.bearing_forces[:, :3])
     assert len({*np.abs(forces).ravel()}) == 6
     np.testing.assert_allclose(told.force_radial**2, forces[:, 0] ** 2 + forces[:, 1] ** 2, rtol=1e-12)
+    # moments about x and y through the left end, those of the bearings beside those of their forces
+    assert 12.0 + 1700.0 * 0.11 + (told.moment_x - told.at * told.force_y).sum() == pytest.approx(0.0, abs=1e-9)
+    assert -31.0 + 3000.0 * 0.11 + (told.moment_y + told.at * told.force_x).sum() == pytest.approx(0.0, abs=1e-9)
+    assert np.abs([told.moment_x, told.moment_y]).min() > 1.0
     moved = found.at([0.03, 0.26])
     np.testing.assert_allclose(told.shift**2, moved[:, 0] ** 2 + moved[:, 1] ** 2, rtol=1e-9)
     np.testing.assert_allclose(told.tilt**2, moved[:, 3] ** 2 + moved[:, 4] ** 2, rtol=1e-9)
