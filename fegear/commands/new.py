@@ -64,7 +64,11 @@ def new(
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
     profile_shift: Annotated[
         list[str] | None,
-        typer.Option("--profile-shift", metavar="X [X]", help="Profile shift coefficients of driver and driven gear."),
+        typer.Option(
+            "--profile-shift",
+            metavar="X [X]",
+            help="Profile shift coefficients of driver and driven gear; of two stages two (of each) or all four.",
+        ),
     ] = None,
     rack: Annotated[str | None, typer.Option("--rack", metavar="A..D", help="Basic rack of ISO 53.")] = None,
     helix_angle: Annotated[str | None, typer.Option("--helix-angle", metavar="ANGLE", help="Helical pairs.")] = None,

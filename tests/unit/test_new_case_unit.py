@@ -582,6 +582,20 @@ def test_bearings_of_two_drafted_stages_last_and_hold_what_fits_them(given):
             assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
 
 
+@pytest.mark.parametrize(
+    ("shift", "wanted"),
+    [
+        ("0.25 0.08", [0.25, 0.08, 0.25, 0.08]),
+        ("0.1", [0.1] * 4),
+        ("0.3 0.2 0.1", [0.3, 0.2, 0.1, 0.1]),
+        ("0.3 0.2 0.1 0", [0.3, 0.2, 0.1, 0.0]),
+    ],
+)
+def test_two_profile_shifts_are_those_of_pinion_and_wheel_of_both_stages(shift, wanted):
+    case = tomllib.loads(draft(Answers(TWO_STAGES, {"profile_shift": shift}), "case"))
+    assert [case["gear"][name]["profile_shift"] for name in KINDS[TWO_STAGES].gears] == wanted
+
+
 def test_bodies_of_a_drafted_train_suit_its_gears():
     """A wrong exponent made a shaft of 38 m of a pair of 36 and 96 mm, and no test noticed."""
     given = {"teeth": "24 64", "module": "3 mm", "face_width": "30 mm", "speed": "1500 rpm"}

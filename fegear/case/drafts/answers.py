@@ -144,9 +144,11 @@ class Answers:
         return self.kind in HELICAL or (self.kind == "relief" and self.has("helix_angle"))
 
     def numbers(self, name: str) -> list[str]:
-        """The numbers of an answer, one for each gear: the last stands for those that are not given."""
-        found = _split(self[name])
-        return (found + found[-1:] * len(KINDS[self.kind].gears))[: len(KINDS[self.kind].gears)]
+        """The numbers of an answer, one for each gear: two are those of each stage, else the last one is repeated."""
+        found, gears = _split(self[name]), len(KINDS[self.kind].gears)
+        if self.kind == TWO_STAGES and len(found) == 2:
+            found *= 2
+        return (found + found[-1:] * gears)[:gears]
 
     def si(self, name: str) -> float:
         """An answer that is a quantity, in SI; of a range its upper end."""
