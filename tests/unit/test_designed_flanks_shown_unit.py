@@ -437,6 +437,16 @@ def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its
     assert "the transmission error is smaller without relief at every torque: 12 µm at 33.83 N m" in lost
     assert "± 0.5 µm on gear p, ± 1.5 µm on gear w" in lost  # two classes finer
     assert ": without deviations grind 12 µm" in ground
+    seen = speaking()  # where another way leaves less as drawn, that is the one without deviations
+    design, best = seen.data.design, seen.data.design.best
+    design.within_tolerance, design.finer = (lambda state: False), 2
+    best.over_most = 1e-6 * np.array([9.0, 13.0])
+    lost, ground, compared = sheet._grind(seen)
+    assert f"with {best.label} relief at most 13 µm" in lost
+    assert ": without deviations grind " in ground
+    assert "5 µm crowning" in ground
+    assert "12 -> 1.5 µm (within tolerances at most 4 µm) at 33.83 N m" in ground
+    assert "is better than profile (2) as drawn" in compared
 
 
 def test_tolerances_of_all_that_is_ground_are_said_by_their_kinds_and_finer_by_classes():

@@ -26,7 +26,7 @@ def left(values, most=None, finer=0, load=LOAD):
     return LeftOverRange(0.05 * load, load, np.ones(2), *numbers, finer=finer)
 
 
-def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, spectrum=()):
+def made(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, spectrum=()):
     """With linear reliefs to be ground."""
     rows = tuple(
         Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
@@ -42,7 +42,11 @@ def said(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, s
     asked = SimpleNamespace(
         tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2, spectrum=spectrum
     )
-    return list(said_of_range(Seen(data, asked, "I")))
+    return Seen(data, asked, "I")
+
+
+def said(*linear_and_parabolic, **more):
+    return list(said_of_range(made(*linear_and_parabolic, **more)))
 
 
 def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_tolerances():
@@ -116,6 +120,27 @@ def test_where_tolerances_take_more_than_the_gain_at_every_torque_the_first_sent
     assert grind.startswith("Pair I: without deviations grind 6 µm from d 60.0 mm on gear p and ")
     assert "only gives" in single
     assert said((4.3, 6.99), (4.2, 4.5), finer)[0].startswith("Pair I: grind ")
+
+
+def test_without_deviations_the_shape_that_is_best_as_drawn_is_named_with_its_numbers():
+    """Parabolic relief leaves less within the tolerances, linear relief as drawn: 0.81 and 0.41 for 1.4 and 0.48 um."""
+    seen = made((4.3, 7.3), (4.2, 7.1), finer=2)
+    data = seen.data
+    data.grinding = data.grinding[2:] + data.grinding[:2]  # the shape to be ground within the tolerances first
+    data.over_range["linear tip relief"] = left((0.41, 0.81), (4.3, 7.3))
+    data.over_range["parabolic tip relief"] = left((0.48, 1.4), (4.2, 7.1), finer=2)
+    lost, grind, *_ = said_of_range(seen)
+    assert lost.endswith(
+        "7 µm at 100 N m, with parabolic tip relief at most 7.1 µm; parabolic tip relief requires ± 2.5 µm (f_Hα of "
+        "class 3) and ± 10 % of the length."
+    )
+    assert grind == (
+        "Pair I: without deviations grind 6 µm from d 60.0 mm on gear p and 6 µm from d 60.0 mm on gear w, linear: "
+        "transmission error 7 -> 0.81 µm (within tolerances at most 7.3 µm) at 100 N m, 3.7 -> 0.41 µm (at most 4.3 "
+        "µm) at 50 N m, peak to peak."
+    )
+    data.over_range["parabolic tip relief"] = left((0.48, 1.4), (4.2, 6.9))  # pays: what is to be ground as before
+    assert "parabolic: transmission error 7 -> 1.4 µm" in next(iter(said_of_range(seen)))
 
 
 @pytest.mark.parametrize(

@@ -174,19 +174,25 @@ def _grind(seen: Seen) -> Iterator[str]:
     best, least = design.best, design.least
     torque, none = _left(seen, design.unrelieved.label)
     after = _left(seen, best.label)[1]
-    ground = [row for row in seen.data.grinding if row.design == best.label and row.words]
-    words = [row.words for row in ground]
-    within = best.over_most if words and best.over_most is not None and best.over_most.size == torque.size else None
+    ground = _rows(seen, best)
+    within = _at_most(best, torque) if ground else None
     ends = tuple(dict.fromkeys(i % torque.size for i in (-1, 0)))
-    left = left_words(none, after, within, torque, ends)
 
     def allowed(classes: int) -> str:
         return _allowed(seen, ground, classes)
 
-    lost = "" if within is None else lost_words(none, within, torque, design.finer, allowed)
+    # What tolerances decide is not what deviations of zero leave.
+    other = least is not best and not design.alike(best) and not design.within_tolerance(best)
+    named = f"{best.label} " if other else ""
+    lost = "" if within is None else lost_words(none, within, torque, design.finer, allowed, named)
     if lost:
         yield f"Pair {seen.name}: {lost}."
-    do = f"{'without deviations ' if lost else ''}grind {', '.join(words) or 'nothing'}"
+    if lost and other:
+        drawn, most, rows = _left(seen, least.label)[1], _at_most(least, torque), _rows(seen, least)
+    else:
+        drawn, most, rows = after, within, ground
+    left = left_words(none, drawn, most, torque, ends)
+    do = f"{'without deviations ' if lost else ''}grind {', '.join(row.words for row in rows) or 'nothing'}"
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
     yield from said_of_spectrum(seen)
     if within is not None and not lost:
@@ -207,6 +213,16 @@ def _grind(seen: Seen) -> Iterator[str]:
             gain = percent((design.left_by(best) - design.left_by(least)) / design.left_by(best))
             said = f"is only {gain} better {than}, {why}"
         yield f"Pair {seen.name}: {least.label} ({least.modifications} modifications) {said}."
+
+
+def _rows(seen: Seen, state: FlankState) -> list[Grinding]:
+    """What is ground of a way."""
+    return [row for row in seen.data.grinding if row.design == state.label and row.words]
+
+
+def _at_most(state: FlankState, torque: Array) -> Array | None:
+    """What a way leaves at most within its tolerances under each torque [m]; None where it is not known."""
+    return state.over_most if state.over_most is not None and state.over_most.size == torque.size else None
 
 
 def _allowed(seen: Seen, ground: list[Grinding], classes: int) -> str:
@@ -239,8 +255,9 @@ def _drawn(seen: Seen, best: FlankState, least: FlankState) -> str:
 
 def _within(seen: Seen, best: FlankState, least: FlankState) -> str:
     """What two ways leave at most within their tolerances, at the torque at which it counts most; empty if unknown."""
-    torque, most, ours = _left(seen, best.label)[0], least.over_most, best.over_most
-    if most is None or ours is None or most.size != torque.size:
+    torque = _left(seen, best.label)[0]
+    most, ours = _at_most(least, torque), _at_most(best, torque)
+    if most is None or ours is None:
         return ""
     i = seen.data.design.worst_load(most)
     more, less = told_apart(most[i], ours[i])

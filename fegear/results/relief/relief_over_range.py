@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.printed import figures
 from fegear.base.shown import shown
+from fegear.design.load_range import proportions
 from fegear.design.preferred import CLEARLY
 from fegear.engine.colours import ROLES
 from fegear.engine.figure.axis import Axis
@@ -129,21 +130,26 @@ def said_of_spectrum(seen: Seen) -> Iterator[str]:
 def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterator[str]:
     """The same of some torques of the table, by their numbers in it; what tolerances may leave at any of them."""
     d = seen.data
-    shape = d.grinding[0].shape
-    none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
-    rows = [row for row in d.grinding if row.shape == shape and row.words]
+    chosen = d.grinding[0].shape
+    none, best = (d.over_range[label] for label in ("no relief", f"{chosen} tip relief"))
+    rows = _ground(seen, chosen)
+    lost, shape = "", chosen
+    if rows and best.most is not None:
+        places = np.array(every) % best.torque.size
+        of_places = (none.peak_to_peak[places], best.most[places], best.torque[places])
+        shape = _best_as_drawn(seen, places)  # what tolerances decide is not what deviations of zero leave
+        named = "" if shape == chosen else f"{chosen} tip "
+        lost = lost_words(*of_places, best.finer, _allowed(seen, rows), named)
+    if lost:
+        yield f"Pair {seen.name}: {lost}."
+        best, rows = d.over_range[f"{shape} tip relief"], _ground(seen, shape)
+    else:
+        shape = chosen
     ground = [row.words for row in rows]
     at = tuple(dict.fromkeys(i % best.torque.size for i in ends))
     left = left_words(none.peak_to_peak, best.peak_to_peak, best.most if ground else None, best.torque, at)
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
-    lost = ""
-    if ground and best.most is not None:
-        places = np.array(every) % best.torque.size
-        of_places = (none.peak_to_peak[places], best.most[places], best.torque[places])
-        lost = lost_words(*of_places, best.finer, _allowed(seen, rows))
-    if lost:
-        yield f"Pair {seen.name}: {lost}."
-        do = f"without deviations {do}"
+    do = f"without deviations {do}" if lost else do
     yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
     yield from said_of_spectrum(seen)
     single = d.over_range.get(f"{shape} tip relief for one load")
@@ -160,6 +166,22 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
             f"Pair {seen.name}: tip relief designed for {torque_words(nominal)} only gives {more} µm peak-to-peak "
             f"at {torque_words(single.torque[i])}, more than without relief ({less} µm)."
         )
+
+
+def _ground(seen: Seen, shape: str) -> list[Grinding]:
+    """What is ground of a shape, a row for each gear."""
+    return [row for row in seen.data.grinding if row.shape == shape and row.words]
+
+
+def _best_as_drawn(seen: Seen, places: Array) -> str:
+    """The shape that leaves least without deviations at these torques, by the worst of them in proportion."""
+
+    def left(shape: str) -> float:
+        one: LeftOverRange = seen.data.over_range[f"{shape} tip relief"]
+        part = proportions(one.load[places], one.weight[places])
+        return float((part * one.peak_to_peak[places]).max())
+
+    return min(dict.fromkeys(row.shape for row in seen.data.grinding if row.words), key=left)
 
 
 def _said_of_small_torques(seen: Seen, best: LeftOverRange, single: LeftOverRange) -> Iterator[str]:
@@ -186,7 +208,9 @@ def _allowed(seen: Seen, rows: Sequence[Grinding]) -> Callable[[int], str]:
     return allowed
 
 
-def lost_words(none: Array, most: Array, torque: Array, finer: int | None, allowed: Callable[[int], str]) -> str:
+def lost_words(
+    none: Array, most: Array, torque: Array, finer: int | None, allowed: Callable[[int], str], which: str = ""
+) -> str:
     """That no relief leaves less at every torque within the tolerances, and which would do; empty where it does not.
 
     Parameters
@@ -197,6 +221,8 @@ def lost_words(none: Array, most: Array, torque: Array, finer: int | None, allow
         [N m].
     finer, allowed
         As in `within_words`.
+    which : str
+        Shape of the relief, where a sentence about another follows: "parabolic tip ".
     """
     if finer == 0 or not np.all(most > none):
         return ""
@@ -205,11 +231,11 @@ def lost_words(none: Array, most: Array, torque: Array, finer: int | None, allow
     at = " at every torque" if torque.size > 1 else ""
     said = (
         f"within {allowed(0)} the transmission error is smaller without relief{at}: {less} µm at "
-        f"{torque_words(torque[i])}, with relief at most {more} µm"
+        f"{torque_words(torque[i])}, with {which}relief at most {more} µm"
     )
     if finer is None:
         return f"{said}; no finer class makes relief pay{at}"
-    return f"{said}; relief requires {allowed(finer)}"
+    return f"{said}; {which}relief requires {allowed(finer)}"
 
 
 def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: bool = False) -> Iterator[str]:
@@ -219,7 +245,7 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
     """
     d = seen.data
     none, best = (d.over_range[label] for label in ("no relief", f"{shape} tip relief"))
-    rows = [row for row in d.grinding if row.shape == shape and row.words]
+    rows = _ground(seen, shape)
     if not rows or best.most is None:
         return
     places = np.array(every) % best.torque.size
