@@ -8,13 +8,22 @@ import pytest
 from numpy.polynomial import legendre, polynomial
 from scipy.linalg import expm
 
-from fegear.dynamics.motion.kernel import collocation
+from fegear.dynamics.motion.kernel import COMPILED, collocation
 from fegear.dynamics.motion.kernel.arrays import Collocation
 from fegear.dynamics.motion.kernel.collocation import _long_loads, _solve, _to_powers, collocate
 from fegear.dynamics.motion.kernel.series import _damping_series, damping_at, swing_at
 from fegear.dynamics.motion.radau import STAGES, radau
 
 TABLE = radau()
+
+
+@pytest.fixture(autouse=True)
+def uncompiled(monkeypatch):
+    """Functions call each other as plain Python, whatever an earlier test of the process had compiled."""
+    for module in COMPILED:
+        for name, one in list(vars(module).items()):
+            if hasattr(one, "py_func"):
+                monkeypatch.setattr(module, name, one.py_func)
 
 
 # ---- tables ----------------------------------------------------------------------------------------------------------
