@@ -179,6 +179,17 @@ def roll_of_radius(gear: Gear, radius: ArrayLike) -> Array:
     return gear.tooth.roll(np.asarray(radius, dtype=float) / gear.module)
 
 
+def roll_in_drawing(gear: Gear, roll: ArrayLike) -> Array:
+    """Roll angle or length as drawings, grinders and inspection sheets have it: positive on an internal gear, too."""
+    return np.asarray(gear.tooth.side * np.asarray(roll, dtype=float))
+
+
+def roll_as_given(gear: Gear, roll: ArrayLike) -> Array:
+    """Roll angle or length as equations have it: negative on an internal gear, where it is given with either sign."""
+    given = np.asarray(roll, dtype=float)
+    return -np.abs(given) if gear.tooth.internal else given
+
+
 def tip_relief(
     gear: Gear,
     amount: float,
@@ -197,7 +208,7 @@ def tip_relief(
     amount : float
         Removal at `at_radius` [m].
     start_roll : float, optional
-        Roll angle where the relief starts [rad].
+        Roll angle where the relief starts [rad]; of an internal gear with either sign.
     start_radius : float, optional
         Radius where it starts [m].
     length : float, optional
@@ -257,7 +268,7 @@ def _start(
             f"relief.{where}", "its start", "must be given exactly once", "as roll angle, as radius or as length"
         )
     if start_roll is not None:
-        return start_roll
+        return float(roll_as_given(gear, start_roll))
     if start_radius is not None:
         return _roll(gear, start_radius, f"{where}.start_radius")
     return end + sign * given[0] / gear.base_radius

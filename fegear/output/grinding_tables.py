@@ -11,13 +11,14 @@ from fegear.case.built.members import gear_name
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.path_of_contact import active_profile
-from fegear.geometry.relief import Relief, chart_points, roll_of_radius
+from fegear.geometry.relief import Relief, chart_points, roll_in_drawing, roll_of_radius
 from fegear.output.file_names import file_name
 from fegear.output.tables import write_table
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.geometry.gear import Gear
     from fegear.output.export_formats import Request, Written
 
 #: Places of the fine table, and how far the relief may lie from the lines between points of the chart [m].
@@ -54,20 +55,21 @@ def relief_tables_of(scene: Scene, name: str, relief: Relief) -> tuple[Table, Ta
     words = [next((word for at, word in named.items() if abs(at - roll) < 1e-12), "") for roll in chart]
     kinks = [kink for kink in relief.kinks if low < kink < high]
     fine = np.unique(np.concatenate([np.linspace(low, high, _PLACES), kinks]))
-    stem, base = file_name(name), gear.base_radius
+    stem = file_name(name)
     point = Column(
         "point", np.array(words), "", "end of the involute or of an active profile; empty: kink of the relief"
     )
     return (
-        Table(f"{stem}_relief", _columns(base, fine, relief), f"Relief of gear {name}"),
-        Table(f"{stem}_k_chart", (point, *_columns(base, chart, relief)), f"Profile chart of gear {name}"),
+        Table(f"{stem}_relief", _columns(gear, fine, relief), f"Relief of gear {name}"),
+        Table(f"{stem}_k_chart", (point, *_columns(gear, chart, relief)), f"Profile chart of gear {name}"),
     )
 
 
-def _columns(base: float, roll: Array, relief: Relief) -> tuple[Column, ...]:
+def _columns(gear: Gear, roll: Array, relief: Relief) -> tuple[Column, ...]:
+    base, drawn = gear.base_radius, roll_in_drawing(gear, roll)
     return (
         Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "diameter of the flank point"),
-        Column("roll_angle", roll, "deg", "roll angle of the gear"),
-        Column("roll_length", base * roll, "mm", "roll length from the base circle, along the line of action"),
+        Column("roll_angle", drawn, "deg", "roll angle of the gear"),
+        Column("roll_length", base * drawn, "mm", "roll length from the base circle, along the line of action"),
         Column("removal", relief.removal(roll), "um", "amount of modification, normal to the involute"),
     )

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.case.built.flank_modifications import described_relief
 from fegear.case.reading import build_scene
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, TabulatedRelief, chart_points
 from fegear.output.export import export_gears
@@ -78,6 +79,46 @@ def test_the_tables_for_the_grinder_are_the_relief_of_the_case(tmp_path):
         tip = math.degrees(math.sqrt((45.0 / base) ** 2 - 1.0))
         share = max(0.0, (float(angle) - 26.0) / (tip - 26.0))
         assert float(removal) == pytest.approx(20.0 * share**2, abs=1e-6)
+
+
+def test_the_tables_of_a_ring_gear_are_positive_and_are_read_back_with_either_sign(tmp_path):
+    def scene_of(relief):
+        ring = {"teeth": 97, "internal": True, "module": "2.25 mm", "face_width": "20 mm", "rim_thickness": "10 mm",
+                "cutter": {"teeth": 25, "addendum": 1.25, "tip_radius": 0.3}, "relief": relief}  # fmt: skip
+        planet = {"teeth": 31, "module": "2.25 mm", "face_width": "20 mm", "profile_shift": 0.15}
+        pair = {"I": {"driver": "planet", "driven": "ring", "load": "1 kN"}}
+        return build_scene(
+            {"results": ["geometry"], "gear": {"planet": planet, "ring": ring}, "pair": pair}, "c", tmp_path
+        )
+
+    ends = {"amount": "10 um", "shape": "parabolic"}
+    scene = scene_of({"tip": ends | {"start_roll_angle": "21.9 deg"}})
+    gear = scene.gears["ring"]
+    export_gears(scene, tmp_path, ("ring",), "relief")
+    with (tmp_path / "ring_k_chart.csv").open() as file:
+        _, *rows = csv.reader(file)
+    assert [rows[0][0], rows[-1][0]] == ["start of involute", "end of involute"]  # the root first, as of every gear
+    base = gear.base_radius * 1e3
+    for _, diameter, angle, length, _removal in rows:
+        assert float(length) == pytest.approx(base * math.radians(float(angle)))
+        assert float(angle) == pytest.approx(math.degrees(math.sqrt((float(diameter) / 2.0 / base) ** 2 - 1.0)))
+    removal = {row[2]: float(row[4]) for row in rows}
+    assert all(one == 0.0 for angle, one in removal.items() if float(angle) > 21.9)
+    assert float(rows[-1][4]) == pytest.approx(10.0)
+    roll = np.linspace(gear.tooth.involute.start, gear.tooth.involute.end, 50)
+    (tip,) = described_relief(scene, "ring").relief.parts
+    assert tip.start == pytest.approx(math.radians(-21.9))
+    shifted = (tmp_path / "ring_relief.csv").read_text("utf-8").replace("removal", "relief")
+    (tmp_path / "back.csv").write_text(shifted, "utf-8")
+    listed = {"roll_angles": ["18 deg", "20 deg", "21.9 deg"], "removals": ["10 um", "4 um", "0 um"]}
+    minus = {"roll_angles": ["-21.9 deg", "-20 deg", "-18 deg"], "removals": ["0 um", "4 um", "10 um"]}
+    for ours, theirs, within in (
+        ({"table": {"file": "back.csv"}}, {"tip": ends | {"start_roll_angle": "-21.9 deg"}}, 5e-8),
+        ({"table": listed}, {"table": minus}, 1e-15),
+    ):
+        found = [described_relief(scene_of(one), "ring").relief.removal(roll) for one in (ours, theirs)]
+        assert np.ptp(found[1]) > 5e-6
+        np.testing.assert_allclose(*found, atol=within)
 
 
 def test_gears_without_relief_have_none_to_grind(tmp_path):

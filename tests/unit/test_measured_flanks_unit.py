@@ -145,6 +145,30 @@ def test_radius_roll_angle_and_length_of_roll_say_the_same(tmp_path):
     assert slopes == pytest.approx([3e-6] * 3, rel=1e-6)
 
 
+def test_profile_traces_of_a_ring_gear_may_have_either_sign(tmp_path):
+    def scene(measured):
+        ring = {"teeth": 97, "internal": True, "module": "2.25 mm", "face_width": "20 mm", "rim_thickness": "10 mm",
+                "cutter": {"teeth": 25, "addendum": 1.25, "tip_radius": 0.3}, "measured": measured}  # fmt: skip
+        return build_scene({"results": ["measured-flanks"], "gear": {"a": ring}}, "case", tmp_path)
+
+    gear = scene(None).gears["a"]
+    involute = gear.tooth.involute
+    roll = np.linspace(involute.start, involute.end, 400)
+    y = 3.0 * (roll - roll[0]) / np.ptp(roll)
+    radius = gear.tooth.radius_of_roll(roll) * gear.module * 1e3
+    write(tmp_path / "radius.csv", ["radius [mm]", "deviation [um]"], radius, y)
+    base = measured_gear(scene({"profile": "radius.csv"}), "a").profile
+    for n, (sign, head, size) in enumerate(
+        (sign, head, size)
+        for sign in (1.0, -1.0)
+        for head, size in (("roll_angle [deg]", 180.0 / np.pi), ("roll_length [mm]", gear.base_radius * 1e3))
+    ):
+        write(tmp_path / f"{n}.csv", [head, "deviation [um]"], sign * np.abs(roll) * size, y)
+        found = measured_gear(scene({"profile": f"{n}.csv"}), "a").profile
+        np.testing.assert_allclose(found.x, base.x, rtol=1e-9)
+        np.testing.assert_allclose(found.deviation, base.deviation, atol=1e-12)
+
+
 def test_every_tooth_is_evaluated_and_the_mean_is_what_pairs_take(tmp_path):
     roll, start, end = flank(scene_of(tmp_path, None))
     s = (2.0 * roll - start - end) / (end - start)

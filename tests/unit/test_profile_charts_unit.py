@@ -16,11 +16,14 @@ from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.relief import UNMODIFIED, EndRelief
+from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 from fegear.results.relief.answer_numbers import with_limits
-from fegear.results.relief.profile_charts import profile_chart
+from fegear.results.relief.grinding import tip_row
+from fegear.results.relief.ground_tips import GroundTip
+from fegear.results.relief.profile_charts import _tip_side, profile_chart
 
 LOAD = 6000.0
 EXACT = TipTolerance(0.0, 0.0, 0.0)
@@ -129,6 +132,27 @@ def test_the_relief_of_a_ring_gear_is_off_by_its_tolerances_as_that_of_other_gea
         replace(allowed, length=8e-3).off(SimpleNamespace(base_radius=0.1), EndRelief(6e-6, 0.02, 0.07), 0, 1).start
         == 0
     )
+
+
+def test_the_drawing_of_a_ring_gear_has_positive_roll_angles_and_lengths():
+    cutter = PinionCutter(25, addendum=1.25, tip_radius=0.3)
+    ring = Gear(InternalTooth(97, cutter), 2.25e-3, 0.125)
+    root, top = (float(roll_of_radius(ring, r)) for r in (ring.form_radius, ring.involute_tip_radius))
+    relief = EndRelief(6e-6, top - 0.05, top)
+    chart = profile_chart("r", ring, relief, TipTolerance(2e-6, None, 0.0))
+    assert chart.roll_length.min() == pytest.approx(-ring.base_radius * top)
+    assert chart.roll_length.max() == pytest.approx(-ring.base_radius * root)
+    deepest = chart.roll_length[np.argmin(chart.profile)]
+    assert deepest == chart.roll_length.min()  # at the tip
+    assert chart.marks[0].at == pytest.approx(ring.base_radius * (0.05 - top) * 1e3)
+    assert _tip_side({"linear": (chart,)}) == "tip at right (of r at left)"
+    tip = GroundTip(SimpleNamespace(driver=relief, driver_band=(relief, relief)), ring, None, None, "linear", "driver")
+    tip = replace(tip, ground=SimpleNamespace(**vars(tip.ground), error=np.array([1e-7, 1e-3, 0.0, 0.0])))
+    row = tip_row(tip, "r", TipTolerance(2e-6, None, 0.0))
+    assert row.start_roll_angle == tip.start == 0.05 - top > 0.0
+    assert 0.5 * row.start_diameter == pytest.approx(ring.base_radius * np.hypot(1.0, tip.start))
+    assert row.start_diameter_error > 0.0
+    assert tip.equal_starts == f"{np.degrees(0.05 - top):.5g} to {np.degrees(0.05 - top):.5g} deg"
 
 
 def test_a_gear_without_relief_has_a_level_chart(engagement, tips):

@@ -30,7 +30,7 @@ from fegear.geometry.flank_modification import (
 from fegear.geometry.gear import Gear
 from fegear.geometry.involute_side import Flank
 from fegear.geometry.pair import MEMBERS
-from fegear.geometry.relief import Relief, roll_of_radius
+from fegear.geometry.relief import Relief, roll_as_given, roll_of_radius
 from fegear.geometry.relief_spec import BiasSpec
 
 #: Part of the face that a table over it may leave out at either end.
@@ -161,6 +161,8 @@ def _topography(scene: Scene, name: str, part: TopographyPart) -> Topography:
             key, f'"{part.file}"', "requires the columns roll_angle [deg] or radius [mm], z [mm] and removal [um]"
         )
     at = columns[one_column(columns, ("roll_angle", "radius"), key, part.file)]
+    if "roll_angle" in columns:
+        at = roll_as_given(scene.gears[name], at)
     _refuse_uncovered(columns["z"], scene.gears[name].face_width, key)
     rows, i = np.unique(at, return_inverse=True)
     heights, k = np.unique(columns["z"], return_inverse=True)

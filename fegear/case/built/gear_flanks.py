@@ -12,7 +12,7 @@ from fegear.base.errors import InputError
 from fegear.case.part import Part, at
 from fegear.contact.pair_spec import FlankSpec
 from fegear.geometry.plausible_flanks import refuse_spacing_errors
-from fegear.geometry.relief import TabulatedRelief, roll_of_radius
+from fegear.geometry.relief import TabulatedRelief, roll_as_given, roll_of_radius
 from fegear.geometry.relief_spec import CrowningSpec, ReliefSpec, RootReliefSpec, TipReliefSpec
 
 if TYPE_CHECKING:
@@ -128,10 +128,18 @@ def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> 
             raise InputError(f"{key}.file", f'"{part.file}"', rule)
         one_column(columns, ("roll_angle", "radius"), f"{key}.file", part.file)
         values = columns["relief"]
-        roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
+        roll = (
+            roll_as_given(gear, columns["roll_angle"])
+            if "roll_angle" in columns
+            else _rolls(gear, columns["radius"], key)
+        )
     else:
         values = np.array(part.removals)
-        roll = np.array(part.roll_angles) if part.roll_angles else _rolls(gear, np.array(part.radii), key)
+        roll = (
+            roll_as_given(gear, np.array(part.roll_angles))
+            if part.roll_angles
+            else _rolls(gear, np.array(part.radii), key)
+        )
     order = np.argsort(roll)
     return TabulatedRelief(roll[order], values[order], part.interpolation)
 

@@ -16,7 +16,7 @@ from fegear.formulas.iso1328_traces import TraceDeviations, cutoff, evaluate, fi
 from fegear.geometry.flank_modification import LeadTable, Topography
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import MEMBERS
-from fegear.geometry.relief import TabulatedRelief, roll_of_radius
+from fegear.geometry.relief import TabulatedRelief, roll_as_given, roll_of_radius
 
 Kind = Literal["profile", "helix"]
 #: Places of a mean trace that pairs feel, two for the shortest wave that the filter leaves and more; of a topography.
@@ -181,8 +181,8 @@ def _columns(scene: Scene, file: str, key: str, gear: Gear, *, over_face: bool =
         if (x < gear.base_radius).any():
             raise InputError(key, f"radius {x.min() * 1e3:.6g} mm", "lies inside the base circle")
         x = gear.base_radius * roll_of_radius(gear, x)
-    elif place[0] == "roll_angle":
-        x = gear.base_radius * x
+    elif place[0] in ("roll_angle", "roll_length"):
+        x = roll_as_given(gear, gear.base_radius * x if place[0] == "roll_angle" else x)
     return {**found, "x": x, "tooth": found.get("tooth", np.zeros(x.size))}
 
 

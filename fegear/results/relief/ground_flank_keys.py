@@ -9,6 +9,7 @@ from fegear.design.flanks.flank_tolerance import LeadTolerance
 from fegear.design.flanks.forms import lead_bearer
 from fegear.design.tip_relief.tip_tolerance import OF_LENGTH
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.relief import roll_in_drawing
 from fegear.results.relief.grinding import BIAS, CROWNING, END, SLOPE, TIP, Grinding
 
 if TYPE_CHECKING:
@@ -84,9 +85,10 @@ def ground_rows(
     def tip(member: Member, amount: float, end: float, start: float) -> Grinding:
         allowed, length = tolerance.tips[MEMBERS.index(member)], abs(end - start)
         top, foot = (2.0 * float(pair.radius(at, member)) for at in (end, start))
+        roll = roll_in_drawing(pair.gear(member), pair.roll_angle(start, member))
         return Grinding(
             gears[member], member, design, TIP, shape, amount, amount_tolerance=allowed.amount,
-            start_diameter=foot, end_diameter=top, start_roll_angle=float(pair.roll_angle(start, member)),
+            start_diameter=foot, end_diameter=top, start_roll_angle=float(roll),
             length=length, length_tolerance=OF_LENGTH * length if allowed.length is None else allowed.length,
         )  # fmt: skip
 

@@ -13,6 +13,7 @@ from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.relief import roll_in_drawing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -82,6 +83,16 @@ class GroundTip:
         return self.ground.band_error[1, self._own]
 
     @property
+    @shows("deg", "roll angle at which the relief starts", name="start_roll_angle")
+    def start(self) -> float:
+        """As on the drawing: positive on an internal gear, too [rad]."""
+        return self.drawn_start(self.relief)
+
+    def drawn_start(self, tip: EndRelief) -> float:
+        """Roll angle at which a relief of this gear starts, as on the drawing [rad]."""
+        return float(roll_in_drawing(self.gear, tip.start))
+
+    @property
     @shows("mm", "as radius")
     def start_radius(self) -> float:
         """Of the flank point at which it starts [m]."""
@@ -90,7 +101,7 @@ class GroundTip:
     @property
     def start_radius_error(self) -> float:
         """[m]."""
-        return float(self.base_radius * self.relief.start / math.hypot(1.0, self.relief.start) * self.error[1])
+        return float(self.base_radius * self.start / math.hypot(1.0, self.start) * self.error[1])
 
     @property
     @shows("um", "minimum found")
@@ -124,7 +135,7 @@ class GroundTip:
     @property
     def equal_starts(self) -> str:
         """Starts that are equally good."""
-        return " to ".join(f"{math.degrees(one.start):.5g}" for one in self.band[::-1]) + " deg"
+        return " to ".join(f"{math.degrees(self.drawn_start(one)):.5g}" for one in self.band[::-1]) + " deg"
 
 
 def tips_of(
@@ -156,8 +167,9 @@ def _tip_number(head: str, what: str, words: str, number: int) -> Number:
         equal = getattr(seen.one, f"equal_{what}s")
         return f"{words}; equally good: {equal}" if equal else words
 
+    quantity = "relief.amount" if what == "amount" else what
     return Number(
-        f"relief.{what}", lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
+        quantity, lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
         meaning=meaning,
     )  # fmt: skip
 
@@ -174,7 +186,11 @@ def _left(seen: Seen) -> Array | None:
 
 
 def _end(which: str, quantity: str, name: str, meaning: str) -> Cell:
-    return Cell(quantity, lambda seen: [getattr(tip.band[which == "high"], quantity) for tip in seen.data.tips],
+    def si(seen: Seen) -> list[float]:
+        ends = [(tip, tip.band[which == "high"]) for tip in seen.data.tips]
+        return [tip.drawn_start(end) if quantity == "start" else end.amount for tip, end in ends]
+
+    return Cell(quantity, si,
                 lambda seen: seen.data.tips[0].relief, name, meaning)  # fmt: skip
 
 
@@ -189,8 +205,8 @@ GRINDABLE = Rows(
     "grindable_{name}",
     "Grindable tip reliefs of {name}",
     (
-        "shape", "member", "relief.amount", Off("relief.amount", _errors("error", 0)), "relief.start",
-        Off("relief.start", _errors("error", 1)), "start_radius",
+        "shape", "member", "relief.amount", Off("relief.amount", _errors("error", 0)), "start",
+        Off("start", _errors("error", 1)), "start_radius",
         Off("start_radius", lambda seen: [tip.start_radius_error for tip in seen.data.tips]),
         Cell("left.peak_to_peak", meaning="remaining at design load"),
         Off("left.peak_to_peak", _left, "estimated error of te_peak_to_peak and te_effective"),

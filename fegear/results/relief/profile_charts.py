@@ -14,10 +14,12 @@ from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Chart, Line, Over
-from fegear.geometry.relief import EndRelief, roll_of_radius
+from fegear.geometry.relief import EndRelief, roll_in_drawing, roll_of_radius
 from fegear.results.relief.answer_numbers import microns, with_limits
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from fegear.base.arrays import Array
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.gear import Gear
@@ -81,11 +83,11 @@ def profile_chart(
             f"{amount}, {_SHAPES[tip.power]} from d {2e3 * start:.1f} mm "
             f"({figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm long)"
         )
-        marks = [Mark("x", gear.base_radius * tip.start * 1e3, f"d {2e3 * start:.1f}")]
+        marks = [Mark("x", float(roll_in_drawing(gear, gear.base_radius * tip.start)) * 1e3, f"d {2e3 * start:.1f}")]
     if tolerance.form > NOTHING:
         words = f"{words}; f_{{fα}} {microns(tolerance.form)} µm"
     return ProfileChart(
-        name, words, tuple(marks), gear.base_radius * roll, -tip.removal(roll), -least, -most,
+        name, words, tuple(marks), roll_in_drawing(gear, gear.base_radius * roll), -tip.removal(roll), -least, -most,
         None if present is None else -present.removal(roll),
     )  # fmt: skip
 
@@ -96,6 +98,14 @@ def _ordinate(seen: Seen) -> Axis:
         float(seen.one.lower.min()), 0.0 if seen.one.present is None else float(seen.one.present.min())
     )
     return Axis("deviation from the involute", "um", limits=(-1.08 * deepest, _ROOM * deepest))
+
+
+def _tip_side(charts: Mapping[str, Sequence[ProfileChart]]) -> str:
+    """On which side of the figure the tips are: rolls of an internal gear are smaller at its tip."""
+    hollow = dict.fromkeys(
+        one.gear for each in charts.values() for one in each if one.roll_length[-1] < one.roll_length[0]
+    )
+    return f"tip at right (of {', '.join(hollow)} at left)" if hollow else "tip at right"
 
 
 def k_chart(of: str) -> Chart:
@@ -109,9 +119,11 @@ def k_chart(of: str) -> Chart:
     plain = {"markers": False}
     return Chart(
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
-        "Pair {name}: profile of each gear over roll length, material removed below zero, tip at right. Dashed: limits "
-        "by the tolerances of amount and length; the lower one (dash-dot) includes profile form f_fα (flank tolerance "
-        "class), more removal.",
+        lambda seen: (
+            "Pair {name}: profile of each gear over roll length, material removed below zero, "
+            f"{_tip_side(seen.find(of))}. Dashed: limits by the tolerances of amount and length; the lower one "
+            "(dash-dot) includes profile form f_fα (flank tolerance class), more removal."
+        ),
         (
             Over(
                 lambda seen: Axis(f"roll length of {seen.one.gear}", "mm"),  # an axis for each: they lie far apart
