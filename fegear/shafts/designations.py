@@ -53,6 +53,9 @@ _TAPERED_2 = (_B1, _B1, _B2, _B2, _B2, _B2, _B3, _B4, _B3, _B3, _B3, _B4, _B5, _
 _TAPERED_22 = (*_SMALL_22, *_TAPERED_2[3:])
 _TAPERED_3 = (_A1, _A2, _A2, _A3, _A3, *(_B1,) * 13)
 
+#: Dimensions that differ by less are one [m].
+_SAME = 1e-6
+
 #: Series by what stands before the bore number: kind, diameter series, dimension series.
 _SERIES: dict[str, tuple[Kind, int, str]] = {
     "60": ("ball", 0, "10"),
@@ -89,6 +92,11 @@ class Envelope:
     width: float
     contact_angle: float = 0.0
 
+    def has(self, bore: float, outside_diameter: float, width: float) -> bool:
+        """Whether its dimensions are these [m]."""
+        own = self.bore, self.outside_diameter, self.width
+        return all(abs(a - b) < _SAME for a, b in zip(own, (bore, outside_diameter, width), strict=True))
+
 
 def _bore(number: int) -> float:
     return (10.0, 12.0, 15.0, 17.0)[number] if number < 4 else 5.0 * number
@@ -109,8 +117,6 @@ def _known() -> dict[str, Envelope]:
 
 #: All designations, without prefixes and suffixes.
 KNOWN = _known()
-#: Dimensions that differ by less are one [m].
-_SAME = 1e-6
 #: Their series, in front of the two digits of the bore.
 _NAMED = frozenset(one[:-2] for one in KNOWN)
 #: Letters, digits, then what a maker adds (cage, seals, clearance), set off by a letter, dash, slash or space.
@@ -133,12 +139,8 @@ def designation_of(kind: Kind, bore: float, outside_diameter: float, width: floa
     bore, outside_diameter, width : float
         [m].
     """
-    size = bore, outside_diameter, width
-    for name, one in KNOWN.items():
-        own = one.bore, one.outside_diameter, one.width
-        if one.kind == kind and all(abs(a - b) < _SAME for a, b in zip(own, size, strict=True)):
-            return name
-    return ""
+    found = (name for name, one in KNOWN.items() if one.kind == kind and one.has(bore, outside_diameter, width))
+    return next(found, "")
 
 
 def envelope_of(designation: str) -> Envelope:

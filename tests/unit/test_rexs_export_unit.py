@@ -17,6 +17,9 @@ from rexs_models import in_json, planetary_set, two_stages
 import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case.built.shafts import gearbox_of
+from fegear.case.drafts.answers import Answers
+from fegear.case.drafts.kinds import TWO_STAGES
+from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
 from fegear.exchange.rexs.model_to_case import case_of
 from fegear.exchange.rexs.reading import model_of
@@ -168,3 +171,57 @@ def test_the_command_writes_results_of_a_run(tmp_path, monkeypatch, capsys):
     values = [re.findall(r'id="safety[^>]*>([^<]*)<', one) for one in (text, model.read_text("utf-8"))]
     assert values[0] == values[1] != []
     assert "can be exported as rexs only" in say("export", "results/box", "--format", "dxf")[1]
+
+
+def drafted(**bearings):
+    """A drafted gearbox with other bearings."""
+    document = tomllib.loads(draft(Answers(TWO_STAGES, {}), "case"))
+    document["bearing"] |= bearings
+    return build_scene(document, "case", Path())
+
+
+def test_bearings_by_designation_come_back_by_designation():
+    outer = drafted().case.bearing["middle_floating"].designation
+    located = {
+        "designation": "6309-2Z",
+        "catalogue": {"static_rating": "31.5 kN", "clearance": "8 um"},
+        "life": {"dynamic_rating": "55 kN"},
+    }
+    ribbed = {"designation": "NUP" + outer.removeprefix("NU") + " ECP", "life": {}}  # locates as the ball bearing does
+    tapered = {"designation": "30210", "life": {}}
+    for changes in ({}, {"middle_locating": located}, {"middle_locating": ribbed}, {"output_locating": tapered}):
+        scene = drafted(**changes)
+        again, _ = there_and_back(scene)
+        stop = {"output_locating_along"} if "output_locating" in changes else set()  # one tapered bearing holds one way
+        assert again.case.bearing.keys() == scene.case.bearing.keys() | stop
+        for name, bearing in scene.case.bearing.items():
+            one = again.case.bearing[name]
+            assert one.designation == bearing.designation
+            assert same(one.rating, bearing.rating)
+            assert same(one.printed, bearing.printed)
+            assert same(one.build(), bearing.build())
+            if "catalogue" not in bearing.given:
+                assert one.catalogue is None
+
+
+@pytest.mark.parametrize("changed", ["width", "catalogue_designation", "bearing_type"])
+def test_dimensions_or_a_type_of_another_bearing_than_the_designation_has_are_kept_as_dimensions(changed):
+    scene = drafted()
+    name, known = "output_locating", scene.case.bearing["output_locating"]
+    text, _ = model_text(scene, "")
+    model = ET.fromstring(text)  # noqa: S314  (our own)
+    (part,) = (one for one in model.iter("component") if one.get("name") == name)
+    (one,) = (one for one in part if one.get("id") == changed)
+    one.text = {
+        "width": f"{known.printed.width * 1e3 + 2.0:g}",
+        "catalogue_designation": "6" + known.designation[1:-2] + "99",
+        "bearing_type": "radial_roller_bearing",
+    }[changed]
+    again = build_scene(tomllib.loads(case_of(model_of(ET.tostring(model, "unicode"), HERE))), "case", Path())
+    found = again.case.bearing[name]
+    assert found.designation is None
+    assert same(found.printed.bore, known.printed.bore)
+    assert same(found.printed.outside_diameter, known.printed.outside_diameter)
+    assert found.printed.kind == ("cylindrical" if changed == "bearing_type" else "ball")
+    wider = 2e-3 if changed == "width" else 0.0
+    assert found.printed.width == pytest.approx(known.printed.width + wider)

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.exchange.case_tables import Key, Table, inline, listed, number, quantity, text
-from fegear.exchange.rexs.catalogue_bearings import catalogue_table, printed_bearing
+from fegear.exchange.rexs.catalogue_bearings import catalogue_keys, printed_bearing
 from fegear.exchange.rexs.places import BEARINGS
 from fegear.exchange.rexs.said import RIGID
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from fegear.exchange.rexs.catalogue_bearings import Printed
     from fegear.exchange.rexs.model import Component
     from fegear.exchange.rexs.places import Place
     from fegear.exchange.rexs.said import Said
-    from fegear.shafts.catalogue_bearing import CatalogueBearing
 
 _BOTH, _NONE, _PLUS, _MINUS = "both_directions", "no_direction", "positive", "negative"
 #: Distance of axes that are one [m].
@@ -97,7 +97,7 @@ class Rows:
         Of each row whether it holds to -u in place of +u.
     about : str
         Where it comes from.
-    printed : CatalogueBearing, optional
+    printed : Printed, optional
         From what it was estimated, if the model has dimensions and ratings only.
     """
 
@@ -109,7 +109,12 @@ class Rows:
     grooves: tuple[float, float] | None
     ways: tuple[bool, ...]
     about: str
-    printed: CatalogueBearing | None = None
+    printed: Printed | None = None
+
+    @property
+    def locates(self) -> bool:
+        """Whether it holds a shaft both ways without a contact angle: balls, and ribs of both rings."""
+        return self.length is None or (self.printed is not None and self.printed.ribbed)
 
 
 def bearings_of(
@@ -206,8 +211,8 @@ def stopped_along(said: Said, shaft: Component, bearings: Sequence[Held], along:
 
 
 def _thrust(said: Said, one: Held, rows: Rows) -> set[bool]:
-    """Whether its elements hold to +u (False) and to -u (True): balls both ways, rollers by their contact angle."""
-    if _holds(said, one.component) == _NONE or not (rows.angle or rows.length is None):
+    """Whether it holds to +u (False) and to -u (True): balls and ribs both ways, others by their contact angle."""
+    if _holds(said, one.component) == _NONE or not (rows.angle or rows.locates):
         return set()
     return {way != one.outside for way in rows.ways} if rows.angle else {False, True}
 
@@ -322,7 +327,7 @@ def _estimated(said: Said, one: Component, rows: Sequence[Component]) -> Rows | 
     printed = printed_bearing(said, one, rows, _clearance(said, one) or 0.0)
     if printed is None:
         return None
-    inside = printed.inside
+    inside = printed.bearing.inside
     angle = inside.contact_angle
     if angle and _holds(said, one) == _NONE:
         said.notes.append(f"{one.said} is a non-locating bearing: contact angle of {math.degrees(angle):g} deg kept.")
@@ -347,11 +352,11 @@ def _ways(said: Said, one: Component, rows: Sequence[Component], angle: float) -
 
 
 def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
-    """``elements``; a ball bearing that slides has a seat that holds nothing along the axis."""
+    """What rolls in it; a bearing that would locate and slides has a seat that holds nothing along the axis."""
     one, rows = held.component, held.rows
     assert rows is not None  # noqa: S101  (for mypy: looked at before)
     clearance = _clearance(said, one)
-    value = catalogue_table(rows.printed) if rows.printed else inline(
+    value = inline(
         kind=text("ball" if rows.length is None else "roller"), count=number(rows.count),
         diameter=quantity(rows.diameter, "mm"), pitch_diameter=quantity(rows.pitch, "mm"),
         contact_angle=quantity(rows.angle, "deg") if rows.angle else None,
@@ -359,8 +364,8 @@ def _elements(said: Said, held: Held, *, fixed: bool) -> list[Key]:
         roller_length=quantity(rows.length, "mm") if rows.length else None,
         clearance=quantity(clearance, "um") if clearance else None,
     )  # fmt: skip
-    keys = [Key("catalogue" if rows.printed else "elements", value, rows.about)]
-    if rows.length is None and not fixed and _holds(said, one) == _NONE:
+    keys = catalogue_keys(rows.printed, rows.about) if rows.printed else [Key("elements", value, rows.about)]
+    if rows.locates and not fixed and _holds(said, one) == _NONE:
         keys.append(Key("housing_axial", quantity(_SLIDES, "N/um"), "axial_force_absorption: non-locating bearing"))
     return keys
 

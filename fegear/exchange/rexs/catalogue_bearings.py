@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.exchange.case_tables import inline, quantity, text
+from fegear.exchange.case_tables import Key, inline, quantity, text
 from fegear.exchange.rexs.said import RIGID
+from fegear.shafts.axial_factors import ribs_of
 from fegear.shafts.catalogue_bearing import CatalogueBearing
-from fegear.shafts.designations import envelope_of
+from fegear.shafts.designations import envelope_of, plain_designation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +28,43 @@ _KINDS: tuple[tuple[str, Kind | None], ...] = (
 )  # fmt: skip
 
 
-def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clearance: float) -> CatalogueBearing | None:
+#: Contact angles that differ by less are one [rad].
+_SAME_ANGLE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A bearing by what catalogues print.
+
+    Parameters
+    ----------
+    bearing : CatalogueBearing
+    designation : str
+        With these dimensions; empty where none is known.
+    """
+
+    bearing: CatalogueBearing
+    designation: str = ""
+
+    @property
+    def ribbed(self) -> bool:
+        """Whether its ribs locate a shaft (NUP)."""
+        return ribs_of(plain_designation(self.designation)) is not None
+
+
+@dataclass(frozen=True, slots=True)
+class _Size:
+    """Kind, d, D and B [m] of a bearing; its designation and the envelope of that, if they are the same."""
+
+    kind: Kind
+    bore: float
+    outside_diameter: float
+    width: float
+    designation: str = ""
+    known: Envelope | None = None
+
+
+def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clearance: float) -> Printed | None:
     """What a model prints of a bearing that it holds for rigid; a note where no inside can be estimated from it.
 
     Parameters
@@ -42,14 +80,16 @@ def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clear
     if not one.type.startswith("rolling_bearing") or (radial is not None and radial < RIGID):
         return None
     count = said.number(one, "number", "number_of_bearing_rows") or 1.0
-    known = _dimensions(said, one)
-    if known is None or count > 1.0 or len(rows) > 1 or said.yes(one, "radial_force_absorption") is False:
+    size = _size(said, one)
+    if size is None or count > 1.0 or len(rows) > 1 or said.yes(one, "radial_force_absorption") is False:
         return None
-    kind, bore, outside, width = known
+    kind = size.kind
     angle = said.number(rows[0], "angle", "pressure_angle") if rows else None
     slope = said.number(one, "number", "catalogue_value_e")
     if kind == "tapered" and not angle and slope:
         angle = math.atan(slope / 1.5)  # ISO 281: e = 1.5 tan(alpha)
+    if kind == "tapered" and not angle and size.known is not None:
+        angle = size.known.contact_angle
     angular = "angular_contact" in (said.word(one, "bearing_type") or "")
     if angular and not angle:
         return None
@@ -57,15 +97,17 @@ def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clear
     c_0 = said.number(one, "force", "radial_static_load_rating", "static_load_rating", "static_capacity")
     made_angle = abs(angle) if angle and (kind == "tapered" or angular) else None
     try:
-        made = CatalogueBearing(kind, bore, outside, width, c or None, c_0 or None, made_angle, clearance)
+        made = CatalogueBearing(
+            kind, size.bore, size.outside_diameter, size.width, c or None, c_0 or None, made_angle, clearance
+        )
         _ = made.inside
     except InputError as error:
         said.notes.append(f"{one.said}: rolling elements not estimated; {error}")
         return None
-    return made
+    return Printed(made, "" if angular else size.designation)
 
 
-def _dimensions(said: Said, one: Component) -> tuple[Kind, float, float, float] | None:
+def _size(said: Said, one: Component) -> _Size | None:
     """Kind, d, D and B as the model says, else of its designation."""
     spoken = said.word(one, "bearing_type") or ""
     kind = next((kind for part, kind in _KINDS if part in spoken), None)
@@ -73,12 +115,18 @@ def _dimensions(said: Said, one: Component) -> tuple[Kind, float, float, float] 
         said.number(one, "length", *names)
         for names in (("inner_diameter", "bore_diameter"), ("outer_diameter",), ("width",))
     )
-    if kind and bore and outside and width:
-        return kind, bore, outside, width
-    known = _designated(said.word(one, "catalogue_designation", "name") or one.name)
-    if known is None or (spoken and kind != known.kind):
-        return None
-    return known.kind, bore or known.bore, outside or known.outside_diameter, width or known.width
+    named = said.word(one, "catalogue_designation") or plain_designation(said.word(one, "name") or one.name)
+    known = _designated(named)
+    if known is not None and spoken and kind != known.kind:
+        known = None
+    if not (kind and bore and outside and width):
+        if known is None:
+            return None
+        kind, bore = known.kind, bore or known.bore
+        outside, width = outside or known.outside_diameter, width or known.width
+    if known is None or not known.has(bore, outside, width):
+        return _Size(kind, bore, outside, width)
+    return _Size(kind, bore, outside, width, named.strip(), known)
 
 
 def _designated(name: str) -> Envelope | None:
@@ -88,14 +136,31 @@ def _designated(name: str) -> Envelope | None:
         return None
 
 
-def catalogue_table(printed: CatalogueBearing) -> str:
-    """``catalogue`` of a case."""
-    rated, static, angle = printed.dynamic_rating, printed.static_rating, printed.contact_angle
-    return inline(
-        kind=text(printed.kind), bore=quantity(printed.bore, "mm"),
-        outside_diameter=quantity(printed.outside_diameter, "mm"), width=quantity(printed.width, "mm"),
-        dynamic_rating=quantity(rated, "kN") if rated else None,
-        static_rating=quantity(static, "kN") if static else None,
-        contact_angle=quantity(angle, "deg") if angle else None,
-        clearance=quantity(printed.clearance, "um") if printed.clearance else None,
-    )  # fmt: skip
+def catalogue_keys(printed: Printed, about: str) -> list[Key]:
+    """``designation`` of a case with what it does not say, else all in ``catalogue``.
+
+    Parameters
+    ----------
+    printed : Printed
+    about : str
+        Where dimensions come from.
+    """
+    one, angle = printed.bearing, printed.bearing.contact_angle
+    designated = bool(printed.designation)
+    if designated and angle and abs(angle - envelope_of(printed.designation).contact_angle) < _SAME_ANGLE:
+        angle = None
+    rated = None if designated else one.dynamic_rating  # beside a designation that of `life` is enough
+    said = {
+        "dynamic_rating": quantity(rated, "kN") if rated else None,
+        "static_rating": quantity(one.static_rating, "kN") if one.static_rating else None,
+        "contact_angle": quantity(angle, "deg") if angle else None,
+        "clearance": quantity(one.clearance, "um") if one.clearance else None,
+    }
+    if not designated:
+        envelope = {
+            "kind": text(one.kind), "bore": quantity(one.bore, "mm"),
+            "outside_diameter": quantity(one.outside_diameter, "mm"), "width": quantity(one.width, "mm"),
+        }  # fmt: skip
+        return [Key("catalogue", inline(**envelope, **said), about)]
+    keys = [Key("designation", text(printed.designation), "dimensions agree; rolling elements estimated")]
+    return [*keys, Key("catalogue", inline(**said), "of the model")] if any(said.values()) else keys
