@@ -166,7 +166,7 @@ def seen_in_a_mirror(document, folder, sign=-1):
 #: Columns that are counted toward end II, or turn with the gears seen from there.
 TOWARD_END_II = {"z", "z1", "z2", "z_first", "z_last", "along", "turn_x", "turn_y", "force_axial", "in_plane",
                  "out_of_plane", "over_face", "face_position", "stress_face_position", "compression_face_position",
-                 "axial_force", "tilting_moment"}  # fmt: skip
+                 "axial_force", "tilting_moment", "moment_x", "moment_y"}  # fmt: skip
 #: Numbers that are counted toward it too.
 NUMBER_TOWARD_END_II = re.compile(
     r"helix_slope(?!.*tolerance)|shaft_misalignment$|kappa(_even|_driver|_driven)?$|force_lever$"
