@@ -372,7 +372,7 @@ def sentences(of, design, torque, over=None, robust=None):
     pair = SimpleNamespace(driver=SimpleNamespace(base_radius=0.1))
     data = SimpleNamespace(design=design, over_range=over_range, load=design.task.load, grinding=(),
                            data=SimpleNamespace(pair=pair))  # fmt: skip
-    return list(of(SimpleNamespace(name="I", data=data)))
+    return list(of(SimpleNamespace(name="I", data=data, asked=SimpleNamespace(spectrum=()))))
 
 
 def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_modifications_are_ground():

@@ -65,14 +65,14 @@ def test_gearbox_and_lead_correction_rate_the_same_lead_alike_with_manufacturing
     now = rated_with(lead, row(*present))
     safety = Safety(now.contact, now.bending, (1.0, 1.4), now.factor)
     one = MeshAtGlance(safety, none, none, 0.9, "I", 1e-5, (1e-5,), 2.0, now.contact, 1.0, now.bending, 1.4, none, 0.9)
-    of_gearbox = _levelled(replace(one, lead=LevelLead(-4e-6, 2.0, 1.1, 2e-6)), lead, present)
+    of_gearbox = _levelled(replace(one, lead=LevelLead(-4e-6, 2.0, 1.1, 2e-6), present=present), lead)
     of_lead = rated_with(lead, row(-4e-6, 5e-6))
     assert (of_gearbox.contact, of_gearbox.bending) == (of_lead.contact, of_lead.bending)
     assert 1.1 < of_gearbox.face_load_factor == of_lead.factor < now.factor
     assert now.contact < of_gearbox.contact < now.contact * math.sqrt(now.factor / 1.1)
     case["pair"]["I"]["operation"]["face_load_factor"] = 1.3
     fixed = replace(one, safety=replace(safety, face_load_factor=1.3), lead=LevelLead(-4e-6, 2.0, 1.1))
-    assert _levelled(fixed, rated_lead(scene_of(case), "I"), present) is None  # no rating says what the lead brings
+    assert _levelled(fixed, rated_lead(scene_of(case), "I")) is None  # no rating says what the lead brings
 
 
 def test_what_the_case_says_of_the_flanks_stays_and_what_is_not_rated_has_no_safety_factors():

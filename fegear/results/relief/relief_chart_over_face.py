@@ -70,7 +70,7 @@ class ChartOverFace(ReliefChartData):
 
         relief = cast("FamilyBest", self.best).relief
         both = end_reliefs(relief.numbers, self.pair.pair, relief.tip_power)
-        return tuple(Tip(member, "", tip) for member, tip in zip(MEMBERS, both, strict=True))
+        return tuple(Tip(of, "", tip, self.pair.pair.gear(of)) for of, tip in zip(MEMBERS, both, strict=True))
 
     def left(self, metric: Metric) -> float:  # noqa: ARG002  (peak to peak only)
         """What the best reliefs leave at the largest load [m]."""

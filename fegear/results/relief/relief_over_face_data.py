@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.shown import shows
 from fegear.contact.fourier import effective_error
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.relief import roll_in_drawing
 from fegear.results.relief.ground_flank_keys import ground_rows
 from fegear.results.relief.harris import HarrisMap
 from fegear.results.relief.profile_charts import ProfileChart, profile_chart
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from fegear.design.flanks.tip_design import TipDesign
     from fegear.design.load_range import LoadRange
     from fegear.design.tip_relief.tip_tolerance import TipTolerance
+    from fegear.geometry.gear import Gear
     from fegear.geometry.relief import EndRelief, Relief, Shape
     from fegear.results.relief.grinding import Grinding
 
@@ -151,9 +153,16 @@ class Tip:
     member: Member
     shape: str
     relief: EndRelief
+    gear: Gear
     error: tuple[None, None] = (None, None)
     equal_amounts: str = ""
     equal_starts: str = ""
+
+    @property
+    @shows("deg", "roll angle at which the relief starts", name="start_roll_angle")
+    def start(self) -> float:
+        """As on the drawing: positive on an internal gear, too [rad]."""
+        return float(roll_in_drawing(self.gear, self.relief.start))
 
 
 @dataclass(frozen=True)
@@ -217,7 +226,9 @@ class TipsShown:
             for shape in self.shapes
         )
         return tuple(
-            Tip(member, shape, tip) for shape, both in found for member, tip in zip(MEMBERS, both, strict=True)
+            Tip(member, shape, tip, self.data.pair.gear(member))
+            for shape, both in found
+            for member, tip in zip(MEMBERS, both, strict=True)
         )
 
     @cached_property
