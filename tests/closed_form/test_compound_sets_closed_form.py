@@ -122,10 +122,22 @@ def test_power_and_torque_balance_with_losses(seed):
     assert ran >= 5
 
 
+def test_clusters_are_in_the_order_of_their_first_planets():
+    planets = {name: SimpleNamespace(name=name) for name in "abc"}
+    of = SimpleNamespace(
+        planets=planets.values(), names=["sun", *planets],
+        toothed=[SimpleNamespace(planets=planets["a"], other=planets["c"])],
+    )  # fmt: skip
+    assert ["".join(one.name for one in cluster.planets) for cluster in clusters(of)] == ["ac", "b"]
+
+
 def test_what_cannot_run_is_said():
     trains = Trains(compound_sets.ravigneaux())
     assert trains.drive(("ring",), "ring", "carrier").startswith("fixed, driving and loaded shafts must differ")
-    assert "not determined: fix another shaft" in trains.drive((), "small", "ring")
+    # held still itself, the driving shaft lets all others turn
+    assert trains.drive((), "small", "ring") == (
+        f"speeds of {', '.join(one for one in trains.of.names if one != 'small')} are not determined: fix another shaft"
+    )
     assert trains.drive(("ring", "large"), "small", "carrier") == (
         "small cannot rotate with ring and large fixed (the set is locked)"
     )

@@ -186,6 +186,8 @@ def test_rows_that_only_one_table_has_are_counted_and_kept():
     assert difference.share == pytest.approx(5.0 / 40.0)
     assert found.differs(1.0)
     assert not join(first, first).differs(0.0)
+    apart = join(table(["p"], [5e-3], [1.0]), table(["q"], [7e-3], [2.0])).table  # first rows that nobody shares
+    assert (apart["name"].tolist(), apart["x"].tolist()) == (["p", "q"], [5.0, 7.0])
 
 
 def test_a_table_over_a_grid_is_no_curve():
