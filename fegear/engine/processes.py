@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from fegear.base.code_version import code_version, made_by, unlike
 from fegear.base.errors import FegearError, MissingLibraryError
+from fegear.base.interrupts import deaf
 from fegear.base.memory import give_back, resident
 from fegear.base.one_thread import one_thread
 from fegear.base.plain import pack, unpack
@@ -218,11 +219,8 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         yield
         return
     resource_tracker.ensure_running()  # which lets Ctrl-C through again when it starts its own process
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
+    with deaf([signal.SIGINT]):
         yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager

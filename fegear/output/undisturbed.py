@@ -7,7 +7,7 @@ import signal
 import threading
 from collections.abc import Iterator
 
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+from fegear.base.interrupts import REQUESTS_TO_STOP
 
 
 @contextlib.contextmanager
@@ -24,8 +24,7 @@ def undisturbed(*, at_the_end: bool = False) -> Iterator[None]:
         return
     waiting: list[int] = []
     # A blocked signal mask would not do: the system hands the signal to another thread, and Python acts on it here.
-    numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
-    before = {n: h for n in numbers if callable(h := signal.getsignal(n))}
+    before = {n: h for n in REQUESTS_TO_STOP if callable(h := signal.getsignal(n))}
     for number in before:
         signal.signal(number, lambda n, _: waiting.append(n))
     try:

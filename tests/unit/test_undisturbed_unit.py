@@ -1,6 +1,8 @@
 """Requests to stop wait while something is begun on the disk, and beside imports."""
 
 import signal
+import subprocess
+import sys
 import threading
 from types import SimpleNamespace
 
@@ -8,6 +10,7 @@ import pytest
 
 from fegear.base import interrupts
 from fegear.base.interrupts import between_imports, heed_ctrl_c
+from fegear.output.report.page import begun
 from fegear.output.undisturbed import undisturbed
 
 
@@ -74,11 +77,40 @@ def test_a_request_amid_an_import_comes_again_a_little_later(monkeypatch):
     amid = SimpleNamespace(f_code=SimpleNamespace(co_filename="<frozen importlib._bootstrap>"))
     hear(2, amid)
     assert acted == []
-    assert later == [(0.02, signal.raise_signal, [2])]
+    assert [(wait, given) for wait, _, given in later] == [(0.02, [2])]
     beside = SimpleNamespace(f_code=SimpleNamespace(co_filename="/somewhere.py"))
     hear(2, beside)
     hear(2, None)
     assert acted == [(2, beside), (2, None)]
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signals wait on this system")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_request_amid_an_import_waits_until_gmsh_has_given_the_handlers_back(number):
+    """While gmsh starts they are the system's, which ends the program; the request comes again in that very moment."""
+    program = f"""
+import signal, time
+from types import SimpleNamespace
+from fegear.base.interrupts import between_imports, deaf
+number, heard = {int(number)}, []
+hear = between_imports(lambda n, _: heard.append(n))
+signal.signal(number, hear)
+hear(number, SimpleNamespace(f_code=SimpleNamespace(co_filename="<frozen importlib._bootstrap>")))
+with deaf():
+    before = signal.signal(number, signal.SIG_DFL)
+    time.sleep(0.2)
+    signal.signal(number, before)
+print(heard)
+"""
+    run = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True, text=True, timeout=60)
+    assert (run.returncode, run.stdout) == (0, f"[{int(number)}]\n"), run.stderr
+
+
+def test_work_begun_ahead_is_deaf_from_its_first_moment():
+    """A thread that begins to wait only in its own code would hear a request between its start and that."""
+    found = begun(lambda: signal.pthread_sigmask(signal.SIG_BLOCK, ())).result(10)
+    assert set(interrupts.REQUESTS_TO_STOP) <= found
+    assert not set(interrupts.REQUESTS_TO_STOP) & signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_ctrl_c_is_heard_only_where_it_has_its_usual_meaning():

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
+from fegear.base.interrupts import deaf
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.drawing_grid import GRID, line_on_a_grid, on_a_grid, rounded
 from fegear.fem.plane.elements import check_cubic_edges
@@ -302,24 +303,10 @@ def _initialize(gmsh: Any) -> None:
     handlers = ctypes.pythonapi
     handlers.PyOS_getsig.restype = ctypes.c_void_p
     held = {int(n): handlers.PyOS_getsig(int(n)) for n in (getattr(signal, name, None) for name in names) if n}
-    with _waiting(held):
+    with deaf(held):
         gmsh.initialize(interruptible=False)
         for number, handler in held.items():
             handlers.PyOS_setsig(number, ctypes.c_void_p(handler))
-
-
-@contextmanager
-def _waiting(numbers: Iterable[int]) -> Iterator[None]:
-    """Let signals to this thread wait meanwhile, on systems that can: none finds the handler of another."""
-    mask = getattr(signal, "pthread_sigmask", None)
-    if mask is None:
-        yield
-        return
-    before = mask(signal.SIG_BLOCK, numbers)
-    try:
-        yield
-    finally:
-        mask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

@@ -13,7 +13,6 @@ import base64
 import gzip
 import io
 import re
-import signal
 import threading
 import zipfile
 from concurrent.futures import Future
@@ -26,6 +25,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import fegear
 from fegear.base.errors import MissingLibraryError
+from fegear.base.interrupts import deaf
 from fegear.output.draw_plotly.layout import darker, plotly_json, template
 from fegear.output.file_names import file_name
 from fegear.output.numbers import pretty_unit
@@ -299,12 +299,11 @@ def begun(make: Callable[[], T]) -> Future[T]:
     made: Future[T] = Future()
 
     def work() -> None:
-        if hasattr(signal, "pthread_sigmask"):
-            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
         try:
             made.set_result(make())
         except BaseException as problem:  # noqa: BLE001  (raised by `result`)
             made.set_exception(problem)
 
-    threading.Thread(target=work, daemon=True).start()
+    with deaf():
+        threading.Thread(target=work, daemon=True).start()
     return made
