@@ -152,10 +152,11 @@ class DesignPart(Part):
 
     pair: str | None = Field(default=None, description="Pair. Default: the only pair.")
     load: PositiveForce | None = Field(default=None, description="Design load. Default: nominal load of the pair.")
-    over: Literal["torques", "load"] | None = Field(
+    over: Literal["torques", "spectrum", "load"] | None = Field(
         default=None,
         description="What grindable tip relief is designed for: `torques` (all torques or loads of the pair, with "
-        "their weights) or `load` (the design load only). Default: `torques` if the pair has them.",
+        "their weights), `spectrum` (torques of `operation.spectrum`, weighted by their time shares) or `load` (the "
+        "design load only). Default: `torques` if the pair has them, otherwise `spectrum` if it has one.",
     )
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None

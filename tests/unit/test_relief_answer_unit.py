@@ -21,27 +21,26 @@ CLASS = "f_Hα of class 5, assumed"
 LOAD = np.array([1000.0, 2000.0])
 
 
-def left(values, most=None, finer=0, load=LOAD):
+def left(values, most=None, finer=0, load=LOAD, share=None):
     numbers = (np.array(values, dtype=float) * 1e-6, np.zeros(2), None if most is None else np.array(most) * 1e-6)
-    return LeftOverRange(0.05 * load, load, np.ones(2), *numbers, finer=finer)
+    return LeftOverRange(0.05 * load, load, np.ones(2), *numbers, finer=finer, share=share)
 
 
-def made(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, spectrum=()):
+def made(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, share=None):
     """With linear reliefs to be ground."""
     rows = tuple(
         Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
         for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
     )  # fmt: skip
+    share = None if share is None else np.array(share)
     left_over = {
-        "no relief": left((3.7, 7.0), load=load),
-        "linear tip relief": left((1.2, 2.4), linear, finer, load),
+        "no relief": left((3.7, 7.0), load=load, share=share),
+        "linear tip relief": left((1.2, 2.4), linear, finer, load, share),
         "parabolic tip relief": left((1.1, 2.5), parabolic, load=load),
         "linear tip relief for one load": left((3.9, single), load=load),
     }  # fmt: skip
     data = SimpleNamespace(for_range=True, grinding=rows, over_range=left_over, load=2000.0)
-    asked = SimpleNamespace(
-        tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2, spectrum=spectrum
-    )
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS if grade else "", grade),) * 2)
     return Seen(data, asked, "I")
 
 
@@ -61,11 +60,23 @@ def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_to
     )
 
 
-def test_a_load_spectrum_that_is_not_designed_for_is_named_with_the_remedy():
-    assert said((3.3, 4.5), (3.5, 5.0), spectrum=(180.0, 420.0))[1] == (
-        "Pair I: designed for one load, not for its load spectrum; for all torques of the spectrum set "
-        'pair.I.torques = ["180 N*m", "420 N*m"] instead of the load.'
+def test_an_answer_for_a_spectrum_has_the_time_of_each_torque_and_the_mean_over_it():
+    seen = made((3.3, 4.5), (3.5, 5.0), share=(0.6, 0.3))
+    first, mean, *_ = said_of_range(seen)
+    assert first.endswith(
+        "transmission error over the load spectrum 7 -> 2.4 µm (within tolerances at most 4.5 µm) at 100 N m for 30 % "
+        "of the time, 3.7 -> 1.2 µm (at most 3.3 µm) at 50 N m for 60 % of the time, peak to peak."
     )
+    assert mean == (
+        "Pair I: mean over the time under load 4.8 -> 1.6 µm; minimised: the maximum over the load spectrum of "
+        "transmission error / torque times share of time."
+    )
+
+
+def test_the_torques_named_of_a_spectrum_are_its_ends_and_those_of_the_longest_times():
+    values = np.ones(6)
+    over = LeftOverRange(values, values, values, values, values, share=np.array([0.1, 0.1, 0.3, 0.05, 0.4, 0.05]))
+    assert over.named == (5, 4, 2, 0)
 
 
 def test_a_relief_far_below_its_tolerance_is_named():
@@ -195,7 +206,7 @@ def test_at_one_torque_relief_that_is_worse_within_its_tolerances_is_not_to_be_g
     """Half of the torque counts for nothing: the relief is for the larger one."""
     rows = tuple(Grinding("pw"[n], one, "", TIP, "linear", 6e-6, start_diameter=0.06) for n, one in enumerate(MEMBERS))
     over = {"no relief": left((3.7, 7.0)), "linear tip relief": left((1.2, 2.4), (3.0, most), 2 if told else 0)}
-    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS, 5),) * 2, spectrum=())
+    asked = SimpleNamespace(tolerances=(TipTolerance(5e-6, None, 6e-6, CLASS, 5),) * 2)
     seen = Seen(SimpleNamespace(grinding=rows, over_range=over, load=2000.0), asked, "I")
     first, *_ = said_at(seen, (1,), (1,))
     start = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length the transmission error is smaller without relief"

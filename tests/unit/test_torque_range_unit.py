@@ -6,6 +6,7 @@ Gears are 25/67 and random pairs with compliances by Weber and Banaschek, which 
 import re
 import tomllib
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from typer.testing import CliRunner
 import fegear
 from fegear.base.cache_keys import content_key
 from fegear.base.errors import InputError
-from fegear.case.built.design_range import design_range, unused_spectrum
+from fegear.case.built.design_range import design_range
 from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.reading import build_scene
 from fegear.cli import program
@@ -24,7 +25,7 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
-from fegear.design.load_range import LoadRange
+from fegear.design.load_range import MOST_LEVELS, LoadRange, of_spectrum
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief, relief_over_path
 from fegear.engine.plan import make_plan
@@ -105,23 +106,96 @@ def test_a_range_of_torques_is_loads_of_the_pair(written):
     assert design_range(found, "I").loads == pytest.approx(wanted)
 
 
-SPECTRUM = "operation = { spectrum = [LEVELS] }"
+def duty(levels, pair='torque = "300 N*m"', design=""):
+    return scene(f"{pair}\noperation = {{ spectrum = [{levels}] }}", design)
+
+
+HALF = '{torque = "300 N*m", share = 0.1}, {torque = "150 N*m", share = 0.9}'
 
 
 @pytest.mark.parametrize(
-    ("pair", "design", "levels", "unused"),
+    ("levels", "torques", "shares"),
     [
-        ('torque = "300 N*m"', "", '{torque = "300 N*m", share = 0.1}, {torque = "100 N*m", share = 0.9}', (100, 300)),
-        ('torque = "300 N*m"', "", "{load_factor = 1, share = 0.4}, {load_factor = 0.5, share = 0.6}", (150, 300)),
-        ('torque = "300 N*m"', "", "{load_factor = 0, share = 0.4}, {load_factor = 1, share = 0.6}", ()),
-        ('torque = "300 N*m"', "", '{torque = "200 N*m", share = 1}', (200,)),
-        ('torque = "300 N*m"', 'over = "load"', "{load_factor = 1, share = 0.4}, {load_factor = 0.5, share = 0.6}", ()),
-        (TORQUES, "", "{load_factor = 1, share = 0.4}, {load_factor = 0.2, share = 0.6}", ()),
+        (HALF, (150, 300), (0.9, 0.1)),
+        ("{load_factor = 1, share = 0.4}, {load_factor = 0.5, share = 0.6}", (150, 300), (0.6, 0.4)),
+        ("{load_factor = 0, share = 0.4}, {load_factor = 0.5, share = 0.6}", (150,), (0.6,)),
+        ('{torque = "200 N*m", share = 1}, {torque = "90 N*m", share = 0}', (200,), (1,)),
+        ('{torque = "60 N*m", time = "30 h"}, {torque = "200 N*m", time = "10 h"}', (60, 200), (0.75, 0.25)),
+        (
+            '{torque = "60 N*m", share = 0.3}, {torque = "200 N*m", share = 0.701}',
+            (60, 200),
+            (0.3 / 1.001, 0.701 / 1.001),
+        ),
+        ('{torque = "60 N*m", share = 0.3}, {load_factor = 0.2, share = 0.7}', (60,), (1,)),
     ],
 )
-def test_the_torques_of_a_spectrum_that_a_design_is_not_for(pair, design, levels, unused):
-    pair = f"{pair}\n{SPECTRUM.replace('LEVELS', levels)}"
-    assert unused_spectrum(scene(pair, design), "I") == pytest.approx(unused)
+def test_reliefs_are_designed_for_the_torques_of_a_spectrum_weighted_by_their_time(levels, torques, shares):
+    found = duty(levels)
+    over = design_range(found, "I")
+    assert np.array(over.loads) * found.pairs["I"].driver.base_radius == pytest.approx(torques)
+    assert over.shares == pytest.approx(shares)
+    assert over.weights is None if len(shares) == 1 else over.weights == over.shares
+
+
+@pytest.mark.parametrize(
+    ("levels", "pair", "design"),
+    [
+        ('{torque = "300 N*m", share = 1}', 'torque = "300 N*m"', ""),
+        ('{torque = "300 N*m", share = 0.4}, {torque = "0 N*m", share = 0.6}', 'torque = "300 N*m"', ""),
+        ("{load_factor = 0, share = 1}", 'torque = "300 N*m"', ""),
+        (HALF, 'torque = "300 N*m"', 'over = "load"'),
+    ],
+)
+def test_a_spectrum_of_the_design_load_or_of_none_is_the_design_for_that_load(levels, pair, design):
+    assert design_range(duty(levels, pair, design), "I") is None
+
+
+def test_equal_times_are_the_range_of_their_torques_and_given_torques_go_before_a_spectrum():
+    levels = ", ".join(f'{{torque = "{torque} N*m", share = {1 / 3:.3f}}}' for torque in (150, 225, 300))
+    equal, torques = design_range(duty(levels), "I"), design_range(scene(), "I")
+    assert (equal.loads, equal.weights) == (pytest.approx(torques.loads), torques.weights)
+    assert design_range(duty(HALF, TORQUES), "I") == torques
+    assert design_range(duty(HALF, TORQUES, 'over = "spectrum"'), "I").shares == (0.9, 0.1)
+
+
+@pytest.mark.parametrize("levels", ["", "operation = { spectrum = [{load_factor = 0, share = 1}] }"])
+def test_a_spectrum_without_load_is_refused_where_it_is_asked_for(levels):
+    with pytest.raises(InputError, match=r"design\.over.*operation\.spectrum"):
+        design_range(scene(f'torque = "300 N*m"\n{levels}', 'over = "spectrum"'), "I")
+
+
+def test_bins_of_one_load_are_one_and_neighbours_of_a_fine_spectrum_are_combined():
+    assert of_spectrum([3.0, 1.0, 3.0, 0.0], [1.0, 1.0, 2.0, 4.0]) == LoadRange(
+        (1.0, 3.0), (0.125, 0.375), (0.125, 0.375)
+    )
+    fine = of_spectrum(np.linspace(1.0, 5.0, 100), np.full(100, 0.01))
+    assert len(fine.loads) == MOST_LEVELS
+    assert sum(fine.shares) == pytest.approx(1.0)
+    assert np.dot(fine.loads, fine.shares) == pytest.approx(3.0)
+
+
+@pytest.mark.dear
+def test_a_relief_for_a_spectrum_has_the_least_maximum_of_value_per_torque_times_share():
+    """Judged by exact load sharing, beside all reliefs near it and a net over a few amounts and lengths."""
+    e, load = engaged(24, 36, 0.2)
+    over = of_spectrum(load * np.array([1.0, 0.7, 0.4]), [0.05, 0.35, 0.6])
+    found = grindable(e, over, "linear", banded=False)
+
+    def left(driver, driven):
+        ground = replace(e, driver_relief=driver, driven_relief=driven)
+        return float((peaks(ground, over.loads) / over.loads * over.shares).max())
+
+    def changed(tip, amount, length):
+        return replace(tip, amount=tip.amount * amount, start=tip.end - (tip.end - tip.start) * length)
+
+    least = left(found.driver, found.driven)
+    net = [
+        left(changed(found.driver, a, c), changed(found.driven, b, d))
+        for a, b in product((0.6, 0.97, 1.03, 1.5), repeat=2) for c, d in ((0.97, 1.0), (1.0, 1.03), (1.0, 1.0))
+    ]  # fmt: skip
+    assert least <= 1.0001 * min(net)
+    single = grindable(e, load, "linear", banded=False)
+    assert least < 0.5 * left(single.driver, single.driven)
 
 
 def test_weights_belong_to_the_torques_as_they_are_written():

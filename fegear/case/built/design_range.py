@@ -1,4 +1,4 @@
-"""The loads that the reliefs of a pair are designed for together: what ``torques``, ``loads`` and ``weights`` say."""
+"""Loads that the reliefs of a pair are designed for together: ``torques``, ``loads`` and ``weights``, or a spectrum."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.case.design import DesignPart
-from fegear.design.load_range import LoadRange
+from fegear.design.load_range import LoadRange, of_spectrum
 
 if TYPE_CHECKING:
+    from fegear.case.pair import PairPart
     from fegear.case.reading import Scene
+    from fegear.geometry.pair import GearPair
 
 
 def design_range(scene: Scene, name: str) -> LoadRange | None:
@@ -24,35 +26,39 @@ def design_range(scene: Scene, name: str) -> LoadRange | None:
     """
     part, pair = scene.case.pair[name], scene.pairs[name]
     design = scene.case.design or DesignPart()
-    if (design.over or ("torques" if part.torques is not None else "load")) == "load":
+    asked = design.over or ("torques" if part.torques is not None else "spectrum")
+    if asked == "load":
         return None
-    loads = part.several_loads(pair)
-    if not loads:
+    over = _over_torques(part, pair) if asked == "torques" else _over_spectrum(part, pair)
+    if over is None and design.over == "torques":
         raise InputError(
             "design.over", '"torques"', f"requires pair.{name}.torques",
             f'set pair.{name}.torques = ["150 N*m", "300 N*m"]',
         )  # fmt: skip
-    given = dict(zip(loads, part.weights or [1.0] * len(loads), strict=True))
-    if set(given) == {design.load or part.normal_load(pair)}:
+    if over is None and design.over == "spectrum":
+        raise InputError(
+            "design.over", '"spectrum"', f"requires pair.{name}.operation.spectrum with a torque above zero",
+            f'set pair.{name}.operation.spectrum = [{{ torque = "300 N*m", share = 0.2 }}, '
+            '{ torque = "150 N*m", share = 0.8 }]',
+        )  # fmt: skip
+    return None if over is None or set(over.loads) == {design.load or part.normal_load(pair)} else over
+
+
+def _over_torques(part: PairPart, pair: GearPair) -> LoadRange | None:
+    """What ``torques`` or ``loads`` and ``weights`` say."""
+    loads = part.several_loads(pair)
+    if not loads:
         return None
+    given = dict(zip(loads, part.weights or [1.0] * len(loads), strict=True))
     ordered = tuple(sorted(given))
     alike = len(set(given.values())) == 1
     return LoadRange(ordered, None if alike else tuple(given[load] for load in ordered))
 
 
-def unused_spectrum(scene: Scene, name: str) -> tuple[float, ...]:
-    """Driver torques [N m] of the load spectrum of a pair whose reliefs are designed for another load only.
-
-    In ascending order; empty without a spectrum, where all of it is the design load, where a range is given, and where
-    ``over = "load"`` says that one load is meant.
-    """
-    part, pair = scene.case.pair[name], scene.pairs[name]
-    design = scene.case.design or DesignPart()
-    bins = part.operation.spectrum
-    if not bins or design.over == "load" or design_range(scene, name) is not None:
-        return ()
-    lever = pair.driver.base_radius * part.halves
-    nominal, designed = ((load or 0.0) * lever for load in (part.normal_load(pair), design.load))
-    found = ((one.load_factor or 0.0) * nominal if one.torque is None else one.torque for one in bins)
-    torques = tuple(sorted({float(f"{torque:.4g}") for torque in found if torque > 0.0}))
-    return () if torques == (float(f"{designed or nominal:.4g}"),) else torques
+def _over_spectrum(part: PairPart, pair: GearPair) -> LoadRange | None:
+    """Loads of ``operation.spectrum``, weighted by their shares of time."""
+    bins = part.operation.spectrum or []
+    nominal, lever = part.normal_load(pair) or 0.0, pair.driver.base_radius * part.halves
+    loads = [(one.load_factor or 0.0) * nominal if one.torque is None else one.torque / lever for one in bins]
+    shares = [(one.share if one.time is None else one.time) or 0.0 for one in bins]
+    return of_spectrum(loads, shares)

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
-from fegear.case.built.design_range import design_range, unused_spectrum
+from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tip_tolerances import flank_tolerance
@@ -65,9 +65,8 @@ def _check(scene: Scene, name: str) -> None:
 def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     over = None if _part(scene).loads else design_range(scene, name)
-    spectrum = () if _part(scene).loads else unused_spectrum(scene, name)
     tolerance = flank_tolerance(scene, name)
-    return FlankDesignInputs(_part(scene), name, gears, over, tolerance, misaligned(scene, name), spectrum)
+    return FlankDesignInputs(_part(scene), name, gears, over, tolerance, misaligned(scene, name))
 
 
 def _grid(part: FlankDesignPart) -> ReliefGrid | None:

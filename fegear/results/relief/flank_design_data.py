@@ -59,8 +59,6 @@ class FlankDesignInputs:
         Of what is ground.
     misaligned : str
         The misalignment that counts as given, in words; empty for none.
-    spectrum : tuple of float
-        Driver torques of a load spectrum that the design is not for [N m].
     """
 
     part: FlankDesignPart
@@ -69,7 +67,6 @@ class FlankDesignInputs:
     over: LoadRange | None
     tolerance: FlankTolerance
     misaligned: str = field(default="", compare=False)
-    spectrum: tuple[float, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -292,11 +289,13 @@ class FlanksShown:
         task, pair = self.design.task, self.data.pair
         load = np.array(task.loads)
         weights = np.ones(load.size) if task.weights is None else np.array(task.weights)
+        over = self.asked.over
+        shares = None if over is None or over.shares is None else np.array(over.shares)
         return {
             state.label: LeftOverRange(
                 load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
                 state.over_first, state.over_most if state.label in self.design.found else None, state.over_error,
-                mean=state.over_mean if self.scattered else None,
+                mean=state.over_mean if self.scattered else None, share=shares,
             )
             for state in self.design.states
         }  # fmt: skip

@@ -31,6 +31,7 @@ from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_range import (
     OVER_RANGE,
     RANGE_CHART,
+    TIME_MEANS,
     left_words,
     lost_words,
     said_of_spectrum,
@@ -162,7 +163,7 @@ def _keys(seen: Seen) -> str:
 def _left(seen: Seen, label: str) -> tuple[Array, Array]:
     """Torques [N m] and what a way leaves under each [m], aligned as given: of a range, or at the design load."""
     data = seen.data
-    if data.over_range[label].torque.size > 1:
+    if data.over_range[label].torque.size > 1 or seen.asked.over is not None:
         return data.over_range[label].torque, data.over_range[label].peak_to_peak
     state = next(state for state in data.design.states if state.label == label)
     return np.array([data.load * data.data.pair.driver.base_radius]), np.array([state.judged.peak_to_peak.value])
@@ -176,7 +177,8 @@ def _grind(seen: Seen) -> Iterator[str]:
     after = _left(seen, best.label)[1]
     ground = _rows(seen, best)
     within = _at_most(best, torque) if ground else None
-    ends = tuple(dict.fromkeys(i % torque.size for i in (-1, 0)))
+    first = seen.data.over_range[design.unrelieved.label]
+    ends = first.named if torque.size == first.torque.size else (0,)
 
     def allowed(classes: int) -> str:
         return _allowed(seen, ground, classes)
@@ -191,10 +193,12 @@ def _grind(seen: Seen) -> Iterator[str]:
         drawn, most, rows = _left(seen, least.label)[1], _at_most(least, torque), _rows(seen, least)
     else:
         drawn, most, rows = after, within, ground
-    left = left_words(none, drawn, most, torque, ends)
+    left = left_words(none, drawn, most, torque, ends, first.share)
     do = f"{'without deviations ' if lost else ''}grind {', '.join(row.words for row in rows) or 'nothing'}"
-    yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
-    yield from said_of_spectrum(seen)
+    over = "" if first.share is None else " over the load spectrum"
+    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak."
+    ground_as = seen.data.over_range[(least if lost and other else best).label]
+    yield from said_of_spectrum(seen.name, first, ground_as)
     if within is not None and not lost:
         i = int(np.argmax(within / np.maximum(none, _NONE)))
         yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
@@ -356,7 +360,7 @@ FLANK_DESIGN_SHEET = Sheet(
             ),
         ),
     ),
-    values=("topography_depth", Each("ways", *map(_judged_value, _JUDGED))),
+    values=("topography_depth", Each("ways", *map(_judged_value, _JUDGED)), TIME_MEANS),
     figures=(
         RANGE_CHART,
         k_chart("profile_charts"),

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError, RangeError
-from fegear.case.built.design_range import design_range, unused_spectrum
+from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_in_design
 from fegear.case.built.pair_spec import pair_spec
@@ -91,7 +91,6 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
         design_part(scene), pair_spec(scene, name), design_range(scene, name), tip_tolerances(scene, name),
         case.accuracy.tolerance, case.effects, scene.sizes_neglected, table_names(scene, name), gears,
         f"pair.{name}.{case.pair[name].load_key(scene.pairs[name])}",
-        unused_spectrum(scene, name),
     )  # fmt: skip
 
 

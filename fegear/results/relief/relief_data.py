@@ -42,8 +42,6 @@ class ReliefInputs:
         Names of the tables and of the gears by member.
     load_key : str
         Key of the design load where the design has none of its own, for messages.
-    spectrum : tuple of float
-        Driver torques of a load spectrum that the design is not for [N m].
     """
 
     part: DesignPart
@@ -56,7 +54,6 @@ class ReliefInputs:
     labels: Mapping[Member, str] = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
     load_key: str = field(default="design.load", compare=False)
-    spectrum: tuple[float, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

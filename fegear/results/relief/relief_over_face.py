@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.base.errors import InputError
 from fegear.base.printed import figures
-from fegear.case.built.design_range import design_range, unused_spectrum
+from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.tip_tolerances import tip_tolerances
@@ -78,7 +78,7 @@ def _inputs(scene: Scene, name: str) -> TipReliefInputs:
     gears = {member: gear_name(scene, name, member) for member in MEMBERS}
     return TipReliefInputs(
         design_part(scene), design_range(scene, name), tip_tolerances(scene, name), scene.case.effects.relief, name,
-        gears, misaligned(scene, name), unused_spectrum(scene, name),
+        gears, misaligned(scene, name),
     )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
@@ -55,8 +55,6 @@ class TipReliefInputs:
         Names by member.
     misaligned : str
         Keys of the misalignment that they are designed for; empty for none.
-    spectrum : tuple of float
-        Driver torques of a load spectrum that the design is not for [N m].
     """
 
     part: DesignPart
@@ -66,7 +64,6 @@ class TipReliefInputs:
     name: str
     gears: Mapping[Member, str]
     misaligned: str = ""
-    spectrum: tuple[float, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -184,9 +181,9 @@ class TipsShown:
 
     @cached_property
     def ends(self) -> tuple[int, ...]:
-        """Numbers of the torques that the answer names: both ends of the range, or the design load."""
-        load = next(iter(self.over_range.values())).load
-        return (load.size - 1, 0) if self.design.task.over else (int(np.argmin(np.abs(load - self.load))),)
+        """Numbers of the torques that the answer names: of the range, or the design load."""
+        first = next(iter(self.over_range.values()))
+        return first.named if self.design.task.over else (int(np.argmin(np.abs(first.load - self.load))),)
 
     @cached_property
     def over_range(self) -> dict[str, LeftOverRange]:
@@ -194,9 +191,10 @@ class TipsShown:
         task, design = self.design.task, self.design
         chosen = np.array([task.over is None or load in task.over.loads for load in task.loads])
         load = np.array(task.loads)[chosen]
-        weights = np.asarray(load == task.load, dtype=float)
+        weights, shares = np.asarray(load == task.load, dtype=float), None
         if task.over is not None:
             weights = np.ones(load.size) if task.over.weights is None else np.array(task.over.weights)
+            shares = None if task.over.shares is None else np.array(task.over.shares)
         most = {f"{shape} tip relief": one[chosen] for shape, one in design.most.items()}
         best = f"{design.shapes[0]} tip relief"
         finer = {best: design.finer}
@@ -204,8 +202,8 @@ class TipsShown:
         return {
             label: LeftOverRange(
                 load * self.data.pair.driver.base_radius, load, weights / weights.max(), read.peak_to_peak[chosen],
-                read.series.amplitude[0][chosen], most.get(label), read.error[chosen], finer=finer.get(label, 0),
-                decisive=decisive.get(label, ()),
+                read.series.amplitude[0][chosen], most.get(label), read.error[chosen],
+                finer=finer.get(label, 0), decisive=decisive.get(label, ()), share=shares,
             )
             for label, read in design.left.items()
         }  # fmt: skip

@@ -17,7 +17,7 @@ from fegear.results.relief.ground_tips import tip_numbers
 from fegear.results.relief.harris import HARRIS_CHART
 from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_face_data import TipsShown
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, said_at
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS, said_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,6 +68,7 @@ RELIEF_OVER_FACE_SHEET = Sheet(
             Number("effective", "error", name=lambda seen: f"te_effective.{_key(seen)}",
                    meaning="A_e, {key}, design load"),
         ),
+        TIME_MEANS,
         tip_numbers("tips", "{one.shape}_tip_"),
     ),
     figures=(

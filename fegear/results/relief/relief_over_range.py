@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures
+from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.design.load_range import proportions
 from fegear.design.preferred import CLEARLY
@@ -15,6 +15,7 @@ from fegear.engine.colours import ROLES
 from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
+from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
 
 #: Tip relief over its tolerance below which grinding cannot be told from not grinding.
 _FAINT = 0.25
+
+#: Torques of a spectrum that an answer names at most.
+_NAMED = 4
 
 #: Largest over smallest torque from which a range is wide: its small torques may govern the relief of all.
 _WIDE = 10.0
@@ -73,6 +77,18 @@ class LeftOverRange:
     )  # fmt: skip
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
+    share: Array | None = shown("", "share of time in the load spectrum", default=None, name="time_share")
+
+    @property
+    def time_mean(self) -> float:
+        """Peak-to-peak value, mean over the time under load of the spectrum [m]."""
+        return float("nan") if self.share is None else float(np.average(self.peak_to_peak, weights=self.share))
+
+    @property
+    def named(self) -> tuple[int, ...]:
+        """Places that an answer names, the largest torque first: both ends, of a spectrum also the longest times."""
+        longest = [] if self.share is None else np.argsort(-self.share, kind="stable")[: _NAMED - 2].tolist()
+        return tuple(sorted({0, self.torque.size - 1, *longest}, reverse=True))
 
     @property
     def errors(self) -> Array | None:
@@ -85,7 +101,8 @@ def left_over_range(
 ) -> dict[str, LeftOverRange]:
     """What every relief leaves at the loads of the range, or of the pair; `shifted` as in `left_error`."""
     load = np.array(design.task.over_loads)
-    weights = design.task.over_weights
+    weights, over = design.task.over_weights, design.task.over
+    shares = None if over is None or over.shares is None else np.array(over.shares)
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
     best = f"{design.shapes[0]} tip relief" if design.ground else ""
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
@@ -96,6 +113,7 @@ def left_over_range(
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
             within.get(label), _errors(found, shifted, searched.get(label)),
             finer=design.finer if label == best else 0, decisive=design.decisive if label == best else (),
+            share=shares,
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
@@ -113,17 +131,25 @@ def _errors(
 def said_of_range(seen: Seen) -> Iterator[str]:
     """What to grind and what it leaves from the largest to the smallest torque; what one load only would do."""
     if seen.data.for_range:
-        yield from said_at(seen, tuple(range(-1, -1 - _first(seen).torque.size, -1)), (-1, 0))
+        yield from said_at(seen, tuple(range(-1, -1 - _first(seen).torque.size, -1)), _first(seen).named)
 
 
-def said_of_spectrum(seen: Seen) -> Iterator[str]:
-    """That a load spectrum is not what the relief is designed for, and how it would be."""
-    if not seen.asked.spectrum:
+def said_of_spectrum(name: str, none: LeftOverRange, drawn: LeftOverRange) -> Iterator[str]:
+    """What a relief leaves on the mean over the time of a spectrum, and what it was designed by; nothing without one.
+
+    Parameters
+    ----------
+    name : str
+        Of the pair.
+    none, drawn : LeftOverRange
+        Without relief, and with what is ground.
+    """
+    if none.share is None:
         return
-    torques = ", ".join(f'"{figures(torque, 4)} N*m"' for torque in seen.asked.spectrum)
+    before, after = told_apart(none.time_mean, drawn.time_mean)
     yield (
-        f"Pair {seen.name}: designed for one load, not for its load spectrum; for all torques of the spectrum set "
-        f"pair.{seen.name}.torques = [{torques}] instead of the load."
+        f"Pair {name}: mean over the time under load {before} -> {after} µm; minimised: the maximum over the load "
+        "spectrum of transmission error / torque times share of time."
     )
 
 
@@ -147,13 +173,15 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         shape = chosen
     ground = [row.words for row in rows]
     at = tuple(dict.fromkeys(i % best.torque.size for i in ends))
-    left = left_words(none.peak_to_peak, best.peak_to_peak, best.most if ground else None, best.torque, at)
+    most = best.most if ground else None
+    left = left_words(none.peak_to_peak, best.peak_to_peak, most, best.torque, at, best.share)
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     do = f"without deviations {do}" if lost else do
-    yield f"Pair {seen.name}: {do}: transmission error {left}, peak to peak."
-    yield from said_of_spectrum(seen)
+    over = "" if none.share is None else " over the load spectrum"
+    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak."
+    yield from said_of_spectrum(seen.name, none, best)
     single = d.over_range.get(f"{shape} tip relief for one load")
-    if single and len(every) > 1:  # beside other results a design has room for two sentences
+    if single and len(every) > 1 and none.share is None:  # beside other results a design has room for two sentences
         yield from _said_of_small_torques(seen, best, single)
     yield from said_of_undefined(seen, rows)
     yield from said_of_tolerances(seen, shape, every, lost=bool(lost))
@@ -260,7 +288,7 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
         decides = decisive_words(*ends, best.torque[i], best.decisive[i], gears)
         if decides:
             yield f"Pair {seen.name}: {decides}."
-    weights = ", or set weights that emphasise the larger torques" if len(every) > 1 else ""
+    weights = ", or set weights that emphasise the larger torques" if len(every) > 1 and best.share is None else ""
     for row in rows:
         off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
         if row.amount < _FAINT * off:
@@ -285,7 +313,9 @@ def said_of_undefined(seen: Seen, rows: Sequence[Grinding]) -> Iterator[str]:
             )
 
 
-def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int]) -> str:
+def left_words(
+    none: Array, drawn: Array, most: Array | None, torque: Array, at: Sequence[int], share: Array | None = None
+) -> str:
     """Without relief, as drawn and at most within the tolerances: "7 -> 2.4 µm (tolerances: at most 4.5 µm) at ...".
 
     Parameters
@@ -298,13 +328,16 @@ def left_words(none: Array, drawn: Array, most: Array | None, torque: Array, at:
         [N m].
     at : sequence of int
         Places that are named.
+    share : ndarray, shape (L,), optional
+        Of the time, at each torque of a spectrum.
     """
     said: list[str] = []
     for i in at:
         within = ""
         if most is not None:
             within = f" ({'at most' if said else 'within tolerances at most'} {microns(most[i])} µm)"
-        said.append(f"{microns(none[i])} -> {microns(drawn[i])} µm{within} at {torque_words(torque[i])}")
+        time = "" if share is None else f" for {percent(float(share[i])).replace('.0 %', ' %')} of the time"
+        said.append(f"{microns(none[i])} -> {microns(drawn[i])} µm{within} at {torque_words(torque[i])}{time}")
     return ", ".join(said)
 
 
@@ -369,7 +402,7 @@ def _first(seen: Seen) -> LeftOverRange:
 OVER_RANGE = Rows(
     "relief_over_torque_{name}", "Transmission error of {name} over the torque, with each relief",
     (
-        "torque", "load", "weight",
+        "torque", "load", "weight", "share",
         Each(
             "over_range",
             Cell("peak_to_peak", name=lambda seen: f"te_peak_to_peak_{_key(seen)}", further="{key}"),
@@ -380,6 +413,15 @@ OVER_RANGE = Rows(
         ),
     ),
     of=_first, when="over_range", printed=True,
+)  # fmt: skip
+
+#: Of every relief, where the loads are those of a spectrum.
+TIME_MEANS = Each(
+    "over_range",
+    Number(
+        "peak_to_peak", si="time_mean", name=lambda seen: f"te_time_mean.{_key(seen)}",
+        meaning="mean over the time under load of the spectrum, {key}",
+    ),
 )  # fmt: skip
 
 RANGE_CHART = Chart(

@@ -29,7 +29,7 @@ from fegear.results.relief.harris import HARRIS_CHART, HarrisMap
 from fegear.results.relief.left_errors import LeftError, left_error
 from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, LeftOverRange, left_over_range
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS, LeftOverRange, left_over_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -377,6 +377,7 @@ RELIEF_SHEET = Sheet(
                name="te_peak_to_peak.relief_tables",
                meaning="designed, relief tables interpolated linearly, design load"),
         Number("te.mean", of="left.designed", name="te_mean.designed", meaning="design load"),
+        TIME_MEANS,
         tip_numbers("tips", "{one.shape}_tip_"),
         Number("relief", of="table", si=lambda seen: seen.one.table.relief.max(), owner="{name}.{one.member}",
                name="largest_relief", meaning="over the path", each="reliefs"),
