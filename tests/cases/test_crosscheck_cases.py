@@ -28,7 +28,7 @@ from fegear.fem.plane.solution import solve_gear
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
 from fegear.formulas.root_stress_formulas import ROOT_STRESS_SOURCES
-from fegear.formulas.sources import SOURCES
+from fegear.formulas.sources import SOURCES, pair_compliance
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
@@ -190,6 +190,40 @@ def test_mean_mesh_stiffness_is_beside_that_of_iso():
     # contacts that reach past a tip are none: towards both ends the compliance grows, and does not stop
     fe = rows_of(tables["crosscheck_compliance_I"], "cornell")["compliance_fe"]
     assert (np.diff(fe, 2) > 0.0).all()
+
+
+def test_mesh_stiffness_by_formulas_is_that_of_springs_in_parallel(cornell_case):
+    # A formula with a linear contact, added up by hand over the pairs that are on the path of contact.
+    tables, values, results = cornell_case
+    pair, table = results.scene.pairs["I"], tables["crosscheck_mesh_stiffness_I"]
+    x = 1e-3 * table["x"]
+    assert np.radians(table["driver_angle"]) == pytest.approx(x / pair.driver.base_radius, rel=1e-12)
+    total = np.zeros(x.size)
+    for number in range(3):
+        at = x + number * pair.base_pitch
+        on = at < pair.x_end
+        by_hand = pair_compliance(SOURCES["potential-energy-simplified"], pair, at[on], 250e3)
+        total[on] += 1e-6 * pair.face_width / by_hand.total
+    found = table["mesh_stiffness_potential_energy_simplified"]
+    assert found == pytest.approx(total, rel=1e-5)
+    # one pair in contact: no neighbour is loaded that could be coupled; two: the coupling takes stiffness away
+    alone = x + pair.base_pitch >= pair.x_end
+    assert alone.any()
+    assert not alone.all()
+    fe, uncoupled = table["mesh_stiffness_fe"], table["mesh_stiffness_fe_uncoupled"]
+    assert uncoupled[alone] == pytest.approx(fe[alone], rel=1e-9)
+    assert (uncoupled[~alone] > 1.05 * fe[~alone]).all()
+    # the mean of the values is that over the whole base pitch, which the rows show
+    width = np.diff(x)
+
+    def mean(curve):
+        return np.sum(0.5 * (curve[1:] + curve[:-1]) * width) / np.sum(width)
+
+    ratio = values["I.mesh_stiffness.potential-energy-simplified.ratio_to_fe"]
+    assert ratio == pytest.approx(mean(found) / mean(fe), rel=2e-3)
+    assert values["I.mesh_stiffness_fe_uncoupled.ratio_to_fe"] == pytest.approx(mean(uncoupled) / mean(fe), rel=2e-3)
+    assert values["I.mesh_stiffness_fe"] * pair.face_width * 1e3 == pytest.approx(mean(fe), rel=2e-3)
+    assert any(figure.name == "crosscheck_mesh_stiffness_I" for figure in results.figures)
 
 
 def test_a_gear_without_pair_and_one_out_of_range():

@@ -31,6 +31,13 @@ from fegear.results.gear.crosscheck_compared import (
     PairAnswers,
     PairCheck,
 )
+from fegear.results.gear.crosscheck_cycle import (
+    CYCLE_CHART,
+    CYCLE_TABLE,
+    cycle_values,
+    said_of_cycle,
+    silent_formulas,
+)
 from fegear.results.gear.crosscheck_iso import (
     ISO_TABLE,
     ISO_VALUES,
@@ -141,13 +148,13 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
 def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
     from fegear.contact.compared.crosscheck import (
         contact_zone,
-        mean_mesh_stiffness,
         pair_compliance_answers,
         pair_reference,
         positions_on_flanks,
         root_stress_answers,
         tooth_compliance_answers,
     )
+    from fegear.contact.compared.mesh_cycle import mesh_cycle
     from fegear.contact.compared.rated_gears import rated_helical_pair, rated_spur_pair
     from fegear.contact.compared.single_contact import at_single_contact
     from fegear.formulas.cornell import radial_section_lengths
@@ -171,7 +178,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         driver, driven = (solution_of(upstream, gear) for gear in check.gears)
         fe_pair = pair_reference(pair, driver, driven, x, w)
         iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
-        in_mesh = attempt(partial(mean_mesh_stiffness, pair, driver, driven, w))
+        in_mesh = attempt(partial(mesh_cycle, pair, driver, driven, w))
         outer = at_single_contact(pair, (driver, driven))
         pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value, outer)
         iso_asked = asked.iso[name]
@@ -241,22 +248,24 @@ def _said(seen: Seen) -> list[str]:
 
     Stiffness leads where a pair carries a load.
     """
-    outer, helical, stiffness, compliance, gears = (
+    outer, helical, stiffness, cycles, compliance, gears = (
         [sentence for one in seen.each(where) for sentence in said(one)]
         for where, said in (
             ("pairs", said_of_single_contact), ("iso", said_of_helical), ("mean_stiffness", said_of_stiffness),
-            ("pairs", said_of_compliance),
-            ("gears", said_of_root_stress),
+            ("cycles", said_of_cycle), ("pairs", said_of_compliance), ("gears", said_of_root_stress),
         )
     )  # fmt: skip
     loaded = any(one.check.loaded for one in seen.data.pairs.values())
     if loaded or not (outer or gears):
-        return [*stiffness, *outer, *helical, *compliance, *gears]
-    return [*outer, *helical, *gears, *compliance, *stiffness]
+        return [*stiffness, *cycles, *outer, *helical, *compliance, *gears]
+    return [*outer, *helical, *gears, *compliance, *stiffness, *cycles]
 
 
 def _first_figure(seen: Seen) -> str:
-    """Of the first gear; of helical pairs alone there is none."""
+    """Mesh stiffness of the first pair under a load, else of the first gear; of helical pairs alone there is none."""
+    loaded = (name for name in seen.data.cycles if seen.data.pairs[name].check.loaded)
+    if (pair := next(loaded, None)) is not None:
+        return f"crosscheck_mesh_stiffness_{pair}"
     return next((f"crosscheck_root_stress_{name}" for name in seen.asked.gears), "")
 
 
@@ -269,6 +278,7 @@ _SHEET = Sheet(
     tables=(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
+        Each("cycles", CYCLE_TABLE),
         Each("pairs", _SINGLE_TABLE, _PAIR_TABLE),
         Each("iso", ISO_TABLE),
         Each("gears", SECTION_TABLE, when="cornell"),
@@ -291,9 +301,11 @@ _SHEET = Sheet(
             "mean_stiffness", Number("iso", owner="{key}"), Number("fe", owner="{key}"),
             Number("ratio_to_fe", owner="{key}"),
         ),
+        Each("cycles", cycle_values),
         Each("gears", *SECTION_VALUES, when="cornell"),
     ),
     figures=(
+        Each("cycles", CYCLE_CHART),
         Each(
             "gears",
             comparison("crosscheck_root_stress_{key}", _ROOT, _STRESS_DRAWN, "root_stress", "roll_angle", stress=True),
@@ -310,6 +322,7 @@ _SHEET = Sheet(
         Each("iso", on_iso),
         Each("gears", _silent(_ROOT, "root_stress"), _silent(_TOOTH, "compliance")),
         Each("pairs", _silent(_of_pair, "compliance")),
+        Each("cycles", silent_formulas),
         Each("iso", _silent_iso),
     ),
 )  # fmt: skip

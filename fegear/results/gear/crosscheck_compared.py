@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.shown import shown, shows
 from fegear.results.gear.crosscheck_answer import MeanStiffness
+from fegear.results.gear.crosscheck_cycle import CycleCompared
 from fegear.results.gear.crosscheck_iso import CornellSection, IsoInputs, IsoPair, load_of_stiffness
 from fegear.results.gear.crosscheck_rows import (
     GearComplianceRows,
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.contact.compared.mesh_cycle import MeshCycle
     from fegear.contact.compared.rated_gears import RatedPair
     from fegear.contact.compared.single_contact import AtSingleContact
     from fegear.fem.plane.table import StiffnessTable
@@ -90,14 +92,14 @@ class GearAnswers:
 class PairAnswers:
     """Closed forms of a pair compared with its finite elements; ISO's stiffness or the reason why there is none.
 
-    `mean_stiffness`: of the mesh by finite elements per face width [Pa]; None where no pair is on the path somewhere.
+    `cycle`: mesh stiffness over the mesh cycle; None where no pair is on the path somewhere.
     `outer`: root stress of both gears at their outer points of single pair contact; empty where there are none.
     """
 
     reference: PairReference
     compliance: Mapping[str, ComplianceAnswers]
     iso: Outcome[Stiffness]
-    mean_stiffness: float | None
+    cycle: MeshCycle | None
     outer: tuple[AtSingleContact, ...] = ()
 
 
@@ -157,6 +159,20 @@ class PairCompared:
         return SingleContactRows.of(found, self.check.pair, self.check.gears) if found else None
 
     @property
+    def cycle(self) -> CycleCompared | None:
+        """Mesh stiffness over the mesh cycle; None where there is none."""
+        found, iso = self.answers.cycle, self.answers.iso.value
+        if found is None:
+            return None
+        return CycleCompared(found, None if iso is None else iso.mesh_alpha * found.pair.face_width)
+
+    @property
+    def mean_stiffness(self) -> float | None:
+        """Of the mesh by finite elements per face width [Pa]; None where there is none."""
+        cycle = self.answers.cycle
+        return None if cycle is None else cycle.fe.mean / cycle.pair.face_width
+
+    @property
     @shows("N/(mm.um)", "maximum stiffness of one tooth pair, FE")
     def single_stiffness_fe(self) -> float:
         """[Pa]."""
@@ -212,7 +228,7 @@ class Everything:
         pairs = {name: PairCompared(check, data.pairs[name]) for name, check in asked.pairs.items()}
         iso = {name: IsoPair(wanted, data.iso[name]) for name, wanted in asked.iso.items()}
         mean = {
-            name: MeanStiffness.of(pairs[name].answers.iso.value, pairs[name].answers.mean_stiffness)
+            name: MeanStiffness.of(pairs[name].answers.iso.value, pairs[name].mean_stiffness)
             if name in pairs else MeanStiffness.of(one.stiffness, None, one.face_width)
             for name, one in iso.items()
         }  # fmt: skip
@@ -221,6 +237,11 @@ class Everything:
             for name, gear in asked.gears.items()
         }
         return cls(gears, pairs, iso, mean)
+
+    @property
+    def cycles(self) -> dict[str, CycleCompared]:
+        """Mesh stiffness of the pairs over the mesh cycle, where there is one."""
+        return {name: one.cycle for name, one in self.pairs.items() if one.cycle is not None}
 
     @property
     def sources(self) -> tuple[FormulaSource, ...]:
