@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, get_type_hints
 
-from pydantic import Field, create_model
+from pydantic import Field, ValidationInfo, create_model, field_validator
 
 from fegear.base.effects import (
     EFFECTS,
@@ -30,6 +30,15 @@ class _Switches(Part):
         description="Initial state of all effects: `none`, or those required by the gears and pairs described (as in "
         "Python). Effects set here take precedence.",
     )
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _as_others(cls, value: object, info: ValidationInfo) -> object:
+        """An effect with words for its kinds takes true and false as all the others do."""
+        effect = EFFECTS.get(info.field_name or "")
+        if effect is None or isinstance(effect.off, bool) or not isinstance(value, bool):
+            return value
+        return effect.on if value else effect.off
 
     def is_on(self, name: str) -> bool:
         """Whether an effect is switched on."""

@@ -109,7 +109,8 @@ def crosscheck(
     -------
     Results
         Tables ``crosscheck_root_stress_<gear>``, ``crosscheck_compliance_<gear>``, ``crosscheck_compliance_<pair>``,
-        ``crosscheck_mesh_stiffness_<pair>``, ``crosscheck_iso_6336_<pair>``; values ``<gear>.root_stress.<formula>.highest_ratio``, ...
+        ``crosscheck_mesh_stiffness_<pair>``, ``crosscheck_iso_6336_<pair>``; values
+        ``<gear>.root_stress.<formula>.highest_ratio``, ...
     """
     if not isinstance(of, Pair):
         for key, given in (("torque", torque), ("load", load)):

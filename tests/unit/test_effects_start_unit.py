@@ -113,3 +113,10 @@ def test_which_effects_teeth_gaps_motions_and_widths_have():
     assert {*WIDE_EFFECTS, *PLANE_EFFECTS} == {*AT_REST, *GAPS}
     assert {*WIDE_EFFECTS} & {*PLANE_EFFECTS} >= TEETH | {"relief", "spacing_errors"}
     assert "misalignment" not in PLANE_EFFECTS
+
+
+@pytest.mark.parametrize(("given", "taken"), [(False, "none"), (True, "load-dependent"), ("linear", "linear")])
+def test_an_effect_with_words_takes_true_and_false_too(given, taken):
+    assert EffectsPart.model_validate({"hertz": given}).hertz == taken
+    with pytest.raises(ValueError, match="load-dependent"):
+        EffectsPart.model_validate({"hertz": 0})

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import fegear
+from fegear.contact.plane.base_pitch import secant_stiffness
+from fegear.contact.plane.transmission_error import contact_changes
 
 FORCE = 60.0 / (0.025 * math.cos(math.radians(20.0)))
 
@@ -122,3 +124,22 @@ def test_a_case_with_several_torques_says_that_one_is_followed():
     case["pair"]["I"] |= {"torques": ["80 N*m"]}
     one = fegear.run(case, progress=False)
     assert not any("the nominal of" in note for note in one.notes())
+
+
+def test_a_revolution_has_both_sides_of_every_change_of_contact():
+    """Its stiffness drops where that of the teeth does, not over a line between two rows beside the change."""
+    found = fegear.run(case_of(corner_contact=True), progress=False)
+    (loaded,) = (outcome.data for outcome in found.outcomes.values() if hasattr(outcome.data, "engagement"))
+    e, pitch = loaded.engagement, loaded.pair.base_pitch
+    changes = contact_changes(e, FORCE)
+    assert changes.size
+    x = np.concatenate([changes + side * 1e-5 * pitch for side in (-1.0, 1.0)])
+    truth = secant_stiffness(e.solve(e.grid(np.sort(x)), [FORCE]))[:, 0]
+    angle = np.sort(x) / loaded.pair.driver.base_radius
+    np.testing.assert_allclose(
+        found.mesh_stiffness(angle, kind="secant"), truth, rtol=0.05
+    )  # 0.16 where a row cuts the jump
+    table = found.tables["mesh_stiffness_revolution_I"]
+    rows, stiffness = table.column("x").si, table.column("mesh_stiffness").si
+    first, last = (float(stiffness[np.abs(rows - one) < 3e-7 * pitch].min()) for one in (changes[0], changes[-1]))
+    assert min(first, last) < 0.9 * stiffness.max()  # one pair less

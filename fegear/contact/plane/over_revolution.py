@@ -13,10 +13,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fegear.base.arrays import Array, Index
+from fegear.base.arrays import Array, Index, distinct
 from fegear.base.errors import InputError
 from fegear.contact.error_over_pitch import secant_start
-from fegear.contact.plane.base_pitch import roll_positions, secant_stiffness
+from fegear.contact.plane.base_pitch import BESIDE, roll_positions, secant_stiffness
 from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import contact_changes
 from fegear.fem.alike_teeth import together
@@ -26,9 +26,11 @@ MOST_PITCHES = 20_000
 #: Part of an odd tooth's estimated error that ordinary teeth do not share: a shallow crack's loss of stiffness was off
 #: by 0.19 of the error of the stiffness (random cracks).
 _OWN_PART = 0.2
-#: How far beside a change of contact curves are looked at, farther than errors of compliances move it, and how near to
-#: each other changes are the same one [base pitches].
-_BESIDE_CHANGE, _SAME = 2e-4, 5e-5
+#: How far beside a change of contact curves are looked at: at the jump, farther than errors of compliances move it, and
+#: where the stiffness of a pair that has just come to bear still rises steeply [base pitches].
+_BESIDE_CHANGES = (BESIDE, 2e-4, 2e-3)
+#: How near to each other rows are the same one, but for both sides of a jump, and changes of contact [base pitches].
+_SAME, _SAME_CHANGE = 5e-5, 4.0 * BESIDE
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,15 @@ class OverRevolution:
 
     @cached_property
     def stiffness_error(self) -> Array:
-        """Shape (C, P) [N/m]."""
-        return self.shift(lambda one: one.stiffness)
+        """Shape (C, P) [N/m]; where compliances that are off move a jump past a position, that around it."""
+        error = self.shift(lambda one: one.stiffness)
+        passed = np.any(
+            [((one.loads > 0.0) != (self.loads > 0.0)).any(axis=1) for one in self.others or (self,)], axis=0
+        )
+        for cycle in np.flatnonzero(passed.any(axis=1) & ~passed.all(axis=1)):
+            at = passed[cycle]
+            error[cycle, at] = np.interp(self.x[at], self.x[~at], error[cycle, ~at])
+        return error
 
     @property
     def along(self) -> Array:
@@ -259,11 +268,14 @@ def _with_changes(engagement: Engagement, load: float, x: Array, count: int) -> 
     """
     pitch = engagement.pair.base_pitch
     alike = together(engagement.teeth_in(engagement.grid(x).contacts.number, cycle) for cycle in range(count))
-    changes = [contact_changes(engagement, load, int(pitches[0])) for pitches in alike]
-    beside = np.concatenate([one + side * _BESIDE_CHANGE * pitch for one in changes for side in (-1.0, 1.0)])
-    found = np.unique(np.concatenate([x, beside[(beside > x[0]) & (beside < x[-1])]]))
-    # base pitches without an odd tooth at a change have the same one; sides of jumps are nearer than any of these
-    near = np.isin(found, x) | np.append(True, np.diff(found) > _SAME * pitch)
+    each = [contact_changes(engagement, load, int(pitches[0])) for pitches in alike]
+    # base pitches without an odd tooth at a change have the same one
+    changes = distinct(x[[0, -1]], *each, within=_SAME_CHANGE)[1:-1]
+    sides = [changes[:, None] + pitch * away * np.array([-1.0, 1.0]) for away in _BESIDE_CHANGES]
+    at_jumps, *beside = (one[(one > x[0]) & (one < x[-1])] for one in sides)
+    rows = np.union1d(x, at_jumps)
+    found = np.unique(np.concatenate([rows, *beside]))
+    near = np.isin(found, rows) | np.append(True, np.diff(found) > _SAME * pitch)
     return found[near]
 
 
