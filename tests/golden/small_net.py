@@ -7,6 +7,8 @@ one is part of the ordinary tests and notices a wrong line of code: of every col
 number of numbers, the smallest, largest and mean, and a sum in which every number has a weight of its own, so that none
 changes place unnoticed; of notes and answer the numbers in them, and how many notes there are of each class; in which
 order values, tables and figures come; of a figure how many texts it has, of the report how many parts of each kind.
+Beside the numbers of figures those of their looks would drown: widths, sizes, limits and choices of axes and curves
+have a sum of their own in ``small_net_looks.json``, and so have choices of tables, settings and the answer's figure.
 Words do not count, nor differences below a millionth of the largest number, in errors of 0.1 %, in sentences of one in
 the last digit printed. Cases of the folder ``small`` take each key of a subject.
 """
@@ -14,9 +16,11 @@ the last digit printed. Cases of the folder ``small`` take each key of a subject
 import argparse
 import dataclasses
 import json
+import math
 import re
 import sys
 import tomllib
+import zlib
 from collections import Counter
 from pathlib import Path
 
@@ -28,6 +32,9 @@ from fegear.output.report.run import run_page
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
+LOOKS = KEPT.with_stem("small_net_looks")
+#: Fields of figures whose texts are choices, not words.
+CHOICES = {"axis", "dash", "role", "symbol", "unit"}
 COARSE = {"accuracy.tolerance": 0.1}
 ROUGH = {"accuracy.tolerance": 0.3, "load_distribution.positions": 4, "load_distribution.panels": 4}
 TRAIN = [
@@ -229,6 +236,44 @@ def of_figure(figure):
     return kept_of(np.concatenate(parts)) if parts else []
 
 
+def _look(thing, into):
+    """Every choice of a description besides its arrays, large numbers by their logarithm."""
+    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+        for field in dataclasses.fields(thing):
+            value = getattr(thing, field.name)
+            if field.name in CHOICES:
+                into.append(zlib.crc32(str(value).encode()) % 1009 / 1009)
+            else:
+                _look(value, into)
+    elif isinstance(thing, dict):
+        _look(list(thing.values()), into)
+    elif isinstance(thing, (int, float)):
+        into.append(math.copysign(math.log1p(abs(thing)), thing) if math.isfinite(thing) else math.nan)
+    elif isinstance(thing, (list, tuple)):
+        for one in thing:
+            _look(one, into)
+
+
+def _of_choices(thing):
+    chosen = []
+    _look(thing, chosen)
+    return kept_of(np.array(chosen, dtype=float))
+
+
+def looks_of(found):
+    """What is kept of how a run shows its numbers, by name."""
+    kept = {f"figure {figure.name}": _of_choices(figure.made()) for figure in found.figures}
+    kept["tables"] = _of_choices([(table.printed, table.matlab) for table in found.tables])
+    kept["settings"] = _of_choices([dict(one.settings) for one in found.outcomes.values()])
+    figures, tables = [one.name for one in found.figures], [one.name for one in found.tables]
+    said = found.answer
+    kept["figure and tables of the answer"] = [
+        figures.index(said.figure) if said.figure in figures else -1, *map(tables.index, said.tables),
+        *(len(one.columns) for one in said.overviews),
+    ]  # fmt: skip
+    return kept
+
+
 def of_run(found):
     """What is kept of a run, by name."""
     kept = {}
@@ -301,9 +346,18 @@ def computed(name, cache=None):
     return fegear.run(path_of(case), changes, progress=False, cache=cache or SolutionCache())
 
 
-def kept():
+def kept(path=KEPT):
     """All that is kept, by run."""
-    return json.loads(KEPT.read_text("utf-8")) if KEPT.exists() else {}
+    return json.loads(path.read_text("utf-8")) if path.exists() else {}
+
+
+def keep(path, known):
+    """Write what is kept: a line for each name."""
+    runs = []
+    for name in sorted(set(RUNS) & set(known)):
+        lines = [f"  {json.dumps(key)}: {json.dumps(one)}" for key, one in known[name].items()]
+        runs.append(f" {json.dumps(name)}: {{\n" + ",\n".join(lines) + "\n }")
+    path.write_text("{\n" + ",\n".join(runs) + "\n}\n", encoding="utf-8")
 
 
 def differences(old, new):
@@ -344,19 +398,18 @@ def main():
     wishes.add_argument("runs", nargs="*", metavar="RUN")
     wishes.add_argument("--accept", action="store_true", help="keep what is found")
     asked = wishes.parse_args()
-    known, changed = kept(), 0
+    known, looks, changed = kept(), kept(LOOKS), 0
     for name in asked.runs or RUNS:
-        new = of_run(computed(name))
-        said = differences(known.get(name, {}), new)
+        found = computed(name)
+        new, seen = of_run(found), looks_of(found)
+        said = differences(known.get(name, {}), new) + differences(looks.get(name, {}), seen)
         changed += len(said)
-        print(f"{name}: {len(said)} differences", *said[:20], sep="\n  ")
-        known[name] = new if asked.accept else known.get(name, {})
+        print(f"{name}: {len(said)} differences", *said[:20], sep="\n  ", flush=True)
+        if asked.accept:
+            known[name], looks[name] = new, seen
     if asked.accept:
-        runs = []
-        for name in sorted(RUNS):
-            lines = [f"  {json.dumps(key)}: {json.dumps(one)}" for key, one in known[name].items()]
-            runs.append(f" {json.dumps(name)}: {{\n" + ",\n".join(lines) + "\n }")
-        KEPT.write_text("{\n" + ",\n".join(runs) + "\n}\n", encoding="utf-8")
+        keep(KEPT, known)
+        keep(LOOKS, looks)
     elif changed:
         sys.exit(1)
 

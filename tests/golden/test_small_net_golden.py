@@ -569,6 +569,7 @@ def test_a_cheap_run_gives_what_is_kept_and_its_columns_agree(name, monkeypatch)
         if kind and OF_TABLES[kind]:
             OF_TABLES[kind](columns(table), table.name, found)
     assert small_net.differences(small_net.kept()[name], small_net.of_run(found)) == []
+    assert small_net.differences(small_net.kept(small_net.LOOKS)[name], small_net.looks_of(found)) == []
     check_first_screen(found)
 
 
