@@ -1,0 +1,212 @@
+"""What results say or take in cases that are seldom: each by a number or a sentence that follows without them."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.results.gear.crosscheck_answer import said_of_helical, said_of_single_contact, said_of_stiffness
+from fegear.results.gear.crosscheck_iso import IsoPair
+from fegear.results.planetary.compound_set import _answer
+from fegear.results.relief.relief_over_face_sheet import _figure, _grind
+from fegear.results.relief.tolerance_data import Sampled
+from fegear.results.shafts import gearbox_overview
+from fegear.results.shafts.gearbox_data import BearingAtGlance, _advised, _changed_to
+from fegear.results.sizing import estimated
+from fegear.results.sizing.sizing_sheet import _failed
+from fegear.results.train.torque_ripple import MeshSwing
+from fegear.shafts.bearing_seat import BearingSeat
+from fegear.shafts.larger_bearing import BearingChange, LargerBearing
+
+
+# ---- shafts ----------------------------------------------------------------------------------------------------------
+def bearing(name, d, outer, width, revolutions, count=1):
+    return LargerBearing(name, d * 1e-3, outer * 1e-3, width * 1e-3, d == 25, revolutions, count)
+
+
+def test_a_bearing_to_change_to_is_said_with_what_differs_from_the_present_6205():
+    """6205: 25 x 52 x 15 mm; it lasts 1000 h or 60 million revolutions, one of 90 million 1500 h."""
+    seat = BearingSeat(length=16e-3)
+    now = BearingAtGlance("A", "s", 1.0, 0.0, 60e6, 1000.0 * 3600.0, 0.9, designation="6205", seat=seat)
+    assert _changed_to(now, bearing("6305", 25, 62, 17, 90e6)) == (
+        "6305 instead of 6205 (outside diameter 62 mm, width 17 mm, seat longer than 16 mm): 1500 h by its estimated C"
+    )
+    assert _changed_to(now, bearing("same", 25, 52, 15, 60e6)) == "same instead of 6205: 1000 h by its estimated C"
+    assert _changed_to(now, bearing("wide", 30, 52, 16, 30e6)) == (
+        "wide instead of 6205 (bore 30 mm, width 16 mm): 500 h by its estimated C"
+    )
+    longest, thicker = bearing("30205", 25, 52, 15, 45e6, 2), bearing("6206", 30, 62, 16, 120e6)
+    none = "no tabulated bearing that fits this seat lasts"
+    near = " (longest life 750 h with two 30205 face to face)"
+    thick = "; on a thicker shaft 6206 (bore 30 mm, outside diameter 62 mm, width 16 mm): 2000 h"
+    for change, said in (
+        (BearingChange(None, None, None), none),
+        (BearingChange(None, longest, None), none + near),
+        (BearingChange(None, None, thicker), none + thick),
+        (BearingChange(None, longest, thicker), none + near + thick),
+        (BearingChange(bearing("same", 25, 52, 15, 60e6), longest, thicker),
+         "same instead of 6205: 1000 h by its estimated C"),
+    ):  # fmt: skip
+        assert _advised(now, change) == said
+
+
+@pytest.mark.parametrize("known", [0, 1, 2])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_shafts_turn_as_one_pair_s_speed_says_before_it_and_behind_it(monkeypatch, known, sense):
+    """Two external stages and one internal one: 100 rad/s, -50, 25 and 10 where the first shaft turns forward."""
+
+    def mesh(k, driver, driven, side):
+        gears = SimpleNamespace(driver=SimpleNamespace(teeth=driver), driven=SimpleNamespace(teeth=driven), side=side)
+        of = sense * (-1 if k == 1 else 1)
+        return SimpleNamespace(pair=f"p{k}", shafts=(f"s{k}", f"s{k + 1}"), found=gears, sense=of)
+
+    meshes = (mesh(0, 20, 40, 1), mesh(1, 18, 36, 1), mesh(2, 20, 50, -1))
+    spins = [100.0, 50.0, 25.0]
+    monkeypatch.setattr(gearbox_overview, "mesh_places", lambda _scene: meshes)
+    monkeypatch.setattr(gearbox_overview, "pair_speed", lambda _scene, pair: spins[known] * (pair == f"p{known}"))
+    scene = SimpleNamespace(case=SimpleNamespace(shaft=dict.fromkeys(["s0", "s1", "s2", "s3", "alone"])))
+    found = gearbox_overview._speeds(scene)
+    assert [found[f"s{k}"] for k in range(4)] == pytest.approx([sense * one for one in (100.0, -50.0, 25.0, 10.0)])
+    assert math.isnan(found["alone"])
+
+
+# ---- crosscheck ------------------------------------------------------------------------------------------------------
+def test_a_pair_without_finite_elements_has_the_mesh_stiffness_over_its_width():
+    """20 N/(mm um) over 15 mm are 300 N/um; a ratio goes before it."""
+
+    def said(**mean):
+        one = SimpleNamespace(**{"iso": None, "fe": None, "face_width": None, "ratio_to_fe": None} | mean)
+        return said_of_stiffness(SimpleNamespace(data=SimpleNamespace(pairs={}), key="I", one=one))
+
+    (alone,) = said(iso=20e9, face_width=15e-3)
+    assert "of ISO 6336-1 20 N/(mm µm), over the face width 300 N/µm" in alone
+    assert said(iso=20e9) == said(face_width=15e-3) == []
+    (both,) = said(iso=20e9, fe=16e9, face_width=15e-3, ratio_to_fe=1.25)
+    assert "c_gamma_alpha 20 / 16 N/(mm µm)" in both
+    assert both.endswith("= 1.25.")
+
+
+def test_of_virtual_teeth_those_that_have_a_ratio_are_said():
+    def said(*ratios, pairs=()):
+        rows = [
+            SimpleNamespace(role=role, ratio_to_fe=one) for role, one in zip(("driver", "driven"), ratios, strict=True)
+        ]
+        return said_of_helical(
+            SimpleNamespace(data=SimpleNamespace(pairs=pairs), key="I", one=SimpleNamespace(rows=rows))
+        )
+
+    assert said(math.nan, math.nan) == []
+    assert said(1.1, 1.2, pairs=("I",)) == []
+    for ratios, wanted in (((1.1, math.nan), "FE driver 1.10"), ((1.1, 1.234), "FE driver 1.10, driven 1.23")):
+        assert said(*ratios)[0].rstrip(".").endswith(wanted)
+
+
+def test_formulas_at_single_contact_are_said_once_for_each_gear():
+    def of_gear(role):
+        ratio = [1.05, math.nan] if role == "driver" else [math.nan, math.nan]
+        return SimpleNamespace(formula=np.array(["iso-6336-3", "agma-908"]), ratio_to_fe=ratio, radius=[30e-3])
+
+    def said(rows):
+        one = SimpleNamespace(single_contact=rows, check=SimpleNamespace(gears=("a", "b")))
+        return said_of_single_contact(SimpleNamespace(key="I", one=one))
+
+    assert said(None) == []
+    sentences = said(SimpleNamespace(of_gear=of_gear))
+    assert len(sentences) == 1  # nothing is known of gear b
+    assert sentences[0].startswith("Pair I, a loaded at its outer point of single pair contact (HPSTC, diameter 60 mm)")
+    assert sentences[0].endswith("1.05.")
+
+
+def test_a_pair_without_helical_teeth_has_no_stiffness_of_them():
+    asked, none = SimpleNamespace(helical=None), SimpleNamespace(stiffness=None)
+    found = IsoPair(asked, none)
+    assert (found.stiffness, found.single, found.face_width, found.under) == (None, None, None, "")
+    helical = SimpleNamespace(pair=SimpleNamespace(face_width=17e-3), applied_load=2e5, load_factor=1.25)
+    single = SimpleNamespace(value=SimpleNamespace(single=14e9))
+    found = IsoPair(SimpleNamespace(helical=helical), SimpleNamespace(stiffness=single))
+    assert (found.single, found.face_width) == (14e9, 17e-3)
+    assert "200 N/mm" in found.under
+
+
+# ---- sets, reliefs, trains -------------------------------------------------------------------------------------------
+def test_a_set_without_a_drive_has_its_smallest_and_largest_ratio():
+    def answer(*ratios):
+        rows = [SimpleNamespace(ratio=one, remark=said) for one, said in ratios]
+        asked = SimpleNamespace(drive=None)
+        return list(
+            _answer(SimpleNamespace(name="P", data=SimpleNamespace(asked=asked, data=SimpleNamespace(ratios=rows))))
+        )
+
+    (said,) = answer((-4.0, ""), (1.5, ""), (3.0, ""), (99.0, "turns freely"))
+    assert "ratios from 1.5 to 4 (absolute values)" in said
+    assert answer((99.0, "turns freely")) == []
+
+
+@pytest.mark.parametrize(
+    ("ends", "figure"), [((120.0,), "relief_candidates_I"), ((40.0, 120.0), "relief_over_torque_I")]
+)
+def test_reliefs_for_several_torques_are_drawn_over_them(ends, figure):
+    seen = SimpleNamespace(name="I", data=SimpleNamespace(ends=ends, shapes=()))
+    assert _figure(seen) == figure
+    assert list(_grind(seen)) == []  # nothing was asked to be ground
+
+
+def test_a_force_that_swings_below_zero_is_lost_contact():
+    swing = MeshSwing("m", 20.0, -30.0, "here", 40.0)
+    assert (swing.reduction, swing.share, swing.lost) == (30.0, 2.0, True)
+    assert not MeshSwing("m", 30.0, -30.0, "here", 40.0).lost
+    still = MeshSwing("m", 0.0, -30.0, "here", 40.0)
+    assert (still.share, still.lost) == (None, False)
+
+
+def test_equal_draws_are_one_class_about_their_value_and_others_fill_classes_of_one_width():
+    for value in (2.0, -2.0):
+        middles, shares = Sampled("te_peak_to_peak", "free", np.array([value, np.nan, value]), 1.0, None).histogram
+        half = 0.5 * (middles[1] - middles[0])
+        assert [middles[0] - half, middles[-1] + half] == pytest.approx([value - 1e-3, value + 1e-3])
+        assert sorted(shares)[-2:] == [0.0, 1.0]
+        assert abs(middles[np.argmax(shares)] - value) <= 1.001 * half
+    values = np.random.default_rng(3).normal(5.0, 1.0, 400)
+    middles, shares = Sampled("te_peak_to_peak", "free", values, 1.0, None).histogram
+    assert shares.sum() == pytest.approx(1.0)
+    assert middles @ shares == pytest.approx(values.mean(), abs=0.05)
+    step = np.diff(middles)
+    assert np.ptp(step) < 1e-9
+    # Freedman and Diaconis: twice the range of the middle half over the cube root of the number, or a little less
+    width = 2.0 * np.subtract(*np.quantile(values, [0.75, 0.25])) / 400 ** (1.0 / 3.0)
+    assert 0.9 * width < step[0] <= width
+    assert middles[0] - 0.5 * step[0] == pytest.approx(values.min())
+    assert middles[-1] + 0.5 * step[0] == pytest.approx(values.max())
+
+
+# ---- sizing ----------------------------------------------------------------------------------------------------------
+def test_a_large_front_shows_its_first_by_the_criteria_and_others_evenly_along_it():
+    count, first = 5 * estimated.MOST_SHOWN, 7
+    place = np.random.default_rng(1).permutation(count)
+    costs = np.column_stack([place, count - place]).astype(float)  # all of them on the front
+    behind = costs + 2.0 * count
+    rows = np.arange(10, 10 + 2 * count)
+    every = np.full((10 + 2 * count, 2), np.inf)
+    every[rows] = np.concatenate([costs, behind])
+    shown = estimated.shown_rows(every, rows, first, compared=False)
+    found = every[shown, 0]
+    assert len(shown) == estimated.MOST_SHOWN
+    assert (np.diff(found) > 0.0).all()
+    assert found[:first].tolist() == list(range(first))
+    assert found[-1] == count - 1
+    steps = np.diff(found[first:])
+    assert np.ptp(steps) <= 1.0
+    small = estimated.shown_rows(every, rows[:5], first, compared=False)
+    assert set(small) == set(rows[:5])
+
+
+def test_who_has_no_transmission_error_is_said_by_number_or_as_the_present_design():
+    def said(*failed):
+        return [str(one) for one in _failed(SimpleNamespace(data=SimpleNamespace(failed=failed)))]
+
+    assert said() == []
+    assert said((3, "no room.")) == ["No transmission error by FE for variant 3: no room."]
+    assert said((0, "no room."), (4, "other.")) == [
+        "No transmission error by FE for present design (and 1 more): no room."
+    ]
