@@ -1,4 +1,4 @@
-"""What a note is said of begins at its limit: just inside it is not said, just beyond it is, whichever gear is there."""
+"""Notes begin at their limits: just inside one nothing is said, just beyond it is, whichever gear is there."""
 
 import math
 from types import SimpleNamespace
