@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     from fegear.shafts.bearing import Bearing
     from fegear.shafts.catalogue_bearing import CatalogueBearing
 
+#: Keys of `catalogue` that replace dimensions of a designation.
+ENVELOPE = frozenset(("kind", "bore", "outside_diameter", "width", "contact_angle"))
+
 Torque = Annotated[float, quantity("torque")]
 
 
@@ -56,7 +59,8 @@ else:
     _LifeKeys = keys_of(
         LifeRating,
         otherwise={
-            "dynamic_rating": "that of `catalogue`, otherwise estimated from the dimensions",
+            "dynamic_rating": "that of `catalogue`, then of the designation (SKF General Catalogue), otherwise "
+            "estimated from the dimensions",
             "kind": "that of the designation, of `catalogue` or `elements`; ball otherwise",
             **dict.fromkeys(
                 ("radial_factor", "axial_factor", "limit"),
@@ -70,7 +74,8 @@ else:
         otherwise={
             **dict.fromkeys(("kind", "bore", "outside_diameter", "width"), "that of the designation"),
             "dynamic_rating": "that of `life`, if specified",
-            "contact_angle": "that of the designation, 14 deg for other tapered bearings, 0 for others",
+            "contact_angle": "that of the designation; 14 deg for other tapered, 10.5 deg for other spherical "
+            "bearings, 0 for others",
         },
     )
 
@@ -245,8 +250,8 @@ class BearingPart(Part):
     elements: RollingElementsPart | None = Field(default=None, description="Rolling elements, for nonlinear stiffness.")
     designation: str | None = Field(
         default=None,
-        description="Designation, such as 6206, 30206 or NU206: rolling elements are estimated from its dimensions "
-        "(ISO 15, ISO 355) and the ratings of `catalogue`. NUP bearings locate the shaft axially.",
+        description="Designation, such as 6206, 7206-B, 30206, 22206 or NU206: rolling elements are estimated from its "
+        "dimensions (ISO 15, ISO 355) and the ratings of `catalogue`. NUP bearings locate the shaft axially.",
     )
     catalogue: CataloguePart | None = Field(
         default=None,
@@ -261,11 +266,13 @@ class BearingPart(Part):
     permissible_tilt: Angle | None = Field(
         default=None,
         description="Permissible tilt of the inner ring in the outer one (catalogue). Default: guide values by kind, "
-        "0.003 rad for deep groove ball, 0.0012 rad for cylindrical and tapered roller bearings.",
+        "0.003 rad for deep groove ball, 0.0012 rad for cylindrical and tapered, 0.045 rad for spherical roller "
+        "bearings.",
     )
     life: BearingLifePart | None = Field(
         default=None,
-        description="Catalogue ratings, for bearing life to ISO 281; `{}` for an estimate from the dimensions.",
+        description="Catalogue ratings, for bearing life to ISO 281; `{}` for the C that one maker prints of the "
+        "designation, otherwise an estimate from the dimensions.",
     )
 
     @model_validator(mode="after")
@@ -322,7 +329,7 @@ class BearingPart(Part):
             return None
         printed, rated = self.printed, life.dynamic_rating
         if printed is not None and "dynamic_rating" not in life.given:
-            rated = printed.dynamic_rating or printed.estimated_rating
+            rated = printed.dynamic_rating or self.catalogue_rating or printed.estimated_rating
         known = printed.inside if printed else self.elements
         kind = life.kind if "kind" in life.given else known.kind if known else "ball"
         factors = {
@@ -331,8 +338,18 @@ class BearingPart(Part):
         axial = None
         if known is not None and not factors:
             size = known.diameter if isinstance(known, RollingElementsPart) else known.element_diameter
-            axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2, self.ribs)
+            rows = printed.inside.rows if printed else 1
+            axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2, self.ribs, rows)
         return LifeRating(rated, kind, **factors, axial=axial)
+
+    @property
+    def catalogue_rating(self) -> float | None:
+        """C that a maker prints of its designation [N]; None where none is known, or dimensions are given."""
+        from fegear.shafts.designations import catalogue_rating
+
+        if self.designation is None or (self.catalogue is not None and self.catalogue.given & ENVELOPE):
+            return None
+        return catalogue_rating(self.designation)
 
     @property
     def ribs(self) -> tuple[float, float] | None:
@@ -365,8 +382,8 @@ class BearingPart(Part):
         said = self.catalogue or CataloguePart()
         kind = said.kind if "kind" in said.given else known.kind if known else "ball"
         angle = said.contact_angle
-        if angle is None and known is not None and kind == known.kind == "tapered":
-            angle = known.contact_angle
+        if angle is None and known is not None and kind == known.kind:
+            angle = known.contact_angle or None
         rated = said.dynamic_rating or (self.life.dynamic_rating if self.life else None)
         bore, outside, width = (
             getattr(said, key) or (getattr(known, key) if known else 0.0)

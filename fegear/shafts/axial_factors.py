@@ -1,9 +1,12 @@
-"""X, Y and e of a bearing of one row from what rolls in it: ISO 281:2007, Tables 3 and 7.
+"""X, Y and e of a bearing from what rolls in it: ISO 281:2007, Tables 3 and 7.
 
 Of balls they follow from the contact angle and, up to 15 degrees, from F_a/(Z D_w^2) in N/mm^2, which is f_0 F_a/C_0 of
 a catalogue; the rows are round numbers of pounds per square inch. Between rows and between angles the factors are
 interpolated; below the first and above the last row they stay. Each row has X + e Y = 1 within its digits, so that P
 has no step where F_a = e F_r.
+
+Rollers in two rows, of spherical roller bearings and of two tapered ones side by side, carry axial force of any size:
+P = F_r + 0.45 cot(alpha) F_a up to e = 1.5 tan(alpha), 0.67 F_r + 0.67 cot(alpha) F_a above.
 
 Cylindrical roller bearings carry axial force on ribs, which ISO 281 does not rate: catalogues print P = 0.92 F_r + Y
 F_a above e, with e = 0.2, Y = 0.6 for the series 2 and 3 and e = 0.3, Y = 0.4 for the wide ones, 22 and 23.
@@ -42,6 +45,8 @@ _LARGE = {
 LEAST_LIMIT = _SMALL[5.0][1][0]
 #: X of rollers at a contact angle; Y = 0.4 cot(alpha), e = 1.5 tan(alpha).
 _ROLLERS = 0.4
+#: Y of two rows of rollers over cot(alpha) up to e, and X and Y over cot(alpha) above.
+_TWO_ROWS_BELOW, _TWO_ROWS_ABOVE = 0.45, 0.67
 #: X of rollers between ribs, and Y and e of narrow and of wide series.
 _RIBBED, _NARROW, _WIDE = 0.92, (0.6, 0.2), (0.4, 0.3)
 #: Axial over radial force that ribs should carry at most: guide value of makers, not verified against a printed source.
@@ -75,12 +80,29 @@ class AxialFactors:
         Z D_w^2 of its balls [m^2].
     ribs : tuple of float, optional
         Y and e of a cylindrical roller bearing whose ribs carry axial force.
+    rows : int
+        Of rollers at a contact angle: 1 or 2.
     """
 
     balls: bool
     angle: float
     area: float
     ribs: tuple[float, float] | None = None
+    rows: int = 1
+
+    def equivalent_load(self, radial: float, axial: float) -> float:
+        """P [N].
+
+        Parameters
+        ----------
+        radial, axial : float
+            Forces, not negative [N].
+        """
+        x, y, e = self.at(axial)
+        if axial > e * radial:
+            return x * radial + y * axial
+        below = _TWO_ROWS_BELOW / math.tan(self.angle) if self.rows > 1 and self.angle else 0.0
+        return radial + below * axial
 
     @property
     def rated(self) -> bool:
@@ -98,7 +120,7 @@ class AxialFactors:
         Returns
         -------
         tuple of float
-            1, 0 and infinity where no force counts but the radial one.
+            1, 0 and infinity where no force counts but the radial one. X and Y are those above e.
         """
         if not self.rated:
             return 1.0, 0.0, math.inf
@@ -106,6 +128,8 @@ class AxialFactors:
             return _RIBBED, *self.ribs
         if not self.balls:
             slope = math.tan(self.angle)
+            if self.rows > 1:
+                return _TWO_ROWS_ABOVE, _TWO_ROWS_ABOVE / slope, 1.5 * slope
             return _ROLLERS, _ROLLERS / slope, 1.5 * slope
         pressure = axial / self.area * 1e-6
         rows: list[tuple[float, ...]] = list(_LARGE.values())

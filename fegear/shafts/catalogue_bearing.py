@@ -13,7 +13,8 @@ changes covers 99 of 100 bearings whose shares are spread evenly over their rang
 
 Shares of cylindrical bearings follow the raceway diameters F_w and E_w, C_0 and C that NTN prints for NU 2, 22, 3, 23
 up to a bore of 45 mm (32 bearings of two designs); those above 45 mm, and ball bearings by C_0 and f_0 of the same
-catalogue, try the estimate: see the tests. Grooves are printed nowhere; what rolls in tapered bearings was not found.
+catalogue, try the estimate: see the tests. Shares of angular contact, tapered and spherical bearings were set by C and
+C_0 that SKF and NSK print. Grooves are printed nowhere; what rolls in tapered and spherical bearings was not found.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from typing import Literal
 
 from fegear.base.errors import RangeError
 from fegear.base.printed import percent
-from fegear.shafts.load_ratings import RATING_FACTOR, dynamic_rating, static_rating
+from fegear.shafts.load_ratings import RATING_FACTOR, dynamic_rating, rating_factor, static_rating
 from fegear.shafts.printed_bearing import Kind, PrintedBearing
 from fegear.shafts.rolling_bearing import RollingBearing
 
@@ -59,25 +60,40 @@ class Shares:
     angle: float = 0.0
 
 
-#: What is assumed, and how far it may be off to either side: bearings of many makers lie within.
-_ASSUMED: dict[Kind, tuple[Shares, Shares]] = {
+#: What is assumed, and how far it may be off to either side: bearings of many makers lie within. Balls with a contact
+#: angle are filled from the side, as rollers are.
+_ASSUMED: dict[Kind | Literal["angular", "steep"], tuple[Shares, Shares]] = {
     "ball": (Shares(math.radians(187.0), 0.605, 0.0, 0.0, 1.05), Shares(math.radians(12.0), 0.05, 0.0, 0.007, 0.15)),
+    "angular": (Shares(0.93, 0.62, 0.0, 0.0, 1.05), Shares(0.07, 0.05, 0.0, 0.007, 0.15)),
     "cylindrical": (Shares(0.83, 0.52, 0.55, 0.0, 1.15), Shares(0.07, 0.05, 0.16, 0.0, 0.15)),
     "tapered": (
         Shares(0.88, 0.45, 0.67, rating_factor=1.15),
         Shares(0.07, 0.1, 0.13, rating_factor=0.0, angle=math.radians(3.0)),
     ),
+    "steep": (
+        Shares(0.88, 0.45, 0.55, rating_factor=1.05),
+        Shares(0.07, 0.1, 0.1, rating_factor=0.0, angle=math.radians(3.0)),
+    ),
+    "spherical": (
+        Shares(0.86, 0.53, 0.38, rating_factor=1.05),
+        Shares(0.07, 0.06, 0.06, rating_factor=0.0, angle=math.radians(2.0)),
+    ),
 }
-#: How far C may be off that follows from the envelope, relative to it: printed bearings lie within (see the tests).
+#: How far C may be off that follows from the envelope, or that another maker prints: bearings of four makers lie within
+#: (see the tests).
 #: Cylindrical ones have two designs of one designation, with rollers of two sizes.
-_RATING_ERROR: dict[Kind, float] = {"ball": 0.17, "cylindrical": 0.3, "tapered": 0.2}
+_RATING_ERROR: dict[Kind, float] = {"ball": 0.19, "cylindrical": 0.34, "tapered": 0.26, "spherical": 0.27}
 #: A rating belongs to another bearing where it is off by more than this share of that error, up or down.
 _BEYOND = 1.5
-#: Contact angle of tapered bearings of which none is given [rad].
-_TAPERED_ANGLE = math.radians(14.0)
+#: Contact angle of tapered and spherical bearings of which none is given [rad].
+_ROLLER_ANGLE = {"tapered": math.radians(14.0), "spherical": math.radians(10.5)}
+#: Contact angle of tapered bearings above which their rollers are shorter (313) [rad].
+_STEEP = math.radians(20.0)
+#: Widths that the section of balls counts at most: in narrow bearings (160) these are smaller.
+_NARROW = 1.16
 #: Elements are no smaller and no larger than these shares of the section, rollers no shorter and no longer than these
 #: of the width: beyond, rings would have no thickness, or rating and envelope are of two bearings.
-_THICKNESS, _LENGTH = (0.3, 0.85), (0.3, 1.0)
+_THICKNESS, _LENGTH, _LENGTH_OF_TWO = (0.3, 0.85), (0.3, 1.0), (0.15, 0.5)
 #: Error over the root of the sum of squares of the changes.
 _COVERING = 1.5
 #: b_m over that of ISO 281 within which C and C_0 can belong to one bearing.
@@ -101,8 +117,9 @@ class CatalogueBearing(PrintedBearing):
         size = f"{made.element_diameter * 1e3:.3g} mm" + (f" x {made.roller_length * 1e3:.3g} mm" if rollers else "")
         whence = {"static_rating": "C_0 and the envelope", "dynamic_rating": "C and the envelope", None: "the envelope"}
         angle = f" at {math.degrees(made.contact_angle):.3g} deg" if made.contact_angle else ""
+        number = f"{'two rows of ' if made.aligning else ''}{made.count} {'rollers' if rollers else 'balls'}"
         return (
-            f"{made.count} {'rollers' if rollers else 'balls'} of {size} on {self._pitch * 1e3:.4g} mm{angle} assumed, "
+            f"{number} of {size} on {self._pitch * 1e3:.4g} mm{angle} assumed, "
             f"estimated from {whence[self._rating]}; error of its radial stiffness {percent(self.error)}, "
             f"at a clearance of {self.clearance * 1e6:.3g} um"
         )
@@ -111,7 +128,7 @@ class CatalogueBearing(PrintedBearing):
     def estimated_rating(self) -> float:
         """C that makers print for such an inside: that of ISO 281 with what b_m is more than its value [N]."""
         made = self.inside
-        return dynamic_rating(made, _ASSUMED[self.kind][0].rating_factor * RATING_FACTOR[made.kind])
+        return dynamic_rating(made, self._assumed[0].rating_factor * rating_factor(made))
 
     @property
     def rating_error(self) -> float:
@@ -145,7 +162,7 @@ class CatalogueBearing(PrintedBearing):
         """The rating that the inside is made to have."""
         if self.static_rating is not None:
             return "static_rating"
-        return "dynamic_rating" if self.dynamic_rating is not None and self.kind != "tapered" else None
+        return "dynamic_rating" if self.dynamic_rating is not None and self.kind not in _ROLLER_ANGLE else None
 
     @property
     def _section(self) -> float:
@@ -157,9 +174,22 @@ class CatalogueBearing(PrintedBearing):
 
     @property
     def given_angle(self) -> float:
-        """Contact angle, assumed for tapered bearings without one [rad]."""
-        assumed = _TAPERED_ANGLE if self.kind == "tapered" else 0.0
-        return assumed if self.contact_angle is None else self.contact_angle
+        """Contact angle, assumed for tapered and spherical bearings without one [rad]."""
+        return _ROLLER_ANGLE.get(self.kind, 0.0) if self.contact_angle is None else self.contact_angle
+
+    @property
+    def _assumed(self) -> tuple[Shares, Shares]:
+        """What is assumed of its inside, and how far that may be off."""
+        if self.kind == "ball" and self.given_angle:
+            return _ASSUMED["angular"]
+        if self.kind == "tapered" and abs(self.given_angle) > _STEEP:
+            return _ASSUMED["steep"]
+        return _ASSUMED[self.kind]
+
+    def _thickness(self, shares: Shares) -> float:
+        """Diameter of an element by its share of the section, which counts no more than a multiple of the width [m]."""
+        most = _NARROW * self.width if self.kind == "ball" else math.inf
+        return shares.thickness * min(self._section, most)
 
     @cached_property
     def inside(self) -> RollingBearing:
@@ -174,14 +204,14 @@ class CatalogueBearing(PrintedBearing):
 
     def estimated(self) -> RollingBearing:
         """The inside, estimated anew."""
-        made = self._with(_ASSUMED[self.kind][0])
+        made = self._with(self._assumed[0])
         self._refuse(made)
         return made
 
     @cached_property
     def error(self) -> float:
         """Estimated relative error of the radial stiffness at a load, without clearance."""
-        assumed, ranges = _ASSUMED[self.kind]
+        assumed, ranges = self._assumed
         nominal = _stiffness(self.inside)
         squares = 0.0
         for name, width in vars(ranges).items():
@@ -208,7 +238,7 @@ class CatalogueBearing(PrintedBearing):
         if count is None:
             # As many as the diameter leaves room for, which the rating makes of their number: settles at once or swings
             # by one, where the smaller number stays.
-            count, found = 0, self._with(shares, self._fitting(shares, shares.thickness * self._section))
+            count, found = 0, self._with(shares, self._fitting(shares, self._thickness(shares)))
             for _ in range(8):
                 fits = self._fitting(shares, found.element_diameter)
                 if fits == found.count or found.count == count:
@@ -219,7 +249,8 @@ class CatalogueBearing(PrintedBearing):
 
     def _fitting(self, shares: Shares, diameter: float) -> int:
         half = math.asin(min(diameter / self._pitch, 0.9))
-        room = 1.0 + 0.5 * shares.filling / half if self.kind == "ball" else shares.filling * math.pi / half
+        eccentric = self.kind == "ball" and not self.given_angle
+        room = 1.0 + 0.5 * shares.filling / half if eccentric else shares.filling * math.pi / half
         return max(3, round(room))
 
     def _ball(self, shares: Shares, count: int) -> RollingBearing:
@@ -235,20 +266,21 @@ class CatalogueBearing(PrintedBearing):
         if self.dynamic_rating is not None:
             factor = shares.rating_factor * RATING_FACTOR["ball"]
             return made(_solved(lambda d: dynamic_rating(made(d), factor), self.dynamic_rating, most))
-        return made(min(shares.thickness * self._section, most))
+        return made(min(self._thickness(shares), most))
 
     def _roller(self, shares: Shares, count: int) -> RollingBearing:
         angle = self.given_angle + shares.angle
         diameter = min(shares.thickness * self._section, 0.999 * self._pitch * math.sin(math.pi / count))
         whole = self.width / math.cos(angle)
         unit = RollingBearing(
-            "roller", count, diameter, self._pitch, angle, roller_length=whole, clearance=self.clearance
-        )
+            "roller", count, diameter, self._pitch, angle, roller_length=whole, clearance=self.clearance,
+            aligning=self.kind == "spherical",
+        )  # fmt: skip
         share = shares.length
         if self.static_rating is not None:
             share = self.static_rating / static_rating(unit)
         elif self.dynamic_rating is not None and self._rating:
-            factor = shares.rating_factor * RATING_FACTOR["roller"]
+            factor = shares.rating_factor * rating_factor(unit)
             share = (self.dynamic_rating / dynamic_rating(unit, factor)) ** (9.0 / 7.0)  # C ~ L^(7/9)
         return replace(unit, roller_length=share * whole)
 
@@ -261,6 +293,8 @@ class CatalogueBearing(PrintedBearing):
             size = f"{made.count} balls of {made.element_diameter * 1e3:.3g} mm"
         else:
             share, (least, most) = made.roller_length * math.cos(made.contact_angle) / self.width, _LENGTH
+            if made.aligning:
+                least, most = _LENGTH_OF_TWO
             across = True
             size = f"{made.count} rollers of {made.element_diameter * 1e3:.3g} mm x {made.roller_length * 1e3:.3g} mm"
         envelope = f"{self.bore * 1e3:.6g} x {self.outside_diameter * 1e3:.6g} x {self.width * 1e3:.6g} mm"

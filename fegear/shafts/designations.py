@@ -1,76 +1,22 @@
 """What a designation says of a bearing: kind, bore d, outside diameter D, width B, contact angle.
 
-Sources: boundary dimensions of ISO 15 (diameter series 0, 2 and 3 with the width series of each type), of ISO 355 with
-its contact angles for tapered roller bearings. B is the width of the inner ring; designations of one dimension series
-share d and D.
-
-Checked row by row against the text of two catalogues. d, D, B: URB, General Catalogue 14/2017 (all of 60, 62, 63, 302,
-303, 322, 323, NU, NJ and NUP; N 22, N 23 and bore number 03 of NU 23, which it does not list, share their dimension
-series with those), NTN, Ball and Roller Bearings (60, 62, 63, NU). Contact angles: e = 1.5 tan(alpha) of every row, as
-printed by NTN, lies within 0.005; the standard's text was not at hand, and other catalogues differ by up to 0.02 in e.
+Dimensions are those of `boundary_dimensions`. Letters behind an angular contact ball bearing are its contact angle: C
+15, AC or A5 25, A 30, B 40 degrees; without any of them 40 degrees are taken.
 """
 
 from __future__ import annotations
 
-import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from fegear.base.errors import InputError
+from fegear.shafts.boundary_dimensions import ANGLE_OF_LETTER, SERIES
 from fegear.shafts.printed_bearing import Kind
+from fegear.shafts.printed_ratings import printed_rating
 
-#: Outside diameters D for bore numbers 00 to 20 by diameter series [mm].
-_OUTSIDE = {
-    0: (26, 28, 32, 35, 42, 47, 55, 62, 68, 75, 80, 90, 95, 100, 110, 115, 125, 130, 140, 145, 150),
-    2: (30, 32, 35, 40, 47, 52, 62, 72, 80, 85, 90, 100, 110, 120, 125, 130, 140, 150, 160, 170, 180),
-    3: (35, 37, 42, 47, 52, 62, 72, 80, 90, 100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200, 215),
-}
-#: Widths B by dimension series (width and diameter series); 0 where the series has none [mm].
-_WIDTHS = {
-    "10": (8, 8, 9, 10, 12, 12, 13, 14, 15, 16, 16, 18, 18, 18, 20, 20, 22, 22, 24, 24, 24),
-    "02": (9, 10, 11, 12, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 28, 30, 32, 34),
-    "03": (11, 12, 13, 14, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 37, 39, 41, 43, 45, 47),
-    "22": (0, 0, 0, 16, 18, 18, 20, 23, 23, 23, 23, 25, 28, 31, 31, 31, 33, 36, 40, 43, 46),
-    "23": (0, 0, 0, 19, 21, 24, 27, 31, 33, 36, 40, 43, 46, 48, 51, 55, 58, 60, 64, 67, 73),
-}
-#: First bore number of a series of rollers: below it none are listed.
-_FIRST_ROLLER = 3
-
-
-def _angle(degrees: int, minutes: int, seconds: int) -> float:
-    return math.radians(degrees + minutes / 60.0 + seconds / 3600.0)
-
-
-#: Contact angles of ISO 355 that tapered bearings of 02, 22, 03 and 23 have; three of 22 have their own.
-_A1, _A2, _A3 = _angle(10, 45, 29), _angle(11, 18, 36), _angle(11, 51, 35)
-_B1, _B2, _B3, _B4, _B5 = (
-    _angle(12, 57, 10), _angle(14, 2, 10), _angle(15, 6, 34), _angle(15, 38, 32), _angle(16, 10, 20)
-)  # fmt: skip
-_SMALL_22 = (_angle(11, 45, 0), _angle(12, 28, 0), _angle(13, 30, 0))
-#: For bore numbers 03 to 20.
-_TAPERED_2 = (_B1, _B1, _B2, _B2, _B2, _B2, _B3, _B4, _B3, _B3, _B3, _B4, _B5, _B4, _B4, _B4, _B4, _B4)
-_TAPERED_22 = (*_SMALL_22, *_TAPERED_2[3:])
-_TAPERED_3 = (_A1, _A2, _A2, _A3, _A3, *(_B1,) * 13)
-
-#: Dimensions that differ by less are one [m].
-_SAME = 1e-6
-
-#: Series by what stands before the bore number: kind, diameter series, dimension series.
-_SERIES: dict[str, tuple[Kind, int, str]] = {
-    "60": ("ball", 0, "10"),
-    "62": ("ball", 2, "02"),
-    "63": ("ball", 3, "03"),
-    "302": ("tapered", 2, "02"),
-    "303": ("tapered", 3, "03"),
-    "322": ("tapered", 2, "22"),
-    "323": ("tapered", 3, "23"),
-    **{
-        f"{letters}{series}": ("cylindrical", diameter, dimension)
-        for letters in ("NU", "NJ", "NUP", "N")
-        for series, diameter, dimension in (("2", 2, "02"), ("3", 3, "03"), ("22", 2, "22"), ("23", 3, "23"))
-    },
-}
+#: Dimensions [m] and contact angles [rad] that differ by less are one.
+_SAME, _SAME_ANGLE = 1e-6, 1e-6
 
 
 @dataclass(frozen=True)
@@ -79,7 +25,7 @@ class Envelope:
 
     Parameters
     ----------
-    kind : {"ball", "cylindrical", "tapered"}
+    kind : {"ball", "cylindrical", "tapered", "spherical"}
     bore, outside_diameter, width : float
         d, D and B [m].
     contact_angle : float
@@ -103,22 +49,27 @@ def _bore(number: int) -> float:
 
 
 def _known() -> dict[str, Envelope]:
-    found = {}
-    for series, (kind, diameter, dimension) in _SERIES.items():
-        for number, outside in enumerate(_OUTSIDE[diameter]):
-            width = _WIDTHS[dimension][number]
-            if not width or (kind != "ball" and number < _FIRST_ROLLER):
-                continue
-            angles = _TAPERED_3 if diameter == 3 else _TAPERED_22 if dimension == "22" else _TAPERED_2
-            angle = angles[number - _FIRST_ROLLER] if kind == "tapered" else 0.0
-            found[f"{series}{number:02d}"] = Envelope(kind, _bore(number) * 1e-3, outside * 1e-3, width * 1e-3, angle)
-    return found
+    return {
+        f"{name}{number:02d}": Envelope(series.kind, _bore(number) * 1e-3, outside, width, angle)
+        for name, series in SERIES.items()
+        for number, (outside, width, angle) in series.sizes().items()
+    }
 
 
 #: All designations, without prefixes and suffixes.
 KNOWN = _known()
-#: Their series, in front of the two digits of the bore.
-_NAMED = frozenset(one[:-2] for one in KNOWN)
+#: Their series as messages name them.
+_TABULATED = (
+    "60, 62, 63, 64, 160, 72, 73, 302, 303, 313, 320, 322, 323, 222, 223 and N, NJ, NU, NUP 2, 3, 22, 23 up to bore "
+    "number 20"
+)
+#: Series that makers have and the table has not: no typos.
+_OTHER_SERIES = frozenset(
+    ("12", "13", "22", "23", "32", "33", "70", "618", "619", "213", "230", "231", "232", "240", "241", "329", "330",
+     "331", "332")
+)  # fmt: skip
+#: Letters of contact angles behind the bore number of angular contact ball bearings, the longer ones first.
+_ANGLE_LETTERS = re.compile(rf"^[\s-]?({'|'.join(sorted(ANGLE_OF_LETTER, key=len, reverse=True))})(?![0-9])")
 #: Letters, digits, then what a maker adds (cage, seals, clearance), set off by a letter, dash, slash or space.
 _FORM = re.compile(r"^(?:(?:SKF|FAG|INA|NSK|NTN|SNR|NACHI|KOYO|TIMKEN)\s+)?([A-Z]{0,3})\s?(\d{3,5})(?=$|[\s\-/.A-Z])")
 
@@ -130,16 +81,22 @@ def plain_designation(designation: str) -> str:
     return f"{form[1]}{form[2]}" if form else plain
 
 
-def designation_of(kind: Kind, bore: float, outside_diameter: float, width: float) -> str:
+def designation_of(kind: Kind, bore: float, outside_diameter: float, width: float, contact_angle: float = 0.0) -> str:
     """The first designation with this envelope; empty where none has it.
 
     Parameters
     ----------
-    kind : {"ball", "cylindrical", "tapered"}
+    kind : {"ball", "cylindrical", "tapered", "spherical"}
     bore, outside_diameter, width : float
         [m].
+    contact_angle : float
+        Of ball bearings, which is part of their designation [rad].
     """
-    found = (name for name, one in KNOWN.items() if one.kind == kind and one.has(bore, outside_diameter, width))
+    found = (
+        name for name, one in KNOWN.items()
+        if one.kind == kind and one.has(bore, outside_diameter, width)
+        and (kind != "ball" or abs(one.contact_angle - abs(contact_angle)) < _SAME_ANGLE)
+    )  # fmt: skip
     return next(found, "")
 
 
@@ -152,22 +109,43 @@ def envelope_of(designation: str) -> Envelope:
         If it is none that is known.
     """
     name = plain_designation(designation)
-    if name in KNOWN:
-        return KNOWN[name]
     form = _FORM.match(designation.strip().upper())
-    swapped = [one for one in KNOWN if sorted(one) == sorted(name)]
-    other = form is not None and not swapped and name[:-2] not in _NAMED and re.fullmatch(r"[1-9][0-9]{3,4}", name)
+    if name in KNOWN:
+        return _at_angle(KNOWN[name], designation.strip().upper()[form.end() :] if form else "")
+    swapped = [one for one in KNOWN if sorted(one) == sorted(name) and name[:-2] not in _OTHER_SERIES]
+    other = form is not None and not swapped and name[:-2] not in SERIES and re.fullmatch(r"[1-9][0-9]{3,4}", name)
     if other:
         raise InputError(
             "designation", f'"{designation}"', f"is of series {name[:-2]}, which is not in the table",
             "set catalogue with kind, bore, outside_diameter and width, and life.dynamic_rating with the C of the "
-            "catalogue; tabulated are series 60, 62, 63, 302, 303, 322, 323 and N, NJ, NU, NUP 2, 3, 22, 23 up to bore "
-            "number 20",
+            f"catalogue; tabulated are series {_TABULATED}",
         )  # fmt: skip
     near = swapped or get_close_matches(name, KNOWN, 1)
     suggestion = f'did you mean "{near[0]}"? ' if near else ""
     raise InputError(
         "designation", f'"{designation}"', "is not a known designation",
-        f"{suggestion}known are series 60, 62, 63, 302, 303, 322, 323 and N, NJ, NU, NUP 2, 3, 22, 23 up to bore "
-        "number 20; for others set catalogue with kind, bore, outside_diameter and width",
+        f"{suggestion}known are series {_TABULATED}; for others set catalogue with kind, bore, outside_diameter and "
+        "width",
     )  # fmt: skip
+
+
+def catalogue_rating(designation: str) -> float | None:
+    """C that one maker prints of a designation [N]; None where none is known.
+
+    Parameters
+    ----------
+    designation : str
+        One that is known.
+    """
+    name = plain_designation(designation)
+    if envelope_of(designation).contact_angle != KNOWN[name].contact_angle:
+        return None
+    return printed_rating(name[:-2], int(name[-2:]))
+
+
+def _at_angle(known: Envelope, added: str) -> Envelope:
+    """A bearing with the contact angle that letters behind its number say, if it is one of balls with one."""
+    letters = _ANGLE_LETTERS.match(added)
+    if letters is None or known.kind != "ball" or not known.contact_angle:
+        return known
+    return replace(known, contact_angle=ANGLE_OF_LETTER[letters[1]])

@@ -4,11 +4,11 @@ On the present bore first, then on larger ones as far as the shoulder and the bo
 kind in a heavier series, then a cylindrical roller bearing with ribs on both rings (NUP), then two tapered roller
 bearings side by side. Bearings that float stay as they are (NU, N), tapered ones that are set against each other too.
 
-C is that of ISO 281 for what is estimated to roll inside (`CatalogueBearing.estimated_rating`), X, Y and e are those of
-the same inside: a life by a catalogue's C may be longer or shorter, by what `rating_error` says of C. Two tapered
-bearings side by side count as one of two rows (ISO 281:2007, Clauses 7 and 8): C of one times 2^(7/9), P = F_r + 0.45
-cot(alpha) F_a up to e = 1.5 tan(alpha), 0.67 F_r + 0.67 cot(alpha) F_a above. Face to face they hardly take moments
-of the bending shaft, which that neglects; back to back they do.
+C is the one that a maker prints (`printed_ratings`), else that of ISO 281 for what is estimated to roll inside
+(`CatalogueBearing.estimated_rating`); X, Y and e are those of that inside: a life by the C of another maker may be
+longer or shorter, by what `rating_error` says of C. Two tapered bearings side by side count as one of two rows (ISO
+281:2007, Clauses 7 and 8): C of one times 2^(7/9). Face to face they hardly take moments of the bending shaft, which
+that neglects; back to back they do.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from functools import cache
 from fegear.shafts.axial_factors import MOST_ON_RIBS, AxialFactors, ribs_of
 from fegear.shafts.bearing_seat import BearingSeat
 from fegear.shafts.catalogue_bearing import CatalogueBearing
-from fegear.shafts.designations import KNOWN, Envelope, plain_designation
+from fegear.shafts.designations import KNOWN, Envelope, catalogue_rating, envelope_of, plain_designation
 from fegear.shafts.life import EXPONENT, LifeRating
 
 #: C of two rows over that of one.
@@ -79,7 +79,7 @@ class BearingChange:
 
 @cache
 def rating_of(designation: str) -> LifeRating:
-    """What the life of a tabulated bearing follows from, by its dimensions alone.
+    """What the life of a tabulated bearing follows from: a printed C, else by its dimensions alone.
 
     Parameters
     ----------
@@ -91,9 +91,10 @@ def rating_of(designation: str) -> LifeRating:
     made = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, angle, 0.0)
     inside = made.inside
     factors = AxialFactors(
-        inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2, ribs_of(designation)
-    )
-    return LifeRating(made.estimated_rating, inside.kind, axial=factors)
+        inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2, ribs_of(designation),
+        inside.rows,
+    )  # fmt: skip
+    return LifeRating(catalogue_rating(designation) or made.estimated_rating, inside.kind, axial=factors)
 
 
 def larger_bearing(
@@ -112,7 +113,7 @@ def larger_bearing(
     seat : BearingSeat
     """
     name = plain_designation(designation)
-    if name not in KNOWN:
+    if name not in KNOWN or envelope_of(designation) != KNOWN[name]:  # of another contact angle
         return None
     present, least = KNOWN[name], rating_of(name).revolutions(radial, axial)
     longest: LargerBearing | None = None
@@ -139,9 +140,15 @@ def _size(one: LargerBearing) -> tuple[float, float, str]:
 
 def _kinds(name: str, radial: float, axial: float) -> Iterator[tuple[Callable[[str], bool], int]]:
     """Which designations carry what this one does, in order of preference, and how many side by side."""
-    kind, letters = KNOWN[name].kind, _letters(name)
-    yield (lambda other: KNOWN[other].kind == kind and _letters(other) == letters), 1
-    if kind == "ball":  # locates its shaft in both directions
+    present, letters = KNOWN[name], _letters(name)
+
+    def same_kind(other: str) -> bool:
+        one = KNOWN[other]
+        angular = present.kind == "ball" and bool(one.contact_angle) != bool(present.contact_angle)
+        return one.kind == present.kind and _letters(other) == letters and not angular
+
+    yield same_kind, 1
+    if present.kind == "ball" and not present.contact_angle:  # locates its shaft in both directions
         if abs(axial) <= MOST_ON_RIBS * abs(radial):
             yield (lambda other: _letters(other) == "NUP"), 1
         yield (lambda other: KNOWN[other].kind == "tapered"), 2
@@ -164,7 +171,6 @@ def _of_kind(
 
 def _of_two(name: str, one: Envelope, radial: float, axial: float) -> float:
     """L_10 in revolutions of two tapered bearings side by side; infinite without load."""
-    slope, radial, axial = math.tan(one.contact_angle), abs(radial), abs(axial)
-    load = radial + 0.45 / slope * axial if axial <= 1.5 * slope * radial else 0.67 * (radial + axial / slope)
+    load = AxialFactors(False, one.contact_angle, 0.0, rows=2).equivalent_load(abs(radial), abs(axial))
     rating = rating_of(name)
     return 1e6 * (_TWO_ROWS * rating.dynamic_rating / load) ** EXPONENT[rating.kind] if load > 0.0 else math.inf

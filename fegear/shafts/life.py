@@ -1,7 +1,8 @@
 """Basic rating life of rolling bearings: ISO 281:2007, Clauses 5 to 7.
 
 L_10 = (C/P)^p million revolutions, p = 3 for balls and 10/3 for rollers, P = X F_r + Y F_a, and P = F_r where the axial
-force is no more than e times the radial one. The factors are those of a catalogue, or of what rolls in the bearing.
+force is no more than e times the radial one (of two rows, see `axial_factors`). The factors are those of a catalogue,
+or of what rolls in the bearing.
 """
 
 from __future__ import annotations
@@ -51,7 +52,9 @@ class LifeRating:
     def equivalent_load(self, radial: float, axial: float) -> float:
         """P [N]."""
         radial, axial = abs(radial), abs(axial)
-        x, y, e = self.axial.at(axial) if self.axial else (self.radial_factor, self.axial_factor, self.limit)
+        if self.axial is not None:
+            return self.axial.equivalent_load(radial, axial)
+        x, y, e = self.radial_factor, self.axial_factor, self.limit
         return radial if axial <= e * radial else x * radial + y * axial
 
     def overlooks(self, radial: float, axial: float) -> bool:

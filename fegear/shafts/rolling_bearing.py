@@ -67,13 +67,13 @@ def point_contact(inverse_radii: tuple[float, float, float, float], plane_modulu
 
 @dataclass(frozen=True)
 class RollingBearing:
-    """A bearing of one row of balls or rollers, inner ring on the shaft.
+    """A bearing of one row of balls or rollers, inner ring on the shaft; of two rows where it aligns itself.
 
     Parameters
     ----------
     kind : {"ball", "roller"}
     count : int
-        Of the elements.
+        Of the elements of a row.
     element_diameter, pitch_diameter : float
         [m].
     contact_angle : float
@@ -87,6 +87,9 @@ class RollingBearing:
         Diametral, across the axis [m]; negative for preload. Of bearings with a contact angle, along the normal.
     ribs : bool
         Whether ribs on both rings hold the shaft along the axis, rigidly and without play.
+    aligning : bool
+        Whether it is a spherical roller bearing: two rows at the contact angle to either side, whose normals meet on
+        the axis, so that it takes no moment. Its clearance is across the axis.
 
     Raises
     ------
@@ -103,6 +106,7 @@ class RollingBearing:
     roller_length: float = 0.0
     clearance: float = 0.0
     ribs: bool = False
+    aligning: bool = False
 
     def __post_init__(self) -> None:
         """Refuse elements that do not fit, and rings without grooves."""
@@ -123,6 +127,11 @@ class RollingBearing:
             )
         if self.kind == "roller" and not self.roller_length > 0.0:
             raise RangeError("roller_length", self.roller_length, "must be positive")
+
+    @property
+    def rows(self) -> int:
+        """Rows of elements."""
+        return 2 if self.aligning else 1
 
     @cached_property
     def constant(self) -> float:
@@ -166,6 +175,8 @@ class RollingBearing:
 
         Shapes (2,), (contacts, 2, 5), (contacts, 2), (contacts,): radial and axial components.
         """
+        if self.aligning:
+            return self._of_two_rows
         phi = 2.0 * math.pi * np.arange(self.count) / self.count
         angle = self.contact_angle
         if self.kind == "ball":
@@ -186,22 +197,32 @@ class RollingBearing:
         centres = np.array([apart * math.cos(angle), apart * math.sin(angle)]) - 0.5 * self.clearance * normals[0]
         return centres, arms, np.asarray(normals), share[slices]
 
+    @property
+    def _of_two_rows(self) -> tuple[Array, Array, Array, Array]:
+        """Contacts of a spherical roller bearing: each roller is one, for no tilt varies the approach along it."""
+        phi = np.tile(2.0 * math.pi * np.arange(self.count) / self.count, 2)
+        side = np.repeat([1.0, -1.0], self.count)
+        arms = np.zeros((phi.size, 2, 5))
+        arms[:, 0, 0], arms[:, 0, 1], arms[:, 1, 2] = np.cos(phi), np.sin(phi), 1.0
+        normals = np.stack(np.broadcast_arrays(math.cos(self.contact_angle), side * math.sin(self.contact_angle)), -1)
+        return np.zeros(2), arms, normals, np.ones(phi.size)
+
     def loads(self, u: Array) -> Array:
-        """Load of every element [N], shape (count,)."""
+        """Load of every element [N], shape (rows count,)."""
         pressed = self._pressed(u)[0]
         share = self._contacts[3]
-        return np.asarray((self.constant * pressed**self.exponent * share).reshape(self.count, -1).sum(axis=1))
+        loads = self.constant * pressed**self.exponent * share
+        return np.asarray(loads.reshape(self.rows * self.count, -1).sum(axis=1))
 
     def _pressed(self, u: Array) -> tuple[Array, Array, Array]:
         """Approach, its direction and the distance that turns with it, one for each contact."""
         centres, arms, normals, _ = self._contacts
         moved = arms @ u
         if self.kind == "roller":
+            gap = 0.5 * self.clearance * (math.cos(self.contact_angle) if self.aligning else 1.0)
             return (
-                np.maximum(np.einsum("ck,ck->c", moved, normals) - 0.5 * self.clearance, 0.0),
-                normals,
-                np.full(len(arms), np.inf),
-            )
+                np.maximum(np.einsum("ck,ck->c", moved, normals) - gap, 0.0), normals, np.full(len(arms), np.inf)
+            )  # fmt: skip
         apart = (sum(self.groove_ratio) - 1.0) * self.element_diameter
         vector = centres + moved
         length = np.hypot(vector[:, 0], vector[:, 1])

@@ -80,24 +80,32 @@ def known_insides() -> list[tuple[CatalogueBearing, RollingBearing]]:
         k = KNOWN_DESIGNATIONS[name]
         section = 0.5 * (k.outside_diameter - k.bore)
         angle = k.contact_angle + (math.radians(rng.normal(0.0, 0.4)) if k.kind == "tapered" else 0.0)
-        thin, thick = {"ball": (0.18, 0.215), "cylindrical": (0.2, 0.27), "tapered": (0.22, 0.33)}[k.kind]
-        inner, outer = rng.uniform(thin, thick, 2) * section
-        size = (section - inner - outer) * math.cos(angle)
-        pitch = k.bore + 2.0 * inner + size / math.cos(angle)
+        walls = {"ball": (0.18, 0.215), "cylindrical": (0.2, 0.27), "tapered": (0.22, 0.33), "spherical": (0.2, 0.28)}
+        inner, outer = rng.uniform(*walls[k.kind], 2) * section
+        size = (section - inner - outer) * math.cos(angle if k.kind != "ball" else 0.0)
+        if k.kind == "ball" and 1.16 * k.width < section:  # balls do not stand out of narrow rings
+            size = rng.uniform(0.62, 0.79) * k.width
+            inner = outer = 0.5 * (section - size)
+        pitch = k.bore + 2.0 * inner + size / (math.cos(angle) if k.kind != "ball" else 1.0)
         if k.kind == "ball":
             count = 1 + round(0.5 * math.radians(rng.uniform(175.0, 200.0)) / math.asin(size / pitch))
+            if angle:
+                count = int(math.pi / math.asin(size * (1.0 + rng.uniform(0.0, 0.12)) / pitch))
             grooves = tuple(rng.normal(0.525, 0.003, 2))
-            made = RollingBearing("ball", count, size, pitch, 0.0, grooves)
+            made = RollingBearing("ball", count, size, pitch, angle, grooves)
         else:
-            bar = size * (rng.uniform(0.03, 0.14) if k.kind == "tapered" else rng.uniform(0.12, 0.3))
+            bar = size * (rng.uniform(0.12, 0.3) if k.kind == "cylindrical" else rng.uniform(0.03, 0.14))
+            steep = math.degrees(angle) > 20.0
             rims = rng.uniform(0.22, 0.35) if k.kind == "tapered" else rng.uniform(0.33, 0.55)
+            rims = rng.uniform(0.57, 0.67) if k.kind == "spherical" else rng.uniform(0.36, 0.5) if steep else rims
             length = (1.0 - rims) * k.width / math.cos(angle)
             count = int(math.pi / math.asin((size + bar) / pitch))
-            made = RollingBearing("roller", count, size, pitch, angle, roller_length=length)
+            aligning = k.kind == "spherical"
+            made = RollingBearing("roller", count, size, pitch, angle, roller_length=length, aligning=aligning)
         steel = 1.3 * rng.uniform(0.95, 1.15) if k.kind == "ball" else 1.1 * rng.uniform(1.05, 1.25)
         printed = CatalogueBearing(
             k.kind, k.bore, k.outside_diameter, k.width, dynamic_rating(made, steel), static_rating(made),
-            k.contact_angle if k.kind == "tapered" else None,
+            k.contact_angle or None,
         )  # fmt: skip
         found.append((printed, made))
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,6 +21,9 @@ BALL = RollingBearing("ball", 9, 12.7e-3, 65e-3, clearance=15e-6)
 ANGULAR = RollingBearing("ball", 14, 10e-3, 60e-3, contact_angle=math.radians(25))
 ROLLER = RollingBearing("roller", 14, 10e-3, 60e-3, roller_length=12e-3)
 TAPERED = RollingBearing("roller", 18, 9e-3, 60e-3, contact_angle=math.radians(-14), roller_length=14e-3)
+SPHERICAL = RollingBearing(
+    "roller", 15, 10e-3, 60e-3, math.radians(11), roller_length=8e-3, clearance=8e-6, aligning=True
+)
 
 
 def test_a_ball_on_a_plate_and_two_crossed_cylinders():
@@ -74,7 +78,7 @@ def test_the_largest_load_is_stribecks_without_clearance(kind, expected, slack):
     assert bearing.loads(u).max() * 40 / radial == pytest.approx(expected, abs=slack)
 
 
-@pytest.mark.parametrize("bearing", [BALL, ANGULAR, ROLLER, TAPERED])
+@pytest.mark.parametrize("bearing", [BALL, ANGULAR, ROLLER, TAPERED, SPHERICAL])
 def test_stiffness_is_the_derivative_of_the_force_and_symmetric(bearing):
     u = np.array([22e-6, -9e-6, -15e-6 if bearing.contact_angle < 0 else 15e-6, 3e-4, -2e-4])
     stiffness = bearing.reaction(u)[1]
@@ -96,6 +100,49 @@ def test_a_motion_turned_by_one_element_loads_the_next_ones_alike(bearing):
     assert bearing.loads(turned) == pytest.approx(np.roll(loads, 1), rel=1e-9, abs=1e-9 * loads.max())
     again = np.concatenate([turn @ force[:2], force[2:3], turn @ force[3:]])
     assert bearing.reaction(turned)[0] == pytest.approx(again, rel=1e-9, abs=1e-9 * np.abs(force).max())
+
+
+def test_a_spherical_roller_bearing_is_two_tapered_ones_that_do_not_tilt():
+    """Against each other, of one pitch circle, and free to turn about its centre; its clearance is across the axis."""
+    u = np.array([21e-6, -12e-6, 9e-6, 0.0, 0.0])
+    gap = SPHERICAL.clearance * math.cos(SPHERICAL.contact_angle)
+    one = replace(SPHERICAL, aligning=False, clearance=gap)
+    rows = [replace(one, contact_angle=sign * one.contact_angle).reaction(u)[0] for sign in (1.0, -1.0)]
+    force = SPHERICAL.reaction(u)[0]
+    assert force[:3] == pytest.approx(sum(rows)[:3], rel=1e-9)
+    tilted = SPHERICAL.reaction(u + np.array([0.0, 0.0, 0.0, 2e-3, -3e-3]))
+    assert tilted[0] == pytest.approx(force, rel=1e-12, abs=1e-9)
+    assert not tilted[0][3:].any()
+    assert not tilted[1][3:].any()
+
+
+def test_axial_force_on_a_spherical_roller_bearing_is_on_one_row_by_hand():
+    """Z c (w sin(alpha) - gap)^(10/9) sin(alpha), either way; none within the axial clearance."""
+    sine, gap = math.sin(SPHERICAL.contact_angle), 0.5 * SPHERICAL.clearance * math.cos(SPHERICAL.contact_angle)
+    for way in (1.0, -1.0):
+        w = 60e-6
+        by_hand = SPHERICAL.count * SPHERICAL.constant * (w * sine - gap) ** (10 / 9) * sine
+        assert SPHERICAL.reaction(np.array([0, 0, way * w, 0, 0]))[0][2] == pytest.approx(way * by_hand, rel=1e-9)
+        assert not SPHERICAL.reaction(np.array([0, 0, way * 0.99 * gap / sine, 0, 0]))[0].any()
+
+
+def test_preload_stiffens_two_angular_contact_bearings_by_hand():
+    """Face to face, pressed by w_0: each has Z c (w sin(alpha))^1.5; together 3 times the slope, the clearance along
+    the normal as w_0 sin(alpha)."""
+    angle, preload = math.radians(40.0), 12e-6
+    stiff_grooves = (0.52, 0.52)
+    one = RollingBearing("ball", 14, 12.7e-3, 60e-3, angle, stiff_grooves, clearance=-preload)
+    pair = [one, replace(one, contact_angle=-angle)]
+    step = 1e-8
+    forces = [sum(b.reaction(np.array([0, 0, z, 0, 0]))[0][2] for b in pair) for z in (-step, 0.0, step)]
+    slope = (forces[2] - forces[0]) / (2 * step)
+    # the normal approach of either is half the preload at rest; the angle changes little with it
+    by_hand = 2 * 1.5 * one.count * one.constant * (0.5 * preload) ** 0.5 * math.sin(angle) ** 2
+    assert forces[1] == pytest.approx(0.0, abs=1e-6 * slope * preload)
+    assert slope == pytest.approx(by_hand, rel=0.03)
+    loose = [replace(b, clearance=0.0) for b in pair]
+    free = [sum(b.reaction(np.array([0, 0, z, 0, 0]))[0][2] for b in loose) for z in (-step, step)]
+    assert (free[1] - free[0]) / (2 * step) < 0.1 * slope
 
 
 def test_a_roller_that_tilts_is_pressed_at_one_half_by_the_integral_of_its_law():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -13,6 +14,7 @@ import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.shafts import said_of_bearings
+from fegear.case.reading import build_scene
 from fegear.case.shaft import BearingPart
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN, envelope_of
@@ -40,13 +42,54 @@ def test_dimensions_by_designation():
         assert 0.05 < made.error < 0.42
 
 
-@pytest.mark.parametrize(("typed", "meant"), [("6026", "6206"), ("NUU206", "NU206"), ("33206", "32306"), ("62O6", "6")])
+@pytest.mark.parametrize(
+    ("typed", "angle"),
+    [("7208", 40), ("7208-B-XL-TVP", 40), ("7308 BECBP", 40), ("7208 CTA/P4", 15), ("7208-C-T-P4S-UL", 15),
+     ("7208 ACD", 25), ("7208A5TRSU", 25), ("7208 AW", 30), ("7208/C3", 40), ("NTN 7208", 40)],
+)  # fmt: skip
+def test_letters_of_angular_contact_ball_bearings_are_their_contact_angle(typed, angle):
+    one = envelope_of(typed)
+    assert math.degrees(one.contact_angle) == pytest.approx(angle)
+    assert (one.kind, one.width) == ("ball", KNOWN[typed.replace("NTN ", "")[:4]].width)
+    part = BearingPart.model_validate({"designation": typed, "life": {}})
+    assert part.build().contact_angle == pytest.approx(math.radians(angle))
+    assert (part.catalogue_rating is None) is (angle != 40)
+    own = BearingPart.model_validate({"designation": typed, "catalogue": {"contact_angle": "35 deg"}})
+    assert own.build().contact_angle == pytest.approx(math.radians(35.0))
+
+
+def test_dimensions_and_limits_of_further_series():
+    sizes = {
+        name: tuple(round(1e3 * one) for one in (k.bore, k.outside_diameter, k.width)) for name, k in KNOWN.items()
+    }
+    assert [sizes[one] for one in ("6407", "16008", "32008", "31308", "22208", "22308", "7208", "31320", "6418")] == [
+        (35, 100, 25), (40, 68, 9), (40, 68, 19), (40, 90, 23), (40, 80, 23), (40, 90, 33), (40, 80, 18),
+        (100, 215, 51), (90, 225, 54),
+    ]  # fmt: skip
+    limits = {"32004": 0.37, "32007": 0.45, "32010": 0.42, "32020": 0.46, "31310": 0.83, "22208": 0.28, "22320": 0.33}
+    for name, limit in limits.items():  # e = 1.5 tan(alpha), as NSK prints it
+        assert 1.5 * math.tan(KNOWN[name].contact_angle) == pytest.approx(limit, abs=0.0055)
+
+
+def test_a_spherical_roller_bearing_has_the_factors_of_two_rows_and_takes_no_moment():
+    part = BearingPart.model_validate({"designation": "22208 E", "life": {"dynamic_rating": "96.5 kN"}})
+    rating, made = part.rating, part.build()
+    assert made.aligning
+    assert rating.equivalent_load(10e3, 2e3) == pytest.approx(10e3 + 2.4 * 2e3, rel=0.01)  # Y_3 of NSK 2.4
+    assert rating.equivalent_load(10e3, 6e3) == pytest.approx(0.67 * 10e3 + 3.6 * 6e3, rel=0.01)  # Y_2 3.6
+    assert not made.usual[3:].any()
+    assert part.tilt.high == 0.045
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("6026", "6206"), ("NUU206", "NU206"), ("32036", "32306"), ("62O6", "6")])
 def test_a_typo_suggests_a_designation(typed, meant):
     with pytest.raises(InputError, match=rf'is not a known designation; did you mean "{meant}'):
         envelope_of(typed)
 
 
-@pytest.mark.parametrize(("typed", "series"), [("7207", "72"), ("22207", "222"), ("FAG 7207-B", "72")])
+@pytest.mark.parametrize(
+    ("typed", "series"), [("1207", "12"), ("23224", "232"), ("FAG 3207-B", "32"), ("2206", "22"), ("33206", "332")]
+)
 def test_series_that_are_not_tabulated_are_named_without_a_guess(typed, series):
     with pytest.raises(InputError, match=f"is of series {series}, which is not in the table; set catalogue") as refused:
         envelope_of(typed)
@@ -140,6 +183,19 @@ def test_a_catalogue_bearing_goes_to_rexs_and_back():
     assert same(first, second)
 
 
+@pytest.mark.parametrize("name", ["7208-B-XL", "22208-E1", "31308"])
+def test_designations_of_both_rows_and_of_contact_angles_go_to_rexs_and_back(name):
+    document = shaft_on({"designation": name, "life": {}}, {"designation": name, "life": {}})
+    document["shaft"]["s"]["bearings"][1]["reversed"] = True
+    scene = build_scene(document, "box")
+    again, _ = there_and_back(scene)
+    first, second = (one.case.bearing for one in (scene, again))
+    assert second["A"].designation == name
+    assert same(first["A"].printed, second["A"].printed)
+    ways = [one.reversed for one in again.case.shaft["s"].bearings]
+    assert ways == ([False, False] if name.startswith("2") else [False, True])
+
+
 @pytest.mark.parametrize(("given", "key"), [
     ({"designation": "6206", "life": {"dynamic_rating": "190 kN"}}, "life.dynamic_rating"),
     ({"designation": "6206", "catalogue": {"dynamic_rating": "190 kN"}}, "catalogue.dynamic_rating"),
@@ -201,11 +257,14 @@ def test_a_life_without_rating_takes_that_of_the_catalogue_else_an_estimate_of_t
     assert rating(designation="6306", catalogue={"dynamic_rating": "28 kN"}).dynamic_rating == 28e3
     (note,) = notes_of({"designation": "6306", "life": {}})
     assert class_of(note) is NoteClass.ASSUMED
-    assert "C = 28.4 kN estimated from the dimensions, error 17 %" in note
+    assert "C = 29.6 kN from the SKF General Catalogue, other makers and designs within 19 %" in note
+    (note,) = notes_of({"designation": "6306", "catalogue": {"width": "20 mm"}, "life": {}})
+    assert "kN estimated from the dimensions, error 19 %" in note
     assert "life.dynamic_rating" in note
     assert not notes_of({"designation": "6306", "life": {}, "catalogue": {"dynamic_rating": "28 kN"}})
     # the estimate as a given C makes the same inside
-    given = {"designation": "6306", "life": {"dynamic_rating": f"{large.dynamic_rating!r} N"}}
+    bare = BearingPart.model_validate({"designation": "6306", "life": {}}).printed.estimated_rating
+    given = {"designation": "6306", "life": {"dynamic_rating": f"{bare!r} N"}}
     bare = BearingPart.model_validate({"designation": "6306", "life": {}}).printed.inside
     assert BearingPart.model_validate(given).printed.inside.element_diameter == pytest.approx(bare.element_diameter)
     with pytest.raises(ValidationError, match="is required without a designation or catalogue") as refused:

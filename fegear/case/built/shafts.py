@@ -14,6 +14,7 @@ from fegear.base.printed import figures, percent
 from fegear.case.nearest import nearest
 from fegear.case.part import at
 from fegear.case.reading import Scene
+from fegear.case.shaft import ENVELOPE
 from fegear.geometry.plausible import THICKEST_BELOW_GEARS
 
 if TYPE_CHECKING:
@@ -37,9 +38,8 @@ _OVERLAP = 0.01
 _ELEMENTS = {"element_diameter": "elements.diameter"} | {
     key: f"elements.{key}" for key in ("count", "pitch_diameter", "contact_angle", "groove_ratio", "roller_length")
 }
-#: Load ratings of a bearing, and the keys that replace dimensions of a designation.
+#: Load ratings of a bearing.
 _SYMBOLS = {"dynamic_rating": "C", "static_rating": "C_0"}
-_ENVELOPE = {"kind", "bore", "outside_diameter", "width"}
 #: Shafts and bearings that are solved together at most.
 _SHAFTS, _BEARINGS = 100, 300
 
@@ -205,7 +205,7 @@ def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
     if printed is None:
         return
     key = f"bearing.{name}"
-    if part.designation is not None and not (said and said.given & _ENVELOPE):
+    if part.designation is not None and not (said and said.given & ENVELOPE):
         for table, given in (("life", life), ("catalogue", said)):
             ratings = {one: getattr(given, one, None) for one in _SYMBOLS}
             for rating, value, typical in printed.misfits(**ratings):
@@ -219,9 +219,14 @@ def _said_of_ratings(name: str, part: BearingPart) -> Iterator[Note]:
         from fegear.shafts.life import EXPONENT  # late: most cases have no bearings
 
         off = (1.0 + printed.rating_error) ** EXPONENT[rated.kind]
+        c, spread = figures(rated.dynamic_rating * 1e-3), percent(printed.rating_error)
+        if part.catalogue_rating is not None:
+            found = f"from the SKF General Catalogue, other makers and designs within {spread}"
+        else:
+            found = f"estimated from the dimensions, error {spread}"
         yield assuming(
-            f"Bearing {name}: C = {figures(rated.dynamic_rating * 1e-3)} kN estimated from the dimensions, error "
-            f"{percent(printed.rating_error)} (of the life a factor of {figures(off, 2)}); specify life.dynamic_rating"
+            f"Bearing {name}: C = {c} kN {found} (of the life a factor of {figures(off, 2)}); specify "
+            "life.dynamic_rating"
         )
 
 

@@ -113,8 +113,8 @@ class Rows:
 
     @property
     def locates(self) -> bool:
-        """Whether it holds a shaft both ways without a contact angle: balls, and ribs of both rings."""
-        return self.length is None or (self.printed is not None and self.printed.ribbed)
+        """Whether it holds a shaft both ways without a contact angle: balls, ribs of both rings, two rows."""
+        return self.length is None or (self.printed is not None and self.printed.locates)
 
 
 def bearings_of(
@@ -328,11 +328,12 @@ def _estimated(said: Said, one: Component, rows: Sequence[Component]) -> Rows | 
     if printed is None:
         return None
     inside = printed.bearing.inside
-    angle = inside.contact_angle
+    angle = 0.0 if inside.aligning else inside.contact_angle
     if angle and _holds(said, one) == _NONE:
         said.notes.append(f"{one.said} is a non-locating bearing: contact angle of {math.degrees(angle):g} deg kept.")
     length = None if inside.kind == "ball" else inside.roller_length
-    ways = _ways(said, one, rows, angle) if rows else (bool(angle) and _holds(said, one) == _MINUS,)
+    one_row = rows and not inside.aligning  # whose two rows are one bearing
+    ways = _ways(said, one, rows, angle) if one_row else (bool(angle) and _holds(said, one) == _MINUS,)
     about = "dimensions and load ratings; rolling elements estimated"
     return Rows(
         inside.count, inside.element_diameter, inside.pitch_diameter, angle, length, None, ways, about, printed
@@ -376,7 +377,10 @@ def _life(said: Said, one: Component, rows: int) -> list[Key]:
         return []
     x, y = (said.number(one, "number", name) for name in ("radial_factor_x_2", "axial_factor_y_2"))
     limit = said.number(one, "number", "catalogue_value_e")
-    roller = "roller" in (said.word(one, "bearing_type") or "")
+    spoken = said.word(one, "bearing_type") or ""
+    roller = "roller" in spoken
+    if "spherical_roller" in spoken:
+        x = None  # Y below e is in no attribute: factors of two rows follow from the contact angle
     # ISO 281: C of i rows alike is i^0.7 times that of one of balls, i^(7/9) times that of one of rollers.
     shared = rating / rows ** (7.0 / 9.0 if roller else 0.7)
     value = inline(

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 #: Parts of the types of bearings, by the kind whose inside can be estimated; the first that is found counts.
 _KINDS: tuple[tuple[str, Kind | None], ...] = (
-    ("axial", None), ("spherical", None), ("self_aligning", None), ("needle", None), ("toroidal", None),
-    ("four_point", None), ("tapered_roller", "tapered"), ("roller", "cylindrical"), ("ball", "ball"),
+    ("axial", None), ("spherical_roller", "spherical"), ("spherical", None), ("self_aligning", None), ("needle", None),
+    ("toroidal", None), ("four_point", None), ("tapered_roller", "tapered"), ("roller", "cylindrical"), ("ball", "ball"),
 )  # fmt: skip
 
 
@@ -47,9 +47,9 @@ class Printed:
     designation: str = ""
 
     @property
-    def ribbed(self) -> bool:
-        """Whether its ribs locate a shaft (NUP)."""
-        return ribs_of(plain_designation(self.designation)) is not None
+    def locates(self) -> bool:
+        """Whether its ribs (NUP) or two rows of rollers hold a shaft both ways."""
+        return self.bearing.inside.aligning or ribs_of(plain_designation(self.designation)) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,21 +81,26 @@ def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clear
         return None
     count = said.number(one, "number", "number_of_bearing_rows") or 1.0
     size = _size(said, one)
-    if size is None or count > 1.0 or len(rows) > 1 or said.yes(one, "radial_force_absorption") is False:
+    if size is None or said.yes(one, "radial_force_absorption") is False:
         return None
     kind = size.kind
+    if (count > 1.0 or len(rows) > 1) and kind != "spherical":
+        return None
     angle = said.number(rows[0], "angle", "pressure_angle") if rows else None
     slope = said.number(one, "number", "catalogue_value_e")
-    if kind == "tapered" and not angle and slope:
+    rolls = kind in ("tapered", "spherical")
+    if rolls and not angle and slope:
         angle = math.atan(slope / 1.5)  # ISO 281: e = 1.5 tan(alpha)
-    if kind == "tapered" and not angle and size.known is not None:
+    angular = "angular_contact" in (said.word(one, "bearing_type") or "") or (
+        kind == "ball" and size.known is not None and size.known.contact_angle > 0.0
+    )
+    if (rolls or angular) and not angle and size.known is not None:
         angle = size.known.contact_angle
-    angular = "angular_contact" in (said.word(one, "bearing_type") or "")
     if angular and not angle:
         return None
     c = said.number(one, "force", "radial_dynamic_load_rating", "dynamic_capacity")
     c_0 = said.number(one, "force", "radial_static_load_rating", "static_load_rating", "static_capacity")
-    made_angle = abs(angle) if angle and (kind == "tapered" or angular) else None
+    made_angle = abs(angle) if angle and (rolls or angular) else None
     try:
         made = CatalogueBearing(
             kind, size.bore, size.outside_diameter, size.width, c or None, c_0 or None, made_angle, clearance
@@ -104,7 +109,7 @@ def printed_bearing(said: Said, one: Component, rows: Sequence[Component], clear
     except InputError as error:
         said.notes.append(f"{one.said}: rolling elements not estimated; {error}")
         return None
-    return Printed(made, "" if angular else size.designation)
+    return Printed(made, size.designation)
 
 
 def _size(said: Said, one: Component) -> _Size | None:
@@ -117,7 +122,9 @@ def _size(said: Said, one: Component) -> _Size | None:
     )
     named = said.word(one, "catalogue_designation") or plain_designation(said.word(one, "name") or one.name)
     known = _designated(named)
-    if known is not None and spoken and kind != known.kind:
+    if known is not None and spoken and (
+        kind != known.kind or (kind == "ball" and ("angular_contact" in spoken) != bool(known.contact_angle))
+    ):  # fmt: skip
         known = None
     if not (kind and bore and outside and width):
         if known is None:

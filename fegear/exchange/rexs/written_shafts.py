@@ -31,6 +31,7 @@ _TYPES = {
     ("roller", False): "radial_roller_bearing",
     ("roller", True): "radial_tapered_roller_bearing",
 }
+_SPHERICAL = "radial_spherical_roller_bearing"
 
 
 def write_shaft(
@@ -115,7 +116,7 @@ def _bearing(
             made.say("large force", radial_dynamic_load_rating=printed.dynamic_rating)
         row = written.part("rolling_bearing_row").say("angle", pressure_angle=abs(angle))
         written.relate("ordered_assembly", 1, assembly=made, part=row)
-    made.word(bearing_type=_TYPES.get((kind or "", bool(angle))))
+    made.word(bearing_type=_SPHERICAL if printed and printed.inside.aligning else _TYPES.get((kind or "", bool(angle))))
     if life is not None:
         if "dynamic_rating" in life.given:
             made.say("large force", radial_dynamic_load_rating=life.dynamic_rating)
@@ -151,6 +152,8 @@ def _holds(part: BearingPart, *, reversed_: bool) -> str:
     balls = (printed.kind if printed else elements.kind if elements else "") == "ball"
     if part.housing_axial is not None and rolls:
         return "no_direction"  # it slides in its seat, or nearly
+    if printed is not None and printed.inside.aligning:
+        return "both_directions"
     if angle:
         return "negative" if reversed_ != (angle < 0.0) else "positive"
     along = part.fixed or bool(part.axial) or balls or part.ribs is not None

@@ -259,7 +259,7 @@ def _advised(one: BearingAtGlance, change: BearingChange) -> str:
 
 def _changed_to(one: BearingAtGlance, other: LargerBearing) -> str:
     """Another designation with its life at the present forces, and what of its size is not that of the present one."""
-    return f"{other.said} instead of {one.designation}{_size(one, other)}: {_hours(one, other)} by its estimated C"
+    return f"{other.said} instead of {one.designation}{_size(one, other)}: {_hours(one, other)} by its tabulated C"
 
 
 def _hours(one: BearingAtGlance, other: LargerBearing) -> str:
