@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -187,11 +188,13 @@ def test_a_catalogue_bearing_goes_to_rexs_and_back():
 def test_designations_of_both_rows_and_of_contact_angles_go_to_rexs_and_back(name):
     document = shaft_on({"designation": name, "life": {}}, {"designation": name, "life": {}})
     document["shaft"]["s"]["bearings"][1]["reversed"] = True
-    scene = build_scene(document, "box")
+    scene = build_scene(document, "box", Path())
     again, _ = there_and_back(scene)
-    first, second = (one.case.bearing for one in (scene, again))
-    assert second["A"].designation == name
-    assert same(first["A"].printed, second["A"].printed)
+    first, second = (
+        [one.case.bearing[place.bearing] for place in one.case.shaft["s"].bearings] for one in (scene, again)
+    )
+    assert [one.designation for one in second] == [name, name]
+    assert same(first[0].printed, second[0].printed)
     ways = [one.reversed for one in again.case.shaft["s"].bearings]
     assert ways == ([False, False] if name.startswith("2") else [False, True])
 

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 #: Parts of the types of bearings, by the kind whose inside can be estimated; the first that is found counts.
 _KINDS: tuple[tuple[str, Kind | None], ...] = (
     ("axial", None), ("spherical_roller", "spherical"), ("spherical", None), ("self_aligning", None), ("needle", None),
-    ("toroidal", None), ("four_point", None), ("tapered_roller", "tapered"), ("roller", "cylindrical"), ("ball", "ball"),
+    ("toroidal", None), ("four_point", None), ("tapered_roller", "tapered"), ("roller", "cylindrical"),
+    ("ball", "ball"),
 )  # fmt: skip
 
 
