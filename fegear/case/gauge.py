@@ -47,6 +47,12 @@ class MeasuredStrainPart(Part):
         description="Number N of active arms of the bridge: 1 (quarter bridge), 2 (half), 4 (full); with transverse "
         "gauges 1 + nu or 2 (1 + nu).",
     )
+    bridge: str | None = Field(
+        default=None,
+        description="Second gauge of a half bridge (adjacent arm), e.g. that in the other fillet of the tooth: the "
+        "strain computed is that of this gauge less that of the second. A strain column has this difference, or with "
+        "`active_arms = 2` half of it; a bridge output has 2 active arms, or 4 if set.",
+    )
     excitation: PositiveVoltage | None = Field(
         default=None, description="Excitation voltage U_0 of the bridge, if the strain column is a voltage."
     )

@@ -29,7 +29,8 @@ def check_references(case: Case, built: Mapping[str, Collection[str]]) -> None:
         With the nearest name.
     """
     train = case.train
-    known = {**built, "body": train.body if train else (), "mesh": train.mesh if train else ()}
+    of_train = {"body": train.body if train else (), "mesh": train.mesh if train else ()}
+    known = {**built, **of_train, "gauge": case.gauge}
     for key, name, kind in _references(case):
         if name is not None and name not in known[kind]:
             raise InputError(key, f'"{name}"', f"is not a {kind} of this case", nearest(name, known[kind]))
@@ -44,6 +45,7 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     for name, gauge in case.gauge.items():
         yield f"gauge.{name}.gear", gauge.gear, "gear"
         yield f"gauge.{name}.pair", gauge.pair, "pair"
+        yield f"gauge.{name}.measured.bridge", gauge.measured.bridge if gauge.measured else None, "gauge"
     for name, encoders in case.encoders.items():
         yield f"encoders.{name}.pair", encoders.pair, "pair"
     if case.study is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,6 +53,21 @@ def gains_of_places(found: FittedCurve, angle: Array, displaced: Array) -> Array
     )
 
 
+def at_positions(x: Array, known: Array, values: Array) -> Array:
+    """Values along straight lines between the positions at which they are known, the first axis of any shape.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+    known : ndarray, shape (Q,)
+        Ascending.
+    values : ndarray, shape (Q, ...)
+    """
+    flat = values.reshape(known.size, -1)
+    found = np.stack([np.interp(x, known, one) for one in flat.T], axis=-1)
+    return np.asarray(found.reshape(x.size, *values.shape[1:]))
+
+
 @dataclass(frozen=True)
 class StrainWith:
     """What a gauge sees at the nominal load with one effect more.
@@ -68,6 +83,11 @@ class StrainWith:
     change: float
     angle: Array
     strain: Array
+
+    def less(self, second: StrainWith, before: float) -> StrainWith:
+        """Of a half bridge with a second gauge in the adjacent arm, of which the peak without the effect is given."""
+        strain = self.strain - at_positions(self.angle, second.angle, second.strain)
+        return StrainWith(float(np.abs(strain).max()) / abs(before) - 1.0, self.angle, strain)
 
 
 @dataclass(frozen=True)
@@ -159,3 +179,26 @@ class GaugeHistory:
     def peak_opposite(self) -> Array:
         """Peak strain of the gauge in the other fillet under every load, shape (L,)."""
         return np.asarray(-self.sense * (-self.sense * self.strain_opposite).max(axis=0))
+
+    def less(self, second: GaugeHistory) -> GaugeHistory:
+        """What a half bridge sees that has a second gauge of the tooth in the adjacent arm: the difference of strains.
+
+        Errors add, since both may be off to opposite sides. Displaced is the grid of the first gauge.
+        """
+        strain = self.strain - self._at_own(second.x, second.strain)
+        return replace(
+            self, sense=1.0 if strain.flat[int(np.abs(strain).argmax())] >= 0.0 else -1.0, strain=strain,
+            known_error=self.known_error + self._at_own(second.x, second.known_error),
+            stress_error=self.stress_error + self._at_own(second.x, second.stress_error),
+            displaced=self.displaced - (self.strain - strain)[:, :, None],
+            strain_opposite=self.strain_opposite - self._at_own(second.x, second.strain_opposite),
+            stress=self.stress - self._at_own(second.x, second.stress),
+        )  # fmt: skip
+
+    def less_displaced(self, second: GaugeHistory, i: int) -> Array:
+        """The same under load number i with the grid of the second gauge displaced, shape (P, G)."""
+        return self.strain[:, i, None] - self._at_own(second.x, second.displaced[:, i])
+
+    def _at_own(self, x: Array, values: Array) -> Array:
+        """What is known at other positions."""
+        return at_positions(self.x, x, values)

@@ -115,7 +115,7 @@ def test_a_trace_taken_in_motion_is_found_again(tmp_path):
     for name, wanted in (("offset", 30.0), ("scale", 0.98), ("shift", -50.0)):
         error = values[f"dynamic_measured_{name}_standard_error"]
         assert abs(values[f"dynamic_measured_{name}"] - wanted) < 3.5 * error
-    assert replace(outcome.data, neglected={}).verdict.startswith("measured strain agrees with")
+    assert replace(outcome.data, gains={}).verdict.startswith("measured strain agrees with")
     # as at rest the verdict depends on what is not computed, and says so
     change = outcome.data.neglected["corner_contact"]
     at_rest = ran({**document, "results": ["gauge"]}, tmp_path)["gauge of t"].data

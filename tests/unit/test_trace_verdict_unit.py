@@ -12,7 +12,8 @@ from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
-from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, drawn_as, left_out, thinned, verdict
+from fegear.results.pair.trace_named import drawn_as, left_out, thinned
+from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, verdict
 
 ANGLE = np.linspace(-0.4, 0.5, 300)
 STRAIN = 9e-4 * np.interp(ANGLE, [-0.2, -0.15, 0.0, 0.05, 0.1, 0.2, 0.24], [0.0, 0.3, 0.9, 1.0, 0.6, 0.65, 0.0])
@@ -73,7 +74,7 @@ def test_the_other_fillet_is_named():
         (1.1e6, "; with a unit 1e+06 times smaller it is 1.1 times: check the unit of the strain"),
         (0.5, ", as of half the torque, or a quarter bridge evaluated as a half bridge; check torque and bridge"),
         (2.0, ", as of twice the torque, or a half bridge evaluated as a quarter bridge; check torque and bridge"),
-        (0.7, ", as computed at 150 N m; check the torque of the trace"), (1.3, "; check load and gauge factor (30"),
+        (0.7, ", as computed at 150 N m; check the torque of the trace"), (1.3, "; likeliest cause: a torque, gauge"),
         (1.0, "measured strain agrees with the computed one: "),
     ],
 )  # fmt: skip
@@ -104,7 +105,10 @@ def test_the_limit_by_the_place_is_that_of_the_side_on_which_the_difference_lies
     assert "agrees with the computed one: 5.0 % below it (limit 13 %: placement 12 %" in below
     assert "; a grid 0.04 mm nearer to the tip or a torque or gauge factor 5.0 % lower would explain it; RMS" in below
     assert "does not agree with the computed one: 5.0 % above it (limit 1.4 %: placement 1.0 %" in above
-    assert "; check load and gauge factor (5.0 % higher would explain it), then whether the grid is within" in above
+    assert (
+        "; likeliest cause: a torque, gauge factor or bridge supply 5.0 % higher (5 times load_tolerance); no grid "
+        "within 0.25 mm would explain it" in above
+    )
     assert reach_of_places(np.array([-7.0, -10.0, -10.5]), -10.0) == (3.0, 0.5)
     assert reach_of_places(np.array([10.0]), 10.0) == (0.0, 0.0)
 

@@ -1,7 +1,8 @@
 """Output of a Wheatstone bridge as strain: 4 U/U_0 over gauge factor and number of active arms.
 
-The relation is linear. Of a quarter bridge the strain is larger by half of gauge factor times strain: 0.1 % at
-1000 um/m.
+A half bridge of two gauges in adjacent arms gives the difference of their strains: 4 U/U_0 over gauge factor and half
+of the number of active arms. The relation is linear. Of a quarter bridge the strain is larger by half of gauge factor
+times strain: 0.1 % at 1000 um/m.
 """
 
 from __future__ import annotations
@@ -44,13 +45,16 @@ def strain_of_bridge(
     InputError
         If keys of the bridge are missing, or there are some and no bridge.
     """
+    of_two = part.bridge is not None
     if dimension == "strain":
         for name in _OF_BRIDGE:
-            if name in part.given:
+            if name in part.given and not (of_two and name == "active_arms"):
                 raise InputError(
                     f"{key}.{name}", figures(getattr(part, name)), f"has no effect: column {part.strain_column} is a "
                     f"strain ({unit})", 'remove it, or set strain = "mV/V" if it is the output of the bridge',
                 )  # fmt: skip
+        if of_two and part.active_arms != 1.0:
+            return part.active_arms * column, f"strain times its {figures(part.active_arms)} active arms"
         return column, ""
     if part.gauge_factor is None:
         raise InputError(
@@ -71,7 +75,12 @@ def strain_of_bridge(
             f"{key}.excitation", f"{figures(part.excitation)} V", f"has no effect: column {part.strain_column} is a "
             f"voltage over that of the excitation ({unit})", "remove it",
         )  # fmt: skip
-    arms = f"{figures(part.active_arms)} active arm{'' if part.active_arms == 1.0 else 's'}"
-    named = f" ({_NAMES[part.active_arms]})" if part.active_arms in _NAMES else ""
-    scale = 4.0 / (part.gauge_factor * part.active_arms * part.amplification * over)
+    count = 2.0 if of_two and "active_arms" not in part.given else part.active_arms
+    if of_two and count < 2.0:
+        raise InputError(
+            f"{key}.active_arms", figures(count), "is fewer than the gauges of the bridge", "set 2, or 4 (full bridge)"
+        )
+    arms = f"{figures(count)} active arm{'' if count == 1.0 else 's'}"
+    named = f" ({_NAMES[count]})" if count in _NAMES else ""
+    scale = 4.0 / (part.gauge_factor * (0.5 * count if of_two else count) * part.amplification * over)
     return scale * column, f"strain from {unit} with gauge factor {figures(part.gauge_factor)} and {arms}{named}"

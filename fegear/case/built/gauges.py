@@ -43,6 +43,8 @@ class Gauge:
         Uncertainties: [m], and relative.
     measured : MeasuredStrain or None
     name : str
+    second : str
+        Other gauge of the half bridge that measured, empty for none.
     """
 
     pair: str
@@ -58,6 +60,7 @@ class Gauge:
     load_tolerance: float
     measured: MeasuredStrain | None
     name: str = field(compare=False)
+    second: str = ""
 
 
 def gauge_of(scene: Scene, name: str) -> Gauge:
@@ -81,15 +84,24 @@ def gauge_of(scene: Scene, name: str) -> Gauge:
         )
     grid = Grid(part.grid_length, part.grid_width, part.direction)
     measured = None if part.measured is None else measured_strain(scene, name, part.measured, pair, teeth)
+    second = "" if part.measured is None else part.measured.bridge or ""
     return Gauge(
         pair, part.gear, member, part.tooth - 1, part.fillet, key, value, grid, part.face_position,
-        part.placement_tolerance, part.load_tolerance, measured, name,
+        part.placement_tolerance, part.load_tolerance, measured, name, second,
     )  # fmt: skip
+
+
+def seconds_of_bridges(scene: Scene) -> set[str]:
+    """Gauges whose strain is subtracted from that of another one in a half bridge."""
+    parts = [one.measured for one in scene.case.gauge.values()]
+    return {part.bridge for part in parts if part is not None and part.bridge is not None}
 
 
 def check_gauge(scene: Scene, name: str) -> None:
     """Refuse gauges that cannot be computed, before anything is."""
     found = gauge_of(scene, name)
+    if found.second:
+        _check_bridge(scene, found)
     gear, part = scene.gears[found.gear], scene.case.gear[found.gear]
     if wide := found.pair in scene.wide_pairs:
         _check_on_face(scene, name, found)
@@ -108,6 +120,21 @@ def check_gauge(scene: Scene, name: str) -> None:
         )  # fmt: skip
     if part.tooth_mesh is None or part.tooth_mesh_fillet == "rack":
         place_gauge(found, FilletProfile.of_tooth(gear.symmetric_tooth, gear.module))
+
+
+def _check_bridge(scene: Scene, found: Gauge) -> None:
+    """Refuse a half bridge whose gauges are not on one tooth, or the same."""
+    key, part = f"gauge.{found.name}.measured.bridge", scene.case.gauge[found.second]
+    if found.second == found.name:
+        raise InputError(key, f'"{found.second}"', "is the gauge itself", "name the gauge in the other fillet")
+    if part.measured is not None and part.measured.bridge is not None:
+        raise InputError(
+            key, f'"{found.second}"', "has a bridge itself: one trace of a half bridge is that of one of its gauges",
+            f"remove gauge.{found.second}.measured",
+        )  # fmt: skip
+    for one in ("gear", "pair", "member", "tooth"):
+        if getattr(gauge_of(scene, found.second), one) != getattr(found, one):
+            raise InputError(key, f'"{found.second}"', f"is on another {one}", "name a gauge on the same tooth")
 
 
 def sharper_strain(scene: Scene, pair: str) -> str:

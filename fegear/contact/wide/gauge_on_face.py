@@ -10,7 +10,7 @@ import numpy as np
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.effects import NEIGHBOUR_COUPLING
 from fegear.base.errors import InputError
-from fegear.contact.gauge_strain import GaugeHistory, StrainWith
+from fegear.contact.gauge_strain import GaugeHistory, StrainWith, at_positions
 from fegear.contact.wide.mesh_matrix import mesh_stiffness
 from fegear.contact.wide.neglected_effects import effects_off, flanks_with
 from fegear.contact.wide.root_stress import rooted_lines
@@ -226,16 +226,10 @@ class _Gauges:
             rough = self.means(again, side, arc, coarse_force)
             share = influence.entry_shares[key]
             off = [
-                share * np.abs(_between(x, again.x, other) - one).max(axis=-1)
+                share * np.abs(at_positions(x, again.x, other) - one).max(axis=-1)
                 for one, other in zip(fine, rough, strict=False)
             ]
         return tuple(error + _between_positions(x, one[..., at]) for error, one in zip(off, fine, strict=True))
-
-
-def _between(x: Array, at: Array, values: Array) -> Array:
-    """Values at other positions, shape (T, L, G)."""
-    flat = values.reshape(at.size, -1)
-    return np.stack([np.interp(x, at, one) for one in flat.T], axis=1).reshape(x.size, *values.shape[1:])
 
 
 def _between_positions(x: Array, values: Array) -> Array:

@@ -6,14 +6,14 @@ tangent mesh stiffness: the strain is the quasi-static one and its slope times w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.effects import RootEffects
 from fegear.base.shown import shown, shows
-from fegear.contact.gauge_strain import reach_of_places
+from fegear.contact.gauge_strain import at_positions, reach_of_places
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.dynamics.train.single_tooth import error_increments, force_at, forces_around, positions, rows_around
@@ -121,6 +121,23 @@ class ToothStrain:
         sign = np.sign(self.peak)
         return np.asarray(sign * (sign * self.displaced).max(axis=0))
 
+    def less(self, second: ToothStrain) -> ToothStrain:
+        """What a half bridge sees that has a second gauge of the tooth in the adjacent arm; errors add.
+
+        Displaced is the grid of the first gauge.
+        """
+        total, own, static, error = (
+            at_positions(self.x, second.x, one) for one in (second.total, second.own, second.static, second.error)
+        )
+        return replace(
+            self, displaced=self.displaced - total[:, None], error=self.error + error, total=self.total - total,
+            own=self.own - own, static=self.static - static,
+        )  # fmt: skip
+
+    def less_displaced(self, second: ToothStrain) -> Array:
+        """The same with the grid of the second gauge displaced, shape (P, G)."""
+        return self.total[:, None] - at_positions(self.x, second.x, second.displaced)
+
 
 def tooth_strain(
     train: GearTrain, mesh: int, member: Member, gauges: GaugesOnFillet, displacement: Array, speed: float, count: int,
@@ -203,7 +220,7 @@ def strain_on_face(
     own, others = error_increments(train, mesh, speed, phase, harmonics)
 
     def over(values: Array) -> Array:
-        return np.stack([np.interp(x, places, one) for one in values[rows].reshape(places.size, -1).T], axis=-1)
+        return at_positions(x, places, values[rows].reshape(places.size, -1))
 
     static, slope = over(known.strain), over(known.slope)
     total, alone = static + slope * (own + others)[:, None], static + slope * own[:, None]

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.notes import about
 from fegear.base.printed import figures, percent, with_rough_error
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
+from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
 from fegear.case.effects import EffectsPart
 from fegear.engine.citation import Citation
@@ -27,6 +27,7 @@ from fegear.results.gear.solved_gear import solid_solution_of, solution_of
 from fegear.results.pair.gauge_data import GaugeData
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
 from fegear.results.pair.gauges_together import GaugeGain, of_all_gauges
+from fegear.results.pair.half_bridge import HalfBridge
 from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
@@ -91,6 +92,8 @@ class GaugeInputs:
         2 of a double helical pair, whose teeth are one half.
     neglected : bool
         Whether it is looked at what effects that are off would change.
+    in_bridge : bool
+        Whether it is the second gauge of a half bridge.
     """
 
     gauge: Gauge
@@ -104,6 +107,7 @@ class GaugeInputs:
     effects: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
     halves: int = 1
     neglected: bool = False
+    in_bridge: bool = False
 
 
 def _inputs(scene: Scene, name: str) -> GaugeInputs:
@@ -111,6 +115,7 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     speed, pair = scene.case.pair[gauge.pair].speed, scene.pairs[gauge.pair]
     if speed is not None and gauge.member == "driven":
         speed /= pair.ratio
+    in_bridge = name in seconds_of_bridges(scene)
     wide, sharper = gauge.pair in scene.wide_pairs, sharper_strain(scene, gauge.pair)
     finer = sharper
     if wide and scene.width_of(gauge.pair) != "slices":
@@ -118,34 +123,45 @@ def _inputs(scene: Scene, name: str) -> GaugeInputs:
     return GaugeInputs(
         gauge, speed, scene.estimates, wide, sharper, name, finer, scene.case.accuracy.tolerance, scene.case.effects,
         scene.case.pair[gauge.pair].halves,
-        scene.sizes_neglected or (scene.estimates and gauge.measured is not None),  # no verdict without it
+        scene.sizes_neglected or (scene.estimates and (gauge.measured is not None or in_bridge)),  # for the verdict
+        in_bridge,
     )  # fmt: skip
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     gauge = gauge_of(scene, name)
-    return (*needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
+    second = (Task("gauge", gauge.second),) if gauge.second else ()
+    return (*needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear), *second)
 
 
 def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
     followed = (_on_face if asked.wide else _in_plane)(asked, upstream)
-    history = followed.history
-    at = teeth.loads.index(teeth.nominal)
-    strain, opposite = history.strain[:, at], history.strain_opposite[:, at]
+    at, bridge = teeth.loads.index(teeth.nominal), None
+    if gauge.second:
+        other: GaugeData = upstream[Task("gauge", gauge.second)]
+        bridge = HalfBridge.of(gauge.second, followed.history, other.history, at, followed.more, other.with_effects)
+    history = bridge.history if bridge else followed.history
+    strain = history.strain[:, at]
     found = compared(gauge, history.angle, strain)
-    better = better_described(gauge, found, history.angle, strain, opposite)
-    more = {effect: one for effect, one in followed.more.items() if abs(one.change) > asked.tolerance}
-    neglected = {effect: one.change for effect, one in more.items()}
+    better = better_described(gauge, found, history.angle, strain, None if bridge else history.strain_opposite[:, at])
+    neglected, of_trace = (
+        {effect: one for effect, one in more.items() if abs(one.change) > asked.tolerance}
+        for more in (followed.more, bridge.with_effects if bridge else followed.more)
+    )
     levels = over_torque(gauge, found, history, teeth.loads, at)
     torques = {} if levels else _torques(history, teeth.loads, at, asked.halves)  # a measured torque is known
     return GaugeData(
-        teeth.loads, at, history, followed.place.place, followed.clearance, followed.place.clipped,
+        teeth.loads, at, followed.history, followed.place.place, followed.clearance, followed.place.clipped,
         gauge.load_tolerance, asked.speed, found,
-        Otherwise(better, gauge.side, history.pair.gear(gauge.member).teeth, torques),
+        Otherwise(
+            better, gauge.side, history.pair.gear(gauge.member).teeth, torques, gauge.second,
+            0.0 if bridge else abs(float(history.peak_opposite[at] / history.strain[history.peak_position(at), at])),
+        ),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
-        levels, neglected, including(neglected, asked.effects),
-        _gains(gauge, found, more),
+        levels, {effect: one.change for effect, one in neglected.items()},
+        including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
+        followed.more if asked.in_bridge else {},
     )  # fmt: skip
 
 
@@ -241,7 +257,13 @@ def _row(seen: Seen) -> GaugeRow:
     """The gauge at the nominal load beside other gauges."""
     data: GaugeData = seen.data
     torque = data.loads[data.at] * data.history.pair.driver.base_radius * seen.asked.halves
-    return GaugeRow.of(seen.name, data, torque, float(data.peak_strain[data.at]))
+    return GaugeRow.of(seen.name, data, torque, data.traced_peak)
+
+
+def _subject(seen: Seen) -> str:
+    """Whose trace it is."""
+    data: GaugeData = seen.data
+    return f"Gauge {seen.name} less {data.bridge.second}" if data.bridge else f"Gauge {seen.name}"
 
 
 def _gain(seen: Seen) -> GaugeGain | None:
@@ -311,6 +333,7 @@ _SHEET = Sheet(
         Number("peak_strain_opposite"),
         Number("fillet_ratio"),
         Number("peak_change_by_placement"),
+        Number("bridge_peak", when="bridge"),
         Number("arc", exact, of="place"),
         Number("diameter", exact, of="place"),
         Number("tangent_angle", exact, of="place"),
@@ -330,7 +353,15 @@ _SHEET = Sheet(
                     "angle",
                     (
                         MEASURED, LEFT_OUT,
-                        Line("strain", "computed", error="history.strain_error", look={"markers": False}),
+                        Line(
+                            "strain", lambda seen: f"gauge {seen.name}" if seen.data.bridge else "computed",
+                            error="history.strain_error", look={"markers": False},
+                        ),
+                        Line(
+                            "strain", lambda seen: f"computed, less gauge {seen.data.bridge.second}", "series:5",
+                            error="bridge.history.strain_error", of="bridge.history", look={"markers": False},
+                            when="bridge",
+                        ),
                         *TIMES_SCALE,
                         Line("strain_towards_root", "grid towards the root", "grey", look=DASHED),
                         Line("strain_towards_tip", "grid towards the tip", "grey", look=DOTTED),
@@ -369,8 +400,8 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"Gauge {seen.name}: {seen.data.judged}."] if seen.data.judged else [],
-        lambda seen: [f"Gauge {seen.name}: {seen.data.linearity}."] if seen.data.linearity else [],
+        lambda seen: [f"{_subject(seen)}: {seen.data.judged}."] if seen.data.judged else [],
+        lambda seen: [f"{_subject(seen)}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
@@ -378,8 +409,8 @@ _SHEET = Sheet(
         fact=_gain, common=of_all_gauges,
     ),
     remarks=(
-        Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.verdict), when="verdict"),
-        Remark(lambda seen: about(f"Gauge {seen.name}", seen.data.linearity), when="linearity"),
+        Remark(lambda seen: about(_subject(seen), seen.data.verdict), when="verdict"),
+        Remark(lambda seen: about(_subject(seen), seen.data.linearity), when="linearity"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark(
             lambda seen: f"Gauge {seen.name}: peak strain has an estimated error of {percent(_part(seen))} (tolerance "

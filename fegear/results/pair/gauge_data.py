@@ -11,8 +11,9 @@ from fegear.base.arrays import Array
 from fegear.base.notes import Note, NoteClass, class_of
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.gauge_strain import GaugeHistory, gains_of_places, reach_of_places
+from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_places, reach_of_places
 from fegear.results.pair.gauges_together import GaugeGain
+from fegear.results.pair.half_bridge import HalfBridge
 from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, alike, verdict
 
@@ -82,6 +83,10 @@ class GaugeData(BesideTrace):
         What switches these on.
     gains : mapping of str to float
         Relative change of measured / computed strain with each of them.
+    bridge : HalfBridge or None
+        What a half bridge sees, of which the trace is, with this gauge and a second one.
+    with_effects : mapping of str to StrainWith
+        What the second gauge of a half bridge sees with each effect that is off.
     """
 
     loads: Sequence[float]
@@ -101,6 +106,8 @@ class GaugeData(BesideTrace):
     neglected: Mapping[str, float] = field(default_factory=dict)
     including: str = ""
     gains: Mapping[str, float] = field(default_factory=dict)
+    bridge: HalfBridge | None = None
+    with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
 
     @property
     @shows("s", "time from the first position")
@@ -220,14 +227,34 @@ class GaugeData(BesideTrace):
             judged.kind is NoteClass.INFORMATION, alike(found, self.otherwise),
         )  # fmt: skip
 
+    @property
+    @shows("um/m", "peak of the strain less that of the second gauge of the half bridge", name="bridge_peak_strain")
+    def bridge_peak(self) -> float | None:
+        """At the nominal load; None without a bridge."""
+        return None if self.bridge is None else self.traced_peak
+
+    @property
+    def traced(self) -> GaugeHistory:
+        """What a trace is of: the strain of the gauge, or that of its half bridge."""
+        return self.history if self.bridge is None else self.bridge.history
+
+    @property
+    def traced_peak(self) -> float:
+        """Its peak at the nominal load."""
+        return self._at_traced_peak(self.traced.strain)
+
+    def _at_traced_peak(self, over_loads: Array) -> float:
+        return float(over_loads[self.traced.peak_position(self.at), self.at])
+
     def _computed(self, found: FittedCurve) -> ComputedPeak:
         """What the trace is judged by."""
-        error = self.peak_error
+        history = self.traced
+        error = history.strain_error
+        of_second = np.ones(1) if self.bridge is None else gains_of_places(found, history.angle, self.bridge.displaced)
         return ComputedPeak(
-            float(self.peak_strain[self.at]), 0.0 if error is None else float(error[self.at]),
-            self.history.displacement,
-            gains_of_places(found, self.history.angle, self.history.displaced[:, self.at]),
-            self.load_tolerance, self.gains, self.sharper, self.including,
+            self.traced_peak, 0.0 if error is None else self._at_traced_peak(error),
+            history.displacement, gains_of_places(found, history.angle, history.displaced[:, self.at]),
+            self.load_tolerance, self.gains, self.sharper, self.including, of_second,
         )  # fmt: skip
 
     def _verdict(self, *, brief: bool) -> Judged:

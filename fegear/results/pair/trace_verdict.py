@@ -11,30 +11,41 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.notes import Note, NoteClass, class_of
-from fegear.base.printed import figures, percent, with_rough_error
+from fegear.base.printed import figures, percent
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
 from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
+from fegear.results.pair.likely_cause import likely_causes, place_of_gain
+from fegear.results.pair.trace_named import (
+    drawn_as,
+    drift_named,
+    left_out,
+    runout_named,
+    saturation,
+    thinned,
+    unsteady_named,
+)
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
-#: Most samples of a figure.
-_DRAWN = 2000
 #: Correlation below which shapes differ.
 _ALIKE = 0.98
 #: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
 _JUDGES = 0.1
 #: Change by effects that the computation does not have above which it judges nothing, over the rest of the limit.
 _COUNTS = 0.5
-#: Difference of the gains of turns from which on the torque was not steady: of the gain, and in noise of a single one.
-_STEPPED, _OF_NOISE = 0.15, 8.0
 #: Ratios of measured to computed strain with a reason.
 _FACTORS = {
     0.25: "a quarter bridge evaluated as a full bridge",
     0.5: "half the torque, or a quarter bridge evaluated as a half bridge",
     2.0: "twice the torque, or a half bridge evaluated as a quarter bridge",
     4.0: "a full bridge evaluated as a quarter bridge",
+}
+#: The same of a half bridge with a second gauge.
+_FACTORS_OF_BRIDGE = {
+    0.5: "half the torque, or a strain that the amplifier divided by two active arms (set active_arms = 2)",
+    2.0: "twice the torque, or a strain that was not divided by two active arms (remove active_arms)",
 }
 #: Difference from such a ratio within which it is named at most; a ratio nearer to one needs no reason.
 _NEAR = 0.05
@@ -96,6 +107,8 @@ class ComputedPeak:
         Relative change of measured / computed strain with each effect that the computation does not have.
     sharper, including : str
         Remedies where the computed strain is too rough to judge the measured one, and of effects that are missing.
+    gains_of_second : ndarray
+        As `gains`, with the grid of the second gauge of a half bridge displaced.
     """
 
     strain: float
@@ -106,11 +119,13 @@ class ComputedPeak:
     neglected: Mapping[str, float] = field(default_factory=dict)
     sharper: str = ""
     including: str = ""
+    gains_of_second: Array = field(default_factory=lambda: np.ones(1))
 
     def limits(self, scatter: float) -> Limits:
         """How far a measured strain with a scatter (two standard errors, relative) may differ."""
         size = abs(self.strain)
-        lower, upper = reach_of_places(self.gains, 1.0)
+        by_grids = reach_of_places(self.gains, 1.0), reach_of_places(self.gains_of_second, 1.0)
+        lower, upper = (math.hypot(*one) for one in zip(*by_grids, strict=True))  # each is glued by itself
         known = Limits(lower, upper, self.load_tolerance, self.error / size, scatter)
         return replace(known, neglected=abs(self.missing))
 
@@ -125,16 +140,7 @@ class ComputedPeak:
 
     def place_of(self, gain: float) -> float | None:
         """The smallest displacement that would give this gain [m]; None: not within reach."""
-        if self.gains.size < 2:
-            return None
-        off = self.gains - gain
-        at = np.flatnonzero(off[:-1] * off[1:] <= 0.0)
-        if not at.size:
-            return None
-        step = off[at + 1] - off[at]
-        share = np.where(step == 0.0, 0.0, -off[at] / np.where(step == 0.0, 1.0, step))
-        found = self.displacement[at] + share * (self.displacement[at + 1] - self.displacement[at])
-        return float(found[np.abs(found).argmin()])
+        return place_of_gain(self.displacement, self.gains, gain)
 
 
 @dataclass(frozen=True)
@@ -149,11 +155,17 @@ class Otherwise(BetterDescribed):
         Of its gear.
     torques : mapping of str to float
         Computed peak under other torques of the pair over that under the nominal one, by how they are said.
+    second : str
+        Other gauge of the half bridge that measured; empty for none.
+    fillet_ratio : float
+        Peak of an equal gauge in the other fillet over that of the gauge, in size; zero where it is not known.
     """
 
     side: str = ""
     teeth: int = 1
     torques: Mapping[str, float] = field(default_factory=dict)
+    second: str = ""
+    fillet_ratio: float = 0.0
 
     def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
         """How each change is said, and what to check."""
@@ -163,7 +175,11 @@ class Otherwise(BetterDescribed):
         of_pitches = f" ({pitches:+d} tooth pitch{'es' if abs(pitches) > 1 else ''})" if pitches else ""
         return {
             "curve": (f"the {other} fillet", "fillet"),
-            "sign": ("with its sign reversed", "the polarity of the bridge"),
+            "sign": (
+                "with its sign reversed",
+                f"which of both gauges is subtracted ({self.second}, by bridge)" if self.second else
+                "the polarity of the bridge",
+            ),
             "reverse": ("with its angle reversed", "reverse (direction of the angle)"),
             "shift": (
                 f"shifted by {degrees(one)}{of_pitches}",
@@ -187,7 +203,8 @@ class Otherwise(BetterDescribed):
             return unit
         near = min(max(limit, 0.01), _NEAR)
         torque = next((one for one, factor in self.torques.items() if abs(ratio / factor - 1.0) <= near), "")
-        cause = next((one for factor, one in _FACTORS.items() if abs(ratio / factor - 1.0) <= near), "")
+        causes = _FACTORS_OF_BRIDGE if self.second else _FACTORS
+        cause = next((one for factor, one in causes.items() if abs(ratio / factor - 1.0) <= near), "")
         if torque and cause:  # half the torque is often among those of the pair
             return f", as computed at {torque}, or as of {cause.rpartition(', or ')[2]}; check torque and bridge"
         if torque:
@@ -277,18 +294,6 @@ class BesideTrace:
         raise NotImplementedError
 
 
-def thinned(found: FittedCurve) -> FittedCurve:
-    """As many samples as a figure can show; those that are left out within reach of the others."""
-    some, of_left_out = (slice(None, None, max(-(-size // _DRAWN), 1)) for size in (found.samples, found.left_out.size))
-    low, high = (float(edge(found.measured)) for edge in (np.min, np.max))
-    room = high - low  # a dropout to -9999 would leave of the curve a line
-    return replace(
-        found, angle=found.angle[some], measured=found.measured[some], computed=found.computed[some],
-        left_out_angle=found.left_out_angle[of_left_out],
-        left_out=np.clip(found.left_out[of_left_out], low - room, high + room),
-    )  # fmt: skip
-
-
 def alike(found: FittedCurve, otherwise: Otherwise) -> bool:
     """Whether only the ratio may be wrong: shapes agree, and no other description fits the trace better."""
     return found.gain > 0.0 and found.likeness >= _ALIKE and not otherwise.better
@@ -360,11 +365,12 @@ def verdict(
     else:
         also = f", {_by(with_them)} it with {effects}" if missing else ""
         judged = (
-            f"measured strain does not agree with the computed one: {by} it ({limit}){also}{_to_check(limits, off)}"
+            f"measured strain does not agree with the computed one: {by} it ({limit}){also}"
+            f"{likely_causes(off, peak.load_tolerance, peak.displacement, peak.gains, otherwise.fillet_ratio)}"
         )
     if brief:  # what is said without its notes has to name what falsifies it
         drift = found.unfitted_drift
-        judged += f"; {saturation}" if (saturation := _saturation(found)) else ""
+        judged += f"; {saturated}" if (saturated := saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
         steps = "; the torque was not steady from turn to turn" if unsteady_named(found) else ""
         return Judged(judged + drifts + steps, kind, word=word)
@@ -387,83 +393,3 @@ def _explained(peak: ComputedPeak, limits: Limits, off: float) -> str:
         ways.append(f"a grid {abs(place) * 1e3:.2g} mm nearer to the {'tip' if place > 0.0 else 'root'}")
     ways.append(f"a torque or gauge factor {percent(abs(off))} {'higher' if off >= 0.0 else 'lower'}")
     return f"; {' or '.join(ways)} would explain it"
-
-
-def _to_check(limits: Limits, off: float) -> str:
-    """What to look at first where a difference is beyond the limit."""
-    needed = f"load and gauge factor ({percent(abs(off))} {'higher' if off >= 0.0 else 'lower'} would explain it)"
-    if not limits.placement(off):
-        return f"; check {needed}"
-    return f"; check {needed}, then whether the grid is within placement_tolerance"
-
-
-def drawn_as(found: FittedCurve | None) -> str:
-    """How figures draw a trace, a sentence after others; empty without one."""
-    if found is None:
-        return ""
-    less = " and ".join(one for one in ("offset", "drift") if one in found.fit)
-    said = " Points: strain as measured" + (f", less the fitted {less}" if less else "")
-    if "scale" in found.fit:
-        said += f"; thin line: the computed curve times the fitted scale, {found.scale:.3f}"
-    return f"{said}." + (
-        " Crosses: samples left out of the comparison, far ones nearer than they are." if found.left_out.size else ""
-    )
-
-
-def left_out(found: FittedCurve | None) -> str:
-    """Samples that are no measurement, a sentence without a subject; empty for none."""
-    if found is None or not found.spikes + found.saturated:
-        return ""
-    of = f"of {found.samples + found.spikes + found.saturated} samples"
-    said = [f"{found.spikes} {of} are spikes or dropouts"] if found.spikes else []
-    said += [f"{_saturation(found, of)} (range of the amplifier)"] if found.saturated else []
-    return f"{' and '.join(said)}; left out of the comparison, drawn as crosses"
-
-
-def _saturation(found: FittedCurve, of: str = "samples") -> str:
-    """What is saturated, and where; empty for none."""
-    if found.saturated_at is None:
-        return ""
-    return f"{found.saturated} {of} are saturated at {figures(found.saturated_at * 1e6)} µm/m"
-
-
-def drift_named(found: FittedCurve | None) -> str:
-    """What a trace drifts by where nobody asked for it, a sentence without a subject; empty where it does not."""
-    if found is None or found.trend_error is None or (drift := found.unfitted_drift) is None:
-        return ""
-    return (
-        f"the measured strain drifts by {with_rough_error(drift * 1e6, found.trend_error * 1e6)} µm/m per turn "
-        f"({figures(drift * found.turns * 1e6)} µm/m over {figures(found.turns)} turns), which falsifies offset and "
-        'residual; add "drift" and "offset" to fit'
-    )
-
-
-def runout_named(found: FittedCurve | None) -> str:
-    """What a trace has once per turn, a sentence without a subject; empty where that is little."""
-    if found is None or (wave := found.wave) is None or not (found.wave_less or found.unfitted_runout):
-        return ""
-    size = with_rough_error(wave.amplitude * 1e6, wave.error * 1e6)
-    measured, place = (
-        math.degrees(one or 0.0) for one in (found.runout_measured_angle, found.runout_angle)
-    )  # fmt: skip
-    said = (
-        f"once per turn the measured strain has {size} µm/m with its maximum at {measured:.0f}° of the measured angle, "
-        f"a rotation of {place:.0f}° from the contact of the tooth of the gauge at the pitch point"
-    )
-    if found.wave_less:
-        return f"{said}, subtracted"
-    return f'{said} (bending of the shaft, runout, slip ring), not subtracted; add "runout" and "offset" to fit'
-
-
-def unsteady_named(found: FittedCurve | None) -> str:
-    """That a gain differs from turn to turn by more than noise, a sentence without a subject; empty where not."""
-    if found is None or not (gains := found.turn_gains).size:
-        return ""
-    low, high = float(gains.min()), float(gains.max())
-    one = found.gain_noise * math.sqrt(gains.size)
-    if found.gain <= 0.0 or high - low <= max(_STEPPED * abs(found.gain), _OF_NOISE * one):
-        return ""
-    return (
-        f"measured / computed strain is {low:.2f} to {high:.2f} from turn to turn: the torque was not steady; add its "
-        "column (torque_column), or give one file per torque"
-    )

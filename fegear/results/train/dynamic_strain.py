@@ -11,7 +11,8 @@ from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.base.notes import about
 from fegear.base.printed import percent
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, sharper_strain
+from fegear.base.shown import shows
+from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
@@ -87,6 +88,8 @@ class DynamicStrainInputs:
     neglected : bool
         Whether it is looked at what effects that are off would change: a trace is judged.
     tolerance : float
+    in_bridge : bool
+        Whether it is the second gauge of a half bridge.
     off : EffectsPart
         All of the case, for remedies.
     """
@@ -104,6 +107,7 @@ class DynamicStrainInputs:
     odd: bool = field(default=False, compare=False)
     neglected: bool = False
     tolerance: float = 1.0
+    in_bridge: bool = False
     off: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
 
 
@@ -126,6 +130,14 @@ class DynamicStrain(BesideTrace):
         Relative change of the quasi-static peak by each effect that is off and changes it by more than the tolerance.
     including : str
         What switches these on.
+    seen : ToothStrain or None
+        What a half bridge sees, of which the trace is; None without one.
+    displaced_second : ndarray, shape (P, G), or None
+        The same with the grid of its second gauge displaced.
+    with_effects : mapping of str to StrainWith
+        Quasi-static strain with each effect that is off, of the second gauge of a half bridge.
+    gains : mapping of str to float
+        Relative change of measured / computed strain by each neglected effect of what the trace is of.
     """
 
     found: ToothStrain
@@ -136,6 +148,17 @@ class DynamicStrain(BesideTrace):
     sharper: str = ""
     neglected: Mapping[str, float] = field(default_factory=dict)
     including: str = ""
+    seen: ToothStrain | None = None
+    displaced_second: Array | None = None
+    with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
+    gains: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    @shows("um/m", "dynamic peak of the strain less that of the second gauge of the half bridge",
+           name="dynamic_bridge_peak_strain")  # fmt: skip
+    def bridge_peak(self) -> float | None:
+        """None without a bridge."""
+        return None if self.seen is None else self.seen.peak
 
     @property
     def error(self) -> Array | None:
@@ -148,18 +171,19 @@ class DynamicStrain(BesideTrace):
         return not self.alone
 
     def _verdict(self, *, brief: bool) -> Judged:
-        found = self.found
-        if self.compared is None or (self.sharper and found.peak_error is None):
+        if self.compared is None or (self.sharper and self.found.peak_error is None):
             return Judged("")
-        return verdict(
-            self.compared,
-            ComputedPeak(
-                found.peak, found.peak_error or 0.0, found.displacement,
-                gains_of_places(self.compared, found.angle, found.displaced), self.load_tolerance,
-                {effect: 1.0 / (1.0 + change) - 1.0 for effect, change in self.neglected.items()}, self.sharper,
-                self.including,
-            ),
-            self.otherwise, brief=brief,
+        return verdict(self.compared, self._computed(self.compared), self.otherwise, brief=brief)
+
+    def _computed(self, compared: FittedCurve) -> ComputedPeak:
+        """What the trace is judged by."""
+        found, of_second = self.seen or self.found, np.ones(1)
+        if self.displaced_second is not None:
+            of_second = gains_of_places(compared, found.angle, self.displaced_second)
+        return ComputedPeak(
+            found.peak, found.peak_error or 0.0, found.displacement,
+            gains_of_places(compared, found.angle, found.displaced), self.load_tolerance, self.gains, self.sharper,
+            self.including, of_second,
         )  # fmt: skip
 
 
@@ -184,14 +208,16 @@ def _check(scene: Scene, name: str) -> None:
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     gauge, force = gauge_of(scene, name), Task("tooth-force", _mesh(scene, name))
+    second = (Task("dynamic-strain", gauge.second),) if gauge.second else ()
     if gauge.pair in scene.wide_pairs:
-        return (force, *needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
-    return (force, *(needs_teeth(scene, gauge.pair) if _judged(scene, name) else ()), *needs_solution(gauge.gear))
+        return (force, *second, *needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear))
+    teeth = needs_teeth(scene, gauge.pair) if _judged(scene, name) else ()
+    return (force, *second, *teeth, *needs_solution(gauge.gear))
 
 
 def _judged(scene: Scene, name: str) -> bool:
     """Whether a trace is compared that needs a verdict, and thus what the computation does not have."""
-    return scene.estimates and scene.case.gauge[name].measured is not None
+    return scene.estimates and (scene.case.gauge[name].measured is not None or name in seconds_of_bridges(scene))
 
 
 def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
@@ -200,7 +226,8 @@ def _inputs(scene: Scene, name: str) -> DynamicStrainInputs:
         gauge, _mesh(scene, name), part.one_speed, part.positions,
         scene.case.effects.neighbour_coupling, RootEffects.of(scene.case.effects), gauge.pair in scene.wide_pairs,
         scene.case.pair[gauge.pair].halves, sharper_strain(scene, gauge.pair), name,
-        bool(odd_gears_of(scene, gauge.pair)), _judged(scene, name), scene.case.accuracy.tolerance, scene.case.effects,
+        bool(odd_gears_of(scene, gauge.pair)), _judged(scene, name), scene.case.accuracy.tolerance,
+        name in seconds_of_bridges(scene), scene.case.effects,
     )  # fmt: skip
 
 
@@ -209,14 +236,25 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
     gauge = asked.gauge
     found = (_on_face if asked.wide else _in_plane)(asked, upstream, force)
     alone = len(force.train.exciters) == 1
-    measured = compared(gauge, found.angle, found.total)
-    better = better_described(gauge, measured, found.angle, found.total)
-    otherwise = Otherwise(better, gauge.side, found.pair.gear(found.member).teeth)
     more = _neglected_of(asked, upstream) if asked.neglected else {}
-    neglected = {effect: one.change for effect, one in more.items() if abs(one.change) > asked.tolerance}
+    seen, displaced, of_trace = None, None, more
+    if gauge.second:
+        other: DynamicStrain = upstream[Task("dynamic-strain", gauge.second)]
+        seen, displaced = found.less(other.found), found.less_displaced(other.found)
+        peak = float(np.abs(seen.static).max())
+        of_trace = {one: more[one].less(other.with_effects[one], peak) for one in more if one in other.with_effects}
+    of = seen or found
+    measured = compared(gauge, of.angle, of.total)
+    better = better_described(gauge, measured, of.angle, of.total)
+    otherwise = Otherwise(better, gauge.side, of.pair.gear(of.member).teeth, second=gauge.second)
+    neglected, changes = (
+        {effect: one.change for effect, one in each.items() if abs(one.change) > asked.tolerance}
+        for each in (more, of_trace)
+    )
     return DynamicStrain(
         found, alone, gauge.load_tolerance, measured, otherwise, asked.sharper if asked.wide else "", neglected,
-        including(neglected, asked.off),
+        including(dict.fromkeys([*neglected, *changes]), asked.off), seen, displaced,
+        more if asked.in_bridge else {}, {effect: 1.0 / (1.0 + change) - 1.0 for effect, change in changes.items()},
     )  # fmt: skip
 
 
@@ -281,6 +319,12 @@ def _peak(seen: Seen) -> list[str]:
     ]
 
 
+def _subject(seen: Seen) -> str:
+    """Whose trace it is."""
+    second = seen.asked.gauge.second
+    return f"Gauge {seen.name} less {second}" if second else f"Gauge {seen.name}"
+
+
 def _neglected(seen: Seen) -> str:
     """What an effect that is off would change, and the remedy."""
     effect, change = seen.one
@@ -302,6 +346,7 @@ _SHEET = Sheet(
         Number("peak_angle", of="found"),
         Number("ratio", of="found"),
         Number("change_by_placement", of="found"),
+        Number("bridge_peak", when="seen"),
         *comparison_values("dynamic_"),
     ),
     figures=(
@@ -317,6 +362,10 @@ _SHEET = Sheet(
                         Line("own", "static and own increment", look={"markers": False}),
                         Line("total", "with other meshes", "with other meshes", look={"width": 1.2}, when="others"),
                         Line("static", "quasi-static", "static"),
+                        Line(
+                            "total", lambda seen: f"less gauge {seen.asked.gauge.second}", "series:5", of="seen",
+                            look={"markers": False}, when="seen",
+                        ),
                         *TIMES_SCALE,
                     ),
                     "total",
@@ -328,7 +377,7 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"Gauge {seen.name}, in motion: {seen.data.judged}."] if seen.data.judged else [],
+        lambda seen: [f"{_subject(seen)}, in motion: {seen.data.judged}."] if seen.data.judged else [],
         _peak,
         "Gauge {name}: displaced within its tolerance the dynamic peak changes by up to "
         "{v[dynamic_change_by_placement]}.",
@@ -336,7 +385,7 @@ _SHEET = Sheet(
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
-        Remark(lambda seen: about(f"Gauge {seen.name}, in motion", seen.data.verdict), when="verdict"),
+        Remark(lambda seen: about(f"{_subject(seen)}, in motion", seen.data.verdict), when="verdict"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
