@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 HOUSE = Path(__file__).resolve().parents[2] / "fegear"
+HOLDS = (ast.stmt, ast.excepthandler, ast.match_case)
 
 
 def name_of(path: Path) -> str:
@@ -17,7 +18,10 @@ def name_of(path: Path) -> str:
 def imported(source: str, modules: Iterable[str]) -> set[str]:
     """Modules of the house that a source imports, wherever it does: at the top, within a function, for annotations."""
     known, found = set(modules), set()
-    for node in ast.walk(ast.parse(source)):
+    todo: list[ast.AST] = [ast.parse(source)]
+    while todo:  # an import is a statement: no expression is looked into
+        node = todo.pop()
+        todo += (one for one in ast.iter_child_nodes(node) if isinstance(one, HOLDS))
         if isinstance(node, ast.ImportFrom) and node.module in known:
             full = {f"{node.module}.{one.name}" for one in node.names}
             found |= (full & known) or {node.module}

@@ -52,6 +52,13 @@ def copy(tmp_path_factory):
     return root
 
 
+@pytest.fixture(scope="module")
+def unchanged(copy, below):
+    """Versions of all and of each package of the copy as it is before each test and after it."""
+    forget()
+    return code_version(root=copy), {name: code_version(name, root=copy) for name in below}
+
+
 def test_a_copy_elsewhere_has_the_version_of_the_original(copy):
     forget()
     assert code_version(root=copy) == code_version()
@@ -59,10 +66,8 @@ def test_a_copy_elsewhere_has_the_version_of_the_original(copy):
 
 
 @pytest.mark.parametrize("changed", [pytest.param(p, marks=() if p in QUICK else pytest.mark.dear) for p in PACKAGES])
-def test_one_byte_changes_the_version_of_everything_above_and_nothing_else(changed, below, copy):
-    forget()
-    before = {name: code_version(name, root=copy) for name in below}
-    whole = code_version(root=copy)
+def test_one_byte_changes_the_version_of_everything_above_and_nothing_else(changed, below, copy, unchanged):
+    whole, before = unchanged
     path = max((copy / changed).rglob("*.py"), key=lambda one: (len(one.parts), one))
     kept = path.read_bytes()
     try:
@@ -166,9 +171,7 @@ def test_two_checkouts_that_share_a_cache_give_their_own_answers(tmp_path):
     """Run and sweep, each twice: each checkout computes once, and takes nothing of the other's."""
     (tmp_path / "case.toml").write_text(CASE)
     for name in ("one", "other"):
-        shutil.copytree(
-            package_folder(), tmp_path / name / "fegear", ignore=shutil.ignore_patterns("__pycache__")
-        )  # fmt: skip
+        shutil.copytree(package_folder(), tmp_path / name / "fegear")  # with its bytecode: that of a change is made anew
     law = tmp_path / "other" / "fegear" / "fem" / "plane" / "elasticity.py"
     text = law.read_text()
     law.write_text(text.replace("mu = 0.5 / (1.0 + nu)", "mu = 0.45 / (1.0 + nu)"))

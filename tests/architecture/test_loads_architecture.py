@@ -65,18 +65,22 @@ def loads_in(value: ast.expr) -> set[str]:
     return here.union(*(loads_in(part) for part in ast.iter_child_nodes(value) if isinstance(part, ast.expr)))
 
 
-def imported_elsewhere(source: str) -> set[str]:
+def imported_elsewhere(nodes: list[ast.AST]) -> set[str]:
     """Names of functions that a module takes from other rooms than the formulas, whose names may be the same."""
-    rows = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom))
+    rows = (node for node in nodes if isinstance(node, ast.ImportFrom))
     return {one.name for row in rows if not (row.module or "").startswith("fegear.formulas") for one in row.names}
 
 
 def mixed(sources: dict[str, str], takers: dict[str, list[str]]) -> list[str]:
     """Calls that hand a load of one kind over under the name of the other."""
     faults = []
+    called_at_all = re.compile(rf"\b(?:{'|'.join(takers)})\b")
     for name, source in sources.items():
-        elsewhere = imported_elsewhere(source)
-        for call in (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)):
+        if not called_at_all.search(source):
+            continue
+        nodes = list(ast.walk(ast.parse(source)))
+        elsewhere = imported_elsewhere(nodes)
+        for call in (node for node in nodes if isinstance(node, ast.Call)):
             called = getattr(call.func, "attr", getattr(call.func, "id", ""))
             given, keywords = list(call.args), {one.arg: one.value for one in call.keywords}
             if called == "partial" and given:
