@@ -28,10 +28,10 @@ def column(results, head):
 def test_it_settles_at_the_resonance_and_where_it_does_not_a_sentence_says_what_was_seen():
     """It does not stall near resonance, as was claimed here, but far above it, by the swing of the shafts."""
     averaged = run([2000, 10_500, 11_000, 28_000])
-    newton = run([2000, 10_500, 11_000, 28_000], **{"dynamics.method": "shooting"})
+    newton = run([2000, 10_500, 11_000], **{"dynamics.method": "shooting"})
     assert list(column(averaged, "motion")) == ["periodic"] * 3 + ["not settled"]
     factor, error = (np.array(column(averaged, head)) for head in ("dynamic_factor", "dynamic_factor_error"))
-    assert np.all(np.abs(factor - column(newton, "dynamic_factor"))[:3] <= error[:3])
+    assert np.all(np.abs(factor[:3] - column(newton, "dynamic_factor")) <= error[:3])
     assert column(averaged, "repetitions")[3] == 1000
     assert max(column(averaged, "repetitions")[:3]) < 400
     said = [remark for remark in averaged.remarks if remark.startswith("Averaging iteration")]
