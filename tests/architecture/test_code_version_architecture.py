@@ -171,7 +171,7 @@ def test_two_checkouts_that_share_a_cache_give_their_own_answers(tmp_path):
     """Run and sweep, each twice: each checkout computes once, and takes nothing of the other's."""
     (tmp_path / "case.toml").write_text(CASE)
     for name in ("one", "other"):
-        shutil.copytree(package_folder(), tmp_path / name / "fegear")  # with its bytecode: that of a change is made anew
+        shutil.copytree(package_folder(), tmp_path / name / "fegear")  # with bytecode: that of a change is made anew
     law = tmp_path / "other" / "fegear" / "fem" / "plane" / "elasticity.py"
     text = law.read_text()
     law.write_text(text.replace("mu = 0.5 / (1.0 + nu)", "mu = 0.45 / (1.0 + nu)"))

@@ -48,7 +48,7 @@ UNCOUNTED = {
 
 
 def _sources(folder: Path, named: str) -> Iterator[tuple[str, ast.Module]]:
-    """Modules in which a name stands at all, one after the other: trees of all of them at once are a million objects."""
+    """Modules in which a name stands, one after the other: trees of all of them at once are a million objects."""
     for path in sorted(folder.rglob("*.py")):
         if named in (source := path.read_text()):
             yield path.relative_to(HOUSE).as_posix(), ast.parse(source)
