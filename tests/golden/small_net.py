@@ -8,7 +8,7 @@ number of numbers, the smallest, largest and mean, and a sum in which every numb
 changes place unnoticed; of notes and answer the numbers in them, and how many notes there are of each class; in which
 order values, tables and figures come; of a figure how many texts it has, of the report how many parts of each kind.
 Beside the numbers of figures those of their looks would drown: widths, sizes, limits and choices of axes and curves
-have a sum of their own in ``small_net_looks.json``, and so have choices of tables, settings and the answer's figure.
+have a sum of their own in ``small_net_looks.json``, and so have those of tables and the answer's figure.
 Words do not count, nor differences below a millionth of the largest number, in errors of 0.1 %, in sentences of one in
 the last digit printed. Cases of the folder ``small`` take each key of a subject.
 """
@@ -264,7 +264,6 @@ def looks_of(found):
     """What is kept of how a run shows its numbers, by name."""
     kept = {f"figure {figure.name}": _of_choices(figure.made()) for figure in found.figures}
     kept["tables"] = _of_choices([(table.printed, table.matlab) for table in found.tables])
-    kept["settings"] = _of_choices([dict(one.settings) for one in found.outcomes.values()])
     figures, tables = [one.name for one in found.figures], [one.name for one in found.tables]
     said = found.answer
     kept["figure and tables of the answer"] = [
