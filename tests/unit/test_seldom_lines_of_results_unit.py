@@ -30,11 +30,11 @@ def test_a_bearing_to_change_to_is_said_with_what_differs_from_the_present_6205(
     seat = BearingSeat(length=16e-3)
     now = BearingAtGlance("A", "s", 1.0, 0.0, 60e6, 1000.0 * 3600.0, 0.9, designation="6205", seat=seat)
     assert _changed_to(now, bearing("6305", 25, 62, 17, 90e6)) == (
-        "6305 instead of 6205 (outside diameter 62 mm, width 17 mm, seat longer than 16 mm): 1500 h by its estimated C"
+        "6305 instead of 6205 (outside diameter 62 mm, width 17 mm, seat longer than 16 mm): 1500 h by its tabulated C"
     )
-    assert _changed_to(now, bearing("same", 25, 52, 15, 60e6)) == "same instead of 6205: 1000 h by its estimated C"
+    assert _changed_to(now, bearing("same", 25, 52, 15, 60e6)) == "same instead of 6205: 1000 h by its tabulated C"
     assert _changed_to(now, bearing("wide", 30, 52, 16, 30e6)) == (
-        "wide instead of 6205 (bore 30 mm, width 16 mm): 500 h by its estimated C"
+        "wide instead of 6205 (bore 30 mm, width 16 mm): 500 h by its tabulated C"
     )
     longest, thicker = bearing("30205", 25, 52, 15, 45e6, 2), bearing("6206", 30, 62, 16, 120e6)
     none = "no tabulated bearing that fits this seat lasts"
@@ -46,7 +46,7 @@ def test_a_bearing_to_change_to_is_said_with_what_differs_from_the_present_6205(
         (BearingChange(None, None, thicker), none + thick),
         (BearingChange(None, longest, thicker), none + near + thick),
         (BearingChange(bearing("same", 25, 52, 15, 60e6), longest, thicker),
-         "same instead of 6205: 1000 h by its estimated C"),
+         "same instead of 6205: 1000 h by its tabulated C"),
     ):  # fmt: skip
         assert _advised(now, change) == said
 

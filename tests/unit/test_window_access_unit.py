@@ -14,6 +14,7 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, parse_document
+from fegear.window import access
 from fegear.window.access import LOOKS, Doorkeeper, Keys, account_of, file_leading_to
 from fegear.window.bench import Bench
 from fegear.window.document import Desk
@@ -273,6 +274,15 @@ def places(tmp_path, monkeypatch):
 
 
 OUTSIDE = "is outside the open folders"
+
+
+@pytest.mark.parametrize(("account", "let_in"), [(0, True), (1, False), (1000, True), (1001, False), (None, True)])
+def test_only_the_owner_of_the_window_and_the_administrator_come_in(monkeypatch, account, let_in):
+    """Whoever runs the window: here account 1000. Where the system does not tell who asks, the key decides."""
+    monkeypatch.setattr(access.os, "getuid", lambda: 1000)
+    monkeypatch.setattr(access, "account_of", lambda _client, _port: account)
+    door = Doorkeeper(page, 5000, Keys())
+    assert door._is_ours({}, HOST) is let_in
 
 
 def test_the_page_opens_files_below_the_folders_that_were_opened(places):
