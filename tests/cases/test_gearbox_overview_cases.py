@@ -19,17 +19,11 @@ from fegear.engine.run_answer import _within
 from fegear.engine.stage import Task
 from fegear.geometry.flank_modification import HelixSlope
 from fegear.results.catalogue import STAGES
-from fegear.results.shafts.gearbox_data import (
-    CAUSE_WORDS,
-    BearingAtGlance,
-    GearboxData,
-    MeshAtGlance,
-    Safety,
-    _of_mesh,
-    end_of_slope,
-)
-from fegear.results.shafts.gearbox_overview import _sentences
+from fegear.results.shafts.at_glance import BearingAtGlance, MeshAtGlance, Safety
+from fegear.results.shafts.gearbox_changes import CAUSE_WORDS, change_of_mesh, end_of_slope
+from fegear.results.shafts.gearbox_data import GearboxData
 from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
+from fegear.results.shafts.gearbox_sentences import sentences
 
 CASES = Path(__file__).parents[2] / "cases"
 RATED = {"strength": {"material": "case-hardened-steel"}, "tolerance_class": 6, "roughness": {"flank_rz": "4 um",
@@ -101,28 +95,34 @@ def test_causes_add_up_and_the_table_is_in_order(usual):
     assert np.all(np.diff(meshes["load_margin"]) >= 0.0)
 
 
-def test_an_overload_names_what_fails_first_and_at_most_three():
+def test_an_overload_names_all_that_fails_and_begins_with_the_verdict():
     run, outcome = overview(6.0)
-    changes = outcome.data.changes
-    assert 0 < len(changes) <= 3
-    margins = [one.margin for one in changes]
-    assert margins == sorted(margins)
-    assert max(margins) < 1.0
-    everything = [one.margin for one in (*outcome.data.meshes, *outcome.data.bearings) if math.isfinite(one.margin)]
-    assert margins[0] == pytest.approx(min(everything))
-    said = run.answer.results[0].sentences if hasattr(run.answer, "results") else outcome.answer.sentences
-    assert any("Change 1" in one for one in said)
-    bearing = next(one for one in changes if one.part.startswith("bearing"))
-    weakest = outcome.data.bearings[0]
-    assert said[0].startswith(f"Pair {outcome.data.meshes[0].pair}, the weakest of 2: S_H ")
+    data = outcome.data
+    failing = [one for one in (*data.meshes, *data.checked) if one.margin < 1.0]
+    short = [one for one in data.bearings if one.margin < 1.0]
+    tilted = [one for one in data.bearings if one.tilted is not None and one.tilted.margin < 1.0]
+    assert len(data.changes) == len(failing) + len(short) + len(tilted) > 3
+    assert all(one.fails and one.verdict and one.brief for one in data.changes)
+    kinds = [one.part.split()[0] for one in data.changes[:3]]
+    assert sorted(kinds) == ["bearing", "pair", "shaft"]  # the weakest of each first
+    everything = [one.margin for one in (*data.meshes, *data.bearings) if math.isfinite(one.margin)]
+    assert data.changes[0].margin == pytest.approx(min(everything))
+    said = outcome.answer.sentences
+    weakest = data.bearings[0]
+    assert said[0].startswith("Fails: ")
+    assert said[0].count(" required)") + said[0].count("arcmin") >= 3
+    assert f"and {len(data.changes) - 4} more" in said[0] or len(data.changes) <= 4
+    lines = said[1].splitlines()
+    assert [line.split(",")[0] for line in lines[:3]] == ["Change 1", "Change 2", "Change 3"]
+    assert len(lines) == 4
+    assert all(one.part in said[1] for one in data.changes)
     assert said[2].startswith(f"Bearing {weakest.bearing} of shaft {weakest.shaft}, the weakest of ")
     assert "(required 5000 h); shaft mid, the weakest of 3: nominal stress " in said[2]
     assert said[2].endswith("S_yield 1.11 (minimum 1.2).")
-    assert " ".join(said).count("Change ") == len(changes)
-    assert said[1].startswith("Change 1, ")
     assert all(one.count("K_Hβ") <= 1 for one in (said[0], *said[2:]))
     assert run.answer.tables == ("gearbox_changes", "gearbox_meshes", "gearbox_bearings", "gearbox_shafts")
     assert not any("mesh stiffness" in one for one in run.answer.sentences)
+    bearing = next(one for one in data.changes if one.part.startswith("bearing"))
     assert "times as large" in bearing.remedy
 
 
@@ -143,7 +143,7 @@ def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_le
     def said(remaining):
         one = replace(mesh(margin=0.8), remaining=remaining)
         data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=(), failures=(), checked=())
-        return " ".join(_sentences(types.SimpleNamespace(data=data)))
+        return " ".join(sentences(types.SimpleNamespace(data=data)))
 
     assert said(12e-6) == (
         "Pair I: S_H 0.80 (minimum 1), S_F 2.00 (minimum 1.4) at K_Hβ 1.80 (ISO 6336-1, with manufacturing "
@@ -156,14 +156,14 @@ def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_le
 
 
 def test_the_remedy_follows_the_cause():
-    assert _of_mesh(mesh(factor=1.1)) is None
-    assert "crowning" in _of_mesh(mesh(peak=0.1)).remedy
-    assert "end II" in _of_mesh(mesh()).finding
-    assert "bearings" in _of_mesh(mesh()).remedy
-    assert "thicker shaft" in _of_mesh(mesh(by=(1e-6, 0.0, 13e-6, -2e-6))).remedy
+    assert change_of_mesh(mesh(factor=1.1)) is None
+    assert "crowning" in change_of_mesh(mesh(peak=0.1)).remedy
+    assert "end II" in change_of_mesh(mesh()).finding
+    assert "bearings" in change_of_mesh(mesh()).remedy
+    assert "thicker shaft" in change_of_mesh(mesh(by=(1e-6, 0.0, 13e-6, -2e-6))).remedy
     # a cause against the sum is none: bending makes this misalignment smaller
     assert mesh(over=-4e-6, by=(-10e-6, 0.0, 11e-6, -5e-6)).main_cause == 0
-    weak = _of_mesh(mesh(margin=0.64))
+    weak = change_of_mesh(mesh(margin=0.64))
     assert weak.finding.startswith("S_H 0.80 of 1 (pitting), 64 %")
     assert "S_H" not in weak.remedy  # no number without a rating
     assert "against K_Hβ 1.80 of the rating; or 1.56 times the face width at equal K factors" in weak.remedy
@@ -172,29 +172,29 @@ def test_the_remedy_follows_the_cause():
 def test_the_safety_after_a_lead_correction_is_that_of_the_rating():
     """2.24 -> 1.6 on the flanks; what is said is that of the rating, with manufacturing deviations."""
     weak = replace(mesh(margin=0.64), lead=LevelLead(4e-6, 2.24, 1.6, 3e-6))
-    unrated = _of_mesh(weak).remedy
+    unrated = change_of_mesh(weak).remedy
     assert (
         "helix slope C_Hβ 4 µm with more removal at end II and crowning C_β 3 µm on the driver; estimate, grind that of"
         in unrated
     )
     assert "S_H" not in unrated
-    failing_still = _of_mesh(replace(weak, levelled=Safety(0.9, 2.3, (1.0, 1.4), 1.42))).remedy
+    failing_still = change_of_mesh(replace(weak, levelled=Safety(0.9, 2.3, (1.0, 1.4), 1.42))).remedy
     assert "of lead-correction): S_H 0.90 at K_Hβ 1.42 in place of 1.80 of the rating, or " in failing_still
     assert failing_still.count("K_Hβ") == 1
     assert "; with the lead correction still 1.23 times the face width" in failing_still
-    enough = _of_mesh(replace(weak, levelled=Safety(1.1, 2.3, (1.0, 1.4), 1.2))).remedy
+    enough = change_of_mesh(replace(weak, levelled=Safety(1.1, 2.3, (1.0, 1.4), 1.2))).remedy
     assert "S_H 1.10" in enough
     assert "face width" not in enough
-    sagging = _of_mesh(replace(weak, lead=LevelLead(0.0, 2.24, 1.6, 3e-6))).remedy
+    sagging = change_of_mesh(replace(weak, lead=LevelLead(0.0, 2.24, 1.6, 3e-6))).remedy
     assert "(crowning C_β 3 µm on the driver" in sagging
     # what is named is the whole lead, as that of the lead correction
-    present = _of_mesh(replace(weak, present=(-1e-6, 2e-6))).remedy
+    present = change_of_mesh(replace(weak, present=(-1e-6, 2e-6))).remedy
     assert (
         "helix slope C_Hβ 3 µm with more removal at end II and crowning C_β 5 µm on the driver, in place of" in present
     )
-    flat = _of_mesh(replace(weak, present=(-4e-6, 2e-6), lead=LevelLead(4e-6, 2.24, 1.6, -2e-6))).remedy
+    flat = change_of_mesh(replace(weak, present=(-4e-6, 2e-6), lead=LevelLead(4e-6, 2.24, 1.6, -2e-6))).remedy
     assert "(crowning C_β 0 µm on the driver, in place of its present lead; estimate" in flat
-    assert "face width" in _of_mesh(replace(weak, lead=LevelLead(4e-6, 2.59, 2.5))).remedy
+    assert "face width" in change_of_mesh(replace(weak, lead=LevelLead(4e-6, 2.59, 2.5))).remedy
 
 
 def test_a_life_below_the_required_one_fails_in_a_note_and_its_change_stays_beside_another_answer():
@@ -204,7 +204,7 @@ def test_a_life_below_the_required_one_fails_in_a_note_and_its_change_stays_besi
     assert (note.kind, note.margin) == (NoteClass.FAILS, 0.35)
     assert note.startswith("Bearing A: basic rating life 214 h of 5000 h required on shaft in; a dynamic load rating ")
     assert not list(replace(box, bearings=(lasting,)).said_of_lives())
-    said = list(_sentences(types.SimpleNamespace(data=box)))
+    said = list(sentences(types.SimpleNamespace(data=box)))
     beside = _within([said, ["Pair I: grind.", "Pair II: grind.", "Pair III: grind."]])
     assert any("bearing A of shaft in: life 214 h of 5000 h" in one for one in beside)
 
@@ -214,7 +214,13 @@ def test_a_weak_mesh_is_changed_before_a_second_bearing():
     lives = tuple(bearing(name, 1e9, margin) for name, margin in (("A", 0.4), ("B", 0.6), ("C", 0.7)))
     weak, uneven = mesh(margin=0.79), replace(mesh(factor=1.8), pair="II")
     box = GearboxData(None, None, (weak, uneven), lives, 1.8e7)
-    assert [one.part for one in box.changes] == ["bearing A of shaft in", "pair I", "bearing B of shaft in"]
+    assert [one.part.split(" of")[0] for one in box.changes] == ["bearing A", "pair I", "bearing B", "bearing C"]
+    said = list(sentences(types.SimpleNamespace(data=box)))
+    assert said[0] == (
+        "Fails: bearing A life 320 h (5000 h required), pair I pitting S_H 0.80 (1 required), bearing B life 1080 h "
+        "(5000 h required), bearing C life 1710 h (5000 h required)."
+    )
+    assert said[1].splitlines()[3] == ("Change 4: bearing C of shaft in: a dynamic load rating C 1.43 times as large.")
     # load that is uneven fails nothing: every failure comes before it
     box = GearboxData(None, None, (uneven,), lives[:2], 1.8e7)
     assert [one.part for one in box.changes] == ["bearing A of shaft in", "bearing B of shaft in", "pair II"]
@@ -286,11 +292,11 @@ def test_the_drawing_has_its_centre_distances_and_displacements(usual):
 def test_what_cannot_be_built_begins_the_answer_and_is_the_first_change():
     note = failing("Gear a and shaft b intersect: radii 143.6 mm, axes 124.5 mm apart; move one along its shaft", 0.9)
     box = GearboxData(None, None, (mesh(margin=0.64),), (bearing("A", 1e9, 0.2),), 1.8e7, (note,))
-    first, *others = _sentences(types.SimpleNamespace(data=box))
+    first, *others = sentences(types.SimpleNamespace(data=box))
     assert first == "Cannot be built: Gear a and shaft b intersect: radii 143.6 mm, axes 124.5 mm apart."
     (change,) = [one for one in others if one.startswith("Change 1, ")]
     assert change.startswith("Change 1, assembly: Gear a and shaft b intersect")
-    assert "apart; move one along its shaft. Change 2, " in change  # all three, within five sentences
+    assert "apart; move one along its shaft.\nChange 2, " in change  # all of them, within five sentences
     assert len(others) < 5
 
 

@@ -15,7 +15,7 @@ from fegear.case.reading import build_scene
 from fegear.design.flanks.lead_correction import LeadCorrection, LevelLead
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.results.rating.rating import given, rated
-from fegear.results.shafts.gearbox_data import MeshAtGlance, Safety
+from fegear.results.shafts.at_glance import MeshAtGlance, Safety
 from fegear.results.shafts.gearbox_overview import _levelled
 from fegear.results.shafts.lead_correction import _ground_lead, _leads
 from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with

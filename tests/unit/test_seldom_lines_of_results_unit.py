@@ -12,7 +12,8 @@ from fegear.results.planetary.compound_set import _answer
 from fegear.results.relief.relief_over_face_sheet import _figure, _grind
 from fegear.results.relief.tolerance_data import Sampled
 from fegear.results.shafts import gearbox_overview
-from fegear.results.shafts.gearbox_data import BearingAtGlance, _advised, _changed_to
+from fegear.results.shafts.at_glance import BearingAtGlance
+from fegear.results.shafts.gearbox_changes import _advised, _changed_to
 from fegear.results.sizing import estimated
 from fegear.results.sizing.sizing_sheet import _failed
 from fegear.results.train.torque_ripple import MeshSwing

@@ -91,10 +91,14 @@ def _answer(
     short = [DataTable(table, brief=True) for table in named]
     figure = next((one for one in drawn if one.figure.key == answer.figure and answer.figure not in shown), None)
     first = 1 if answer.overviews else len(answer.sentences)
+    before, behind = (
+        [line for sentence in part for line in sentence.splitlines()]
+        for part in (answer.sentences[:first], answer.sentences[first:])
+    )
     blocks: tuple[Block, ...] = (
-        *(Notes(part, "answer") for part in (answer.sentences[:first],) if part),
+        *(Notes(part, "answer") for part in (before,) if part),
         *(DataTable(table.filled, brief=True) for table in answer.overviews),
-        *(Notes(part, "answer") for part in (answer.sentences[first:],) if part),
+        *(Notes(part, "answer") for part in (behind,) if part),
     )
     if figure is None:
         return (*blocks, *short)

@@ -10,7 +10,6 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of, neglecting, ordered
-from fegear.base.printed import figures
 from fegear.case.built.bearing_room import seats_of
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
@@ -28,19 +27,20 @@ from fegear.results.pair.loaded_flanks import loaded_flanks
 from fegear.results.pair.loaded_teeth import check_teeth, loaded_pairs
 from fegear.results.rating.rated_methods import methods
 from fegear.results.rating.rating_data import RatingData
-from fegear.results.shafts.checked_shafts import ShaftChecks, checked_shafts, checks_of, said_of_checks
-from fegear.results.shafts.drawn_gearbox import drawn_gearbox
-from fegear.results.shafts.gearbox_data import (
-    CAUSE_WORDS,
+from fegear.results.shafts.at_glance import (
     BearingAtGlance,
-    GearboxData,
     MeshAtGlance,
     Safety,
     bearings_at_glance,
     meshes_in_order,
     safeties,
 )
+from fegear.results.shafts.checked_shafts import ShaftChecks, checked_shafts, checks_of, said_of_checks
+from fegear.results.shafts.drawn_gearbox import drawn_gearbox
+from fegear.results.shafts.gearbox_changes import CAUSE_WORDS
+from fegear.results.shafts.gearbox_data import GearboxData
 from fegear.results.shafts.gearbox_scheme import scheme
+from fegear.results.shafts.gearbox_sentences import sentences
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
     inputs_of_shafts,
@@ -55,8 +55,6 @@ from fegear.shafts.designations import designation_of
 from fegear.shafts.gearbox import CAUSES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from fegear.base.arrays import Array
     from fegear.base.notes import Note
     from fegear.case.built.rated_pair import PairToRate
@@ -75,8 +73,6 @@ if TYPE_CHECKING:
     from fegear.shafts.life import LifeRating
 
 
-#: Linear gap [m] that modifications change by less is that of the shafts.
-_MODIFIED = 0.1e-6
 #: A cause with less of the sum of all is none: seats that are rigid leave round-off.
 _ROUND_OFF = 1e-12
 
@@ -184,9 +180,9 @@ def _designation(part: BearingPart) -> str:
     """That of the case, otherwise one with the dimensions of its catalogue; empty where none is known."""
     if part.designation is not None:
         return part.designation
-    if (printed := part.printed) is None or (printed.kind == "ball" and printed.contact_angle):
+    if (printed := part.printed) is None:
         return ""
-    return designation_of(printed.kind, printed.bore, printed.outside_diameter, printed.width)
+    return designation_of(printed.kind, printed.bore, printed.outside_diameter, printed.width, printed.given_angle)
 
 
 def _speeds(scene: Scene) -> dict[str, float]:
@@ -317,86 +313,6 @@ def _check(scene: Scene, _name: str) -> None:
         raise InputError("shaft", "(no pair)", "has no mesh to evaluate", "mount both gears of a pair on shafts")
 
 
-def _sentences(seen: Seen) -> Iterator[str]:
-    """Why it cannot be built, the weakest mesh and bearing, what to change first or to improve where all suffices."""
-    data: GearboxData = seen.data
-    changes = [
-        f"{'Change' if one.urgent else 'Improve'} {number + 1}, {one.part}: {one.finding}; {one.remedy}."
-        for number, one in enumerate(data.changes)
-    ]
-    state = [f"Cannot be built: {data.changes[0].finding}."] if data.failures else []
-    rated, misaligned, weakest = _states(data)
-    if any(one.margin < 1.0 for one in data.changes):
-        # an answer has five sentences, fewer beside another result's: what fails must be among the first two
-        first, *others = *state, *rated, *weakest, *misaligned
-        yield first
-        yield " ".join(changes)
-        yield from others
-    else:
-        yield from (*rated, *misaligned, *weakest, *changes[:1])
-        if changes[1:]:
-            yield " ".join(changes[1:])
-
-
-def _states(data: GearboxData) -> tuple[list[str], list[str], list[str]]:
-    """Sentences on the safeties and the misalignment of the weakest mesh, and on the weakest bearing and shaft."""
-    safety: list[str] = []
-    first = data.meshes[0]
-    many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
-    known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
-    if math.isfinite(first.margin):
-        known += [
-            f"{symbol} {value:.2f} (minimum {figures(minimum)})"
-            for symbol, value, minimum in (
-                ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
-            )
-        ]  # fmt: skip
-        said = ", ".join(known)
-        if rated and first.safety is not None:
-            said += f" at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
-        safety.append(f"Pair {first.pair}{many}: {said}.")
-        known, many = [], ""
-    modified = ""
-    if abs(first.remaining - first.over_face) > _MODIFIED:
-        modified = f" (linear gap with the flank modifications {figures(first.remaining * 1e6, 2)} µm)"
-    known.append(f"misaligned by {figures(first.over_face * 1e6)} µm{modified}")
-    if math.isfinite(first.face_load_factor):
-        known.append(
-            f"K_Hβ {first.face_load_factor:.2f}" + (" of the loaded flanks (without these deviations)" if rated else "")
-        )
-    if math.isfinite(first.te_peak_to_peak):
-        known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
-    weakest = "; ".join(one for one in (_weakest_bearing(data), _weakest_shaft(data)) if one)
-    return (
-        safety, [f"Pair {first.pair}{many}: {', '.join(known)}."],
-        [f"{weakest[0].upper()}{weakest[1:]}."] if weakest else [],
-    )  # fmt: skip
-
-
-def _weakest_bearing(data: GearboxData) -> str:
-    """Of those with a life: the first in order, which has the least margin or the shortest life."""
-    lives = [one for one in data.bearings if math.isfinite(one.life)]
-    if not lives:
-        return ""
-    first = lives[0]
-    life = (
-        f"{figures(first.duration / 3600.0)} h" if math.isfinite(first.duration)
-        else f"{figures(first.life * 1e-6)} million revolutions"
-    )  # fmt: skip
-    required = f" (required {figures(data.required_hours / 3600.0)} h)" if math.isfinite(data.required_hours) else ""
-    many = f", the weakest of {len(lives)}" if len(lives) > 1 else ""
-    return f"bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}"
-
-
-def _weakest_shaft(data: GearboxData) -> str:
-    if not data.checked:
-        return ""
-    one, many = data.checked[0], len(data.checked)
-    of = f", the weakest of {many}" if many > 1 else ""
-    stress, safety = figures(one.equivalent * 1e-6), f"S_yield {one.safety:.2f} (minimum {figures(one.required)})"
-    return f"shaft {one.shaft}{of}: nominal stress {stress} MPa at {figures(one.at * 1e3)} mm, {safety}"
-
-
 def _by_cause(n: int, cause: str) -> Cell:
     return Cell(
         "by_cause", lambda seen: [one.by_cause[n] for one in seen.data.meshes], name=f"misalignment_{cause}",
@@ -437,7 +353,7 @@ _NOTCHES = (
 
 _SHEET = Sheet(
     answer=Answer(
-        _sentences, figure="gearbox",
+        sentences, figure="gearbox",
         covers=("misalignment", "shaft-deflection", "load-distribution", "rating", "transmission-error"),
         tables=("gearbox_changes", "gearbox_meshes", "gearbox_bearings", "gearbox_shafts"),
     ),

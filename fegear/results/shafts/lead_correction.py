@@ -18,7 +18,7 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
 from fegear.results.relief.grinding import CROWNING, OF_LEADS, SLOPE, Grinding, grinding_table
-from fegear.results.shafts.gearbox_data import end_of_slope
+from fegear.results.shafts.gearbox_changes import end_of_slope
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
     LoadedShaftsInputs,

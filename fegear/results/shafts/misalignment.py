@@ -22,7 +22,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.shafts.gearbox_data import CAUSE_WORDS
+from fegear.results.shafts.gearbox_changes import CAUSE_WORDS
 from fegear.results.shafts.loaded_shafts import LOADED_SHAFTS_TASK, loaded_shafts, shafts_of
 from fegear.shafts.gearbox import CAUSES, MeshGap, MeshMisalignment, MeshState
 
