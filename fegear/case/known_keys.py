@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -65,6 +65,24 @@ def part_models(annotation: object) -> list[type[BaseModel]]:
 
 def keys_at(loc: Sequence[str]) -> list[str]:
     """Return the known keys of the table at `loc`; none where the tables carry names of the user's choice."""
+    return sorted({name for model in _models_at(loc) for name in model.model_fields})
+
+
+def words_at(loc: Sequence[str]) -> list[str]:
+    """The words that the key at `loc` takes; none where it takes other values."""
+    fields = [model.model_fields.get(loc[-1]) for model in _models_at(loc[:-1])]
+    return sorted({word for field in fields if field is not None for word in _words(field.annotation)})
+
+
+def _words(annotation: object) -> Iterator[str]:
+    for inner in get_args(annotation):
+        if get_origin(annotation) is not Literal:
+            yield from _words(inner)
+        elif isinstance(inner, str):
+            yield inner
+
+
+def _models_at(loc: Sequence[str]) -> list[type[BaseModel]]:
     models: list[type[BaseModel]] = [Case]
     steps = list(loc)
     while steps:
@@ -75,7 +93,7 @@ def keys_at(loc: Sequence[str]) -> list[str]:
                 return []
             steps.pop(0)  # the name that the user gave
         models = [model for annotation in annotations for model in part_models(annotation)] or models
-    return sorted({name for model in models for name in model.model_fields})
+    return models
 
 
 def places_of(key: str) -> list[str]:

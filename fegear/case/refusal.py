@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import PATH, InputError, shown
-from fegear.case.known_keys import keys_at, places_of
+from fegear.case.known_keys import keys_at, places_of, words_at
 from fegear.case.nearest import nearest
 from fegear.case.trade_words import Meaning, of_key, of_value
 
@@ -128,6 +128,10 @@ def _as_table(loc: Sequence[str], value: object) -> str:
     """How a table is written in whose place there is a single value: with the value as its source, or which keys."""
     known = keys_at(loc)
     if "source" in known and isinstance(value, str):
+        words = words_at([*loc, "source"])
+        near = get_close_matches(value.lower(), words, n=1)
+        if near and value not in words:
+            return f'did you mean {loc[-1]} = {{ source = "{near[0]}" }}? The sources are {", ".join(words)}'
         return f"use {loc[-1]} = {{ source = {shown(value, PATH)} }}"
     return f"use {loc[-1]} = {{ ... }} with its keys: {', '.join(known)}" if 0 < len(known) <= _FEW_KEYS else ""
 

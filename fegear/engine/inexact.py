@@ -25,9 +25,9 @@ _ORDERED = 6
 def is_inexact(value: Value, tolerance: float) -> bool:
     """Whether a value is known less well than the tolerance requires and than 1 %: enough to change a decision.
 
-    One that is meant to be zero is not: `Outcome` compares its error with the values beside it.
+    One that is meant to be zero is not: `Outcome` compares its error with the values beside it; nor is a choice.
     """
-    if value.zero or not value.error or abs(value.value) <= _ROUND_OFF * value.error:
+    if value.zero or value.choice or not value.error or abs(value.value) <= _ROUND_OFF * value.error:
         return False
     return value.error > max(tolerance, _MISLEADING) * abs(value.value)
 

@@ -34,9 +34,15 @@ _ROUGH, _NAMED = 0.2, 3
 def _is_rough(value: Value, beside: Iterable[Value]) -> bool:
     """Whether an estimated error is a large part of its value, and more than digits of the values beside it.
 
-    A value of exactly zero has no part: its error says all.
+    A value of exactly zero has no part: its error says all. That of a choice is the width of its optimum.
     """
-    if not value.si_error or not value.si or not math.isfinite(value.si) or not math.isfinite(value.si_error):
+    if (
+        value.choice
+        or not value.si_error
+        or not value.si
+        or not math.isfinite(value.si)
+        or not math.isfinite(value.si_error)
+    ):
         return False
     largest = max(abs(one.si) for one in beside if one.unit == value.unit and math.isfinite(one.si))
     if value.zero or abs(value.si) <= (ROUND_OFF * largest if value.unit else 0.0):

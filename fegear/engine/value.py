@@ -30,6 +30,9 @@ class Value(Alike):
         One clause for the report.
     zero : bool
         Whether it is meant to be zero: its error is then a part of the largest value of the unit beside it.
+    choice : bool
+        Whether it is chosen among equally good ones: its error says how sharp the optimum is, not how well the result
+        is known, and no finer computation makes it smaller.
     """
 
     name: str
@@ -38,6 +41,7 @@ class Value(Alike):
     si_error: float | None = None
     meaning: str = ""
     zero: bool = False
+    choice: bool = False
 
     def __repr__(self) -> str:
         """Name, number with the digits of its error, error and unit on one line."""

@@ -60,6 +60,8 @@ def check_given(tooth: GivenNumbers) -> None:
     fewest = max(3, math.ceil(5.0 * math.cos(tooth.helix_angle) ** 3 - 1e-9))  # as many as five of a spur gear
     if not fewest <= z <= 1000:
         remedy = "a rack has a table of its own: [rack.NAME]"
+        if z < 0.0:
+            remedy = f"a ring gear has internal = true and teeth = {-int(z)}"
         raise GeometryError("teeth", z, f"must be between {fewest} and 1000", remedy)
     object.__setattr__(tooth, "teeth", int(z))
     for name in ("profile_shift", "thickness_allowance", "tip_rounding", "tip_chamfer"):

@@ -65,9 +65,26 @@ def below_form_circle(pair: GearPair, tip_of: Member) -> bool:
     pair : GearPair
     tip_of : {"driver", "driven"}
     """
+    return below_form_by(pair, tip_of) > 0.0
+
+
+def below_form_by(pair: GearPair, tip_of: Member) -> float:
+    """How far the involute's tip of one gear would reach beyond the start of the mating involute.
+
+    Along the line of action [m], negative where it does not.
+    """
     reach = float(pair.x_of_radius(pair.gear(tip_of).involute_tip_radius, tip_of))
-    limit = float(pair.x_of_radius(pair.gear(_MATE[tip_of]).form_radius, _MATE[tip_of]))
-    return reach > limit if tip_of == "driver" else reach < limit
+    return (reach - _limit(pair, tip_of)) * (1.0 if tip_of == "driver" else -1.0)
+
+
+def clear_tip_radius(pair: GearPair, tip_of: Member) -> float:
+    """Tip radius with which the involute of one gear ends where that of the mate starts [m]."""
+    return float(pair.radius(_limit(pair, tip_of), tip_of))
+
+
+def _limit(pair: GearPair, tip_of: Member) -> float:
+    """Where on the line of action the involute of the mate starts [m]."""
+    return float(pair.x_of_radius(pair.gear(_MATE[tip_of]).form_radius, _MATE[tip_of]))
 
 
 def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interference:

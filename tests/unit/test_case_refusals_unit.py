@@ -244,10 +244,14 @@ def test_override_values_are_toml_and_else_text():
     assert document["accuracy"] == {"tolerance": 0.01}
 
 
+SOURCES = "cornell, fe, potential-energy, potential-energy-simplified, table, weber-banaschek"
+
+
 @pytest.mark.parametrize(
     ("override", "remedy"),
     [
         ("pair.I.compliance=cornell", 'use compliance = { source = "cornell" }'),
+        ("pair.I.compliance=cornel", f'did you mean compliance = {{ source = "cornell" }}? The sources are {SOURCES}'),
         ("pair.I.compliance=5", "use compliance = { ... } with its keys: file, fit, of, source"),
         ("effects=true", ""),  # too many keys to be written out
     ],

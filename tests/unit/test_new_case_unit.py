@@ -27,7 +27,9 @@ from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
 from fegear.contact.wide.on_shafts import EvenForces, load_gearbox
 from fegear.engine.plan import make_plan
+from fegear.geometry.tip_interference import below_form_by
 from fegear.results.catalogue import STAGES
+from fegear.results.relief.interference_words import said_of_interference
 
 
 @pytest.fixture
@@ -193,6 +195,9 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--teeth", "21", "wheel"), "unexpected extra argument"),
         (("x", "--teeth", "21", "53", "80"), "must be 2 numbers"),
         (("x", "--teeth", "3", "53"), "between 5 and 1000"),
+        (("x", "--teeth", "-31", "97"), "must be positive; for a ring gear use --kind relief or pair, and 31 -97"),
+        (("x", "--kind", "helical", "--teeth", "31", "-97"), "for a ring gear use --kind relief or pair"),
+        (("x", "--kind", "relief", "--teeth", "31", "-97", "--helix-angle", "9 deg"), "not drafted for a ring gear"),
         (("x", "7"), "unexpected extra argument"),
         (("x", "--tip-relief", "20 um", "4"), '--relief-length = "4": has no unit'),
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
@@ -301,6 +306,28 @@ def test_a_relief_design_takes_a_helix_and_a_range_of_torques():
     plan = make_plan(scene, STAGES)
     assert "flank-design" in {step.task.stage for step in plan.steps}
     assert "helix" not in draft(Answers("relief", {}), "x")
+
+
+@pytest.mark.parametrize(
+    ("kind", "teeth", "shift"),
+    [("relief", "31 -97", "0.15 0"), ("pair", "24 -70", "0.3 0"), ("relief", "45 -90", "0")],
+)
+def test_a_negative_number_of_teeth_drafts_a_ring_gear_whose_tips_clear_the_pinion(kind, teeth, shift):
+    text = draft(Answers(kind, {"teeth": teeth, "profile_shift": shift}), "x")
+    scene = build_scene(tomllib.loads(text), "x", Path())
+    pair, (first, second) = scene.pairs["I"], teeth.split()
+    assert (pair.driver.teeth, pair.driven.teeth, pair.driven.tooth.internal) == (int(first), -int(second), True)
+    assert below_form_by(pair, "driven") <= 0.0
+    assert f'# centre_distance = "{pair.centre_distance * 1e3:.6g} mm"' in text
+    make_plan(scene, STAGES)
+    assert list(said_of_interference("I", pair, {})) == []
+    default = build_scene(tomllib.loads(re.sub(r"\ntip_diameter = .*", "", text)), "x", Path()).pairs["I"]
+    found = list(said_of_interference("I", default, {"driver": "p", "driven": "w"}))
+    drawn = re.search(r'\ntip_diameter = "([\d.]+) mm"', text)
+    if drawn is None:
+        assert found == []
+    else:
+        assert found[0].endswith(f"it requires a tip_diameter of at least {float(drawn[1]):.2f} mm.")
 
 
 def test_a_relief_design_of_a_helical_pair_takes_a_helix_deviation():

@@ -14,6 +14,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.grinding import TIP, Grinding
+from fegear.results.relief.ground_tips import said_of_flat_optima
 from fegear.results.relief.relief_over_range import LeftOverRange, said_at, said_of_range, said_of_undefined
 from fegear.results.relief.relief_robustness import as_designed
 
@@ -88,6 +89,31 @@ def test_a_relief_far_below_its_tolerance_is_named():
         "Pair I: 0.057 µm on gear p is below a quarter of its tolerance (± 5 µm) and cannot be ground; omit it, or set "
         "weights that emphasise the larger torques."
     )
+
+
+def test_reliefs_that_nobody_can_grind_are_no_reliefs():
+    """A range of torques from almost none on: its optimum is 0.1 um."""
+    first, *further = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 0.11e-6), load=np.array([20.0, 2000.0]))
+    assert first == (
+        "Pair I: no tip relief needed from 1 N m to 100 N m: the optimum, 0.057 µm on gear p and 0.11 µm on gear w, is "
+        "below a quarter of its tolerance (± 5 µm) and cannot be ground; transmission error without relief 7 µm at "
+        "100 N m, 3.7 µm at 1 N m, peak to peak."
+    )
+    assert [" limit the relief" in one for one in further] == [True]
+    first, *_ = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
+    assert first.startswith("Pair I: grind 6 µm from d 60.0 mm on gear w, linear: ")
+
+
+@pytest.mark.parametrize(("low", "said"), [(10.4e-6, 1), (11.6e-6, 0)])
+def test_amounts_of_a_flat_optimum_are_a_band(low, said):
+    tip = SimpleNamespace(
+        band=(SimpleNamespace(amount=low), SimpleNamespace(amount=12.8e-6 if said else low)), error=(1.2e-6, 0.0),
+        relief=SimpleNamespace(amount=11.6e-6), shape="parabolic", member="driver",
+    )  # fmt: skip
+    sharp = SimpleNamespace(**{**vars(tip), "error": (1e-9, 0.0), "member": "driven"})
+    seen = Seen(SimpleNamespace(tips=(tip, sharp)), SimpleNamespace(gears={"driver": "p", "driven": "w"}), "I")
+    band = "10 to 13 µm on gear p with their best starts leave at most 1 % more than the minimum."
+    assert list(said_of_flat_optima(seen)) == [f"Pair I: flat optimum of parabolic tip relief: {band}"][:said]
 
 
 WITHIN = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length at most "

@@ -61,6 +61,14 @@ def test_a_value_that_is_meant_to_be_zero_is_judged_by_those_beside_it():
     assert not is_inexact(replace(left, zero=True), 1e-2)
 
 
+def test_the_error_of_a_choice_among_equally_good_ones_is_no_inaccuracy():
+    amount = value("linear_tip_amount", 11.6e-6, 4e-6)
+    assert is_inexact(amount, 1e-2)
+    assert len(Outcome(values=(amount,)).remarks) == 1
+    assert not is_inexact(replace(amount, choice=True), 1e-2)
+    assert Outcome(values=(replace(amount, choice=True),)).remarks == ()
+
+
 def test_a_large_error_of_a_value_beside_larger_ones_is_noted():
     swing, dead, small = value("swing", 1e-6, 0.3e-6), value("dead", 1e-15, 5e-6), value("small", 1e-9, 1e-9)
     (said,) = Outcome(values=(value("mean", 20e-6, 1e-9), swing, dead, small), sharper_by="increase n").remarks

@@ -30,6 +30,10 @@ _FACE = 10.0
 HELICAL = ("helical", "gearbox", TWO_STAGES)
 
 
+#: Kinds whose driven gear may be a ring gear.
+_WITH_RING = ("pair", "relief")
+
+
 #: Answer to a question about what a drawing need not have.
 _NONE = "none"
 #: What only an option gives, although it has a value otherwise: requirements, not of the drawing.
@@ -53,6 +57,8 @@ class Question(NamedTuple):
         Of the quantity; "teeth", "numbers" or "rack" for what is none.
     ranges : bool
         Whether it may be a range, "120 to 320 N m".
+    ring : bool
+        Whether the last number of teeth may be negative: a ring gear.
     """
 
     name: str
@@ -60,6 +66,7 @@ class Question(NamedTuple):
     default: str
     dimension: str
     ranges: bool = False
+    ring: bool = False
 
     @property
     def optional(self) -> bool:
@@ -117,6 +124,9 @@ class Answers:
         if self.has("lead_error") and not self.helical:
             told = f'"{self["lead_error"]}"'
             raise InputError("--lead-error", told, "requires a helical pair", "specify --helix-angle, or remove it")
+        if self.internal and self.helical:
+            told = f'"{self["helix_angle"]}"'
+            raise InputError("--helix-angle", told, "is not drafted for a ring gear", "remove it")
         if self.has("tip_relief") != self.has("relief_length"):
             told = f'"{self["tip_relief"]}" over "{self["relief_length"]}"'
             raise InputError("--tip-relief", told, "must have both amount and length", 'for example "20 um" "4 mm"')
@@ -142,6 +152,11 @@ class Answers:
     def helical(self) -> bool:
         """Whether the gears are helical: always, or where an angle is given."""
         return self.kind in HELICAL or (self.kind == "relief" and self.has("helix_angle"))
+
+    @property
+    def internal(self) -> bool:
+        """Whether the driven gear is a ring gear, whose number of teeth is negative."""
+        return self.numbers("teeth")[-1].startswith("-")
 
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: two are those of each stage, else the last one is repeated."""
@@ -231,6 +246,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
                 else ("Teeth", "60" if kind == "ring" else "28")
             ),
             "teeth",
+            ring=kind in _WITH_RING,
         ),
         Question(
             "module",
@@ -298,7 +314,12 @@ def check(question: Question, gears: int, text: str) -> None:
     """
     key = _option(question.name)
     if question.dimension == "teeth":
-        if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in _split(text)):
+        *others, last = _split(text) or [""]
+        if any(re.fullmatch(r"-[0-9]{1,9}", part) for part in (others if question.ring else [*others, last])):
+            rule = "must be positive"
+            raise InputError(key, f'"{text}"', rule, "for a ring gear use --kind relief or pair, and 31 -97")
+        last = last.removeprefix("-") if question.ring else last
+        if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in (*others, last)):
             raise InputError(key, f'"{text}"', "must be whole numbers", "for example 21 53")
         if len(_split(text)) != gears:
             raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, one for each gear")

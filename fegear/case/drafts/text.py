@@ -6,15 +6,18 @@ import json
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from importlib.resources import files
 from string import Template
 
+from fegear.base.errors import GeometryError
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.drafts.shafts_text import amount, length, shafts_text
 from fegear.case.drafts.two_stages import LaidOut, centre_distance, laid_out, two_stages, with_room
 from fegear.case.text_file import toml_string
+from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.rack import BasicRack
 
@@ -222,6 +225,9 @@ def _gear(answers: Answers, number: int, other: Mapping[str, str] | None = None)
     texts["profile_shift"] = repr(shift)
     if answers.kind == "ring":
         return _ring(answers, texts, shift)
+    if answers.internal and number:
+        texts["teeth"] = texts["teeth"].removeprefix("-")
+        return _cleared(_ring(answers, texts, shift), answers) + texts["relief"] + "\n"
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
     module, teeth, dedendum = answers.si("module"), int(texts["teeth"]), BasicRack.named(answers["rack"]).dedendum
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
@@ -266,12 +272,39 @@ def _modified_by_assumption(answers: Answers) -> bool:
 
 
 def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
-    """A ring gear with a cutter of two fifths of its teeth, which makes involutes up to usual tip circles."""
+    """A ring gear with a cutter of two fifths of its teeth, which makes involutes up to usual tip circles.
+
+    Of half of them where a pinion reaches deep into its spaces.
+    """
     teeth, module = int(texts["teeth"]), answers.si("module")
+    cutter = teeth // 2 if answers.internal else 2 * teeth // 5
     return _RING.format(
-        **texts, cutter=max(10, 2 * teeth // 5), rim=json.dumps(length(USUAL_RING_RIM * module)),
+        **texts, cutter=max(10, cutter), rim=json.dumps(length(USUAL_RING_RIM * module)),
         tip_diameter=length(module * (teeth - 2.0 * (1.0 + shift))),
     )  # fmt: skip
+
+
+def _cleared(text: str, answers: Answers) -> str:
+    """A ring gear with the tip circle that clears its pinion's fillet, where the default one does not.
+
+    The involute of the pinion begins at its root form circle, where the ring's tip may touch it at most (ISO 21771).
+    """
+    teeth, ring = (abs(int(z)) for z in answers.numbers("teeth"))
+    shift, of_ring = map(float, answers.numbers("profile_shift"))
+    module, pressure = answers.si("module"), answers.si("pressure_angle")
+    rack = replace(BasicRack.named(answers["rack"]), pressure_angle=pressure)
+    try:
+        form = Tooth(teeth, rack, profile_shift=shift).form_radius
+    except GeometryError:
+        return text  # refused with the case
+    base, of_pinion = (0.5 * z * math.cos(pressure) for z in (ring, teeth))
+    along = math.sqrt(max((centre_distance(answers) / module) ** 2 - (base - of_pinion) ** 2, 0.0))
+    clear = math.hypot(base, along + math.sqrt(max(form**2 - of_pinion**2, 0.0)))
+    if clear <= 0.5 * ring - 1.0 - of_ring:
+        return text
+    diameter = math.ceil(2.0 * clear * module * 1e5) / 1e5
+    said = f'tip_diameter = "{length(diameter)}"     # clears the fillet of the pinion; d - 2 m (1 + x) does not'
+    return re.sub(r"# tip_diameter = .*", said, text)
 
 
 def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:

@@ -261,14 +261,17 @@ def _ratio(stage: Answers) -> float:
 
 
 def centre_distance(answers: Answers) -> float:
-    """Of two gears without backlash [m] (ISO 21771, 5.4.4): inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) x/z."""
+    """Of two gears without backlash [m] (ISO 21771, 5.4.4): inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) x/z.
+
+    The number of teeth of a ring gear is negative.
+    """
     turn = math.cos(answers.si("helix_angle")) if answers.helical else 1.0
     teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
     normal = math.tan(answers.si("pressure_angle"))
     angle = math.atan(normal / turn)
     # Shifts that leave no involute are refused with the case.
     working = float(pressure_angle_of_inv(max(math.tan(angle) - angle + 2.0 * normal * shifts / teeth, 1e-12)))
-    return 0.5 * answers.si("module") * teeth / turn * math.cos(angle) / math.cos(working)
+    return 0.5 * answers.si("module") * abs(teeth) / turn * math.cos(angle) / math.cos(working)
 
 
 def _radii(stage: Answers) -> tuple[float, float]:

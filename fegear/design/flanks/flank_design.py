@@ -380,7 +380,7 @@ def _starts(held: Sequence[FamilyBest]) -> list[GroundRelief]:
     found = [valley for one in held for valley in one.valleys]
     tips, leads = ([one for one in held if one.family == family] for family in ("profile", "lead"))
     sums = [
-        GroundRelief.of(profile.numbers + lead.numbers)
+        GroundRelief.of(profile.numbers + lead.numbers, profile.tip_power)
         for first in tips for second in leads for profile, lead in product(first.valleys, second.valleys)
     ]  # fmt: skip
     return [*found, *sums]

@@ -38,6 +38,8 @@ class Number:
         Objects for each of which there is such a value; whether there is one.
     zero : where, optional
         Whether it is meant to be zero, see `Value`.
+    choice : bool
+        Whether it is chosen among equally good ones, see `Value`.
     finite : bool
         Whether an infinite one is no value either.
     """
@@ -55,6 +57,7 @@ class Number:
     finite: bool = False
     ending: Text = ""
     zero: Where | None = None
+    choice: bool = False
 
     def values(self, seen: Seen) -> Iterator[Value]:
         """Those that there are."""
@@ -73,4 +76,5 @@ class Number:
                 load=one.nominal, name=one.said(self.name), ending=one.said(self.ending),
                 meaning=one.said(self.meaning), further=one.said(self.further),
             )  # fmt: skip
-            yield replace(made, zero=True) if self.zero is not None and one.holds(self.zero) else made
+            zero = self.zero is not None and one.holds(self.zero)
+            yield replace(made, zero=zero, choice=self.choice) if zero or self.choice else made

@@ -26,6 +26,7 @@ from fegear.results.relief.flank_design_data import FlanksShown
 from fegear.results.relief.flank_design_ends import end_notes
 from fegear.results.relief.grinding import TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
+from fegear.results.relief.interference_words import said_of_interference
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_range import (
@@ -167,6 +168,10 @@ def _left(seen: Seen, label: str) -> tuple[Array, Array]:
         return data.over_range[label].torque, data.over_range[label].peak_to_peak
     state = next(state for state in data.design.states if state.label == label)
     return np.array([data.load * data.data.pair.driver.base_radius]), np.array([state.judged.peak_to_peak.value])
+
+
+def _interference(seen: Seen) -> Iterator[str]:
+    yield from said_of_interference(seen.name, seen.data.data.pair, seen.asked.gears)
 
 
 def _grind(seen: Seen) -> Iterator[str]:
@@ -436,7 +441,7 @@ FLANK_DESIGN_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        _grind, _exact, _scattered,
+        _interference, _grind, _exact, _scattered,
         figure=lambda seen: seen.said(
             "relief_over_torque_{name}" if len(seen.data.design.task.loads) > 1 else "flank_topography_{name}"
         ),

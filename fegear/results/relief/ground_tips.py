@@ -14,9 +14,10 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import roll_in_drawing
+from fegear.results.relief.answer_numbers import told_apart
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.transmission_error import TransmissionError
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen, Where
     from fegear.geometry.gear import Gear
     from fegear.geometry.relief import EndRelief
+
+#: Estimated error of an amount over it from which its optimum is flat.
+_SHARP = 0.01
 
 
 @dataclass(frozen=True)
@@ -170,8 +174,23 @@ def _tip_number(head: str, what: str, words: str, number: int) -> Number:
     quantity = "relief.amount" if what == "amount" else what
     return Number(
         quantity, lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
-        meaning=meaning,
+        meaning=meaning, choice=True,
     )  # fmt: skip
+
+
+def said_of_flat_optima(seen: Seen) -> Iterator[str]:
+    """Where amounts of a wide range are equally good: their estimated errors are no inaccuracy of the result."""
+    flat: dict[str, list[str]] = {}
+    for tip in seen.data.tips:
+        low, high = (one.amount for one in tip.band)
+        if high > low and tip.error[0] > _SHARP * tip.relief.amount:
+            band = " to ".join(told_apart(low, high))
+            flat.setdefault(tip.shape, []).append(f"{band} µm on gear {seen.asked.gears[tip.member]}")
+    for shape, bands in flat.items():
+        yield (
+            f"Pair {seen.name}: flat optimum of {shape} tip relief: {' and '.join(bands)} with their best starts leave "
+            "at most 1 % more than the minimum."
+        )
 
 
 def _errors(which: str, what: int) -> Callable[[Seen], Array]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fegear.engine.sheet.answer import Answer
 from fegear.results.relief.answer_numbers import microns, torque_words
+from fegear.results.relief.interference_words import said_of_interference
 from fegear.results.relief.relief_over_range import said_at, said_of_range
 
 if TYPE_CHECKING:
@@ -22,6 +23,10 @@ _HALF = (0.3, 0.7)
 def _best(seen: Seen) -> str:
     """Shape of the tip relief to be ground; empty where none is designed."""
     return next(iter(seen.data.data.design.shapes), "")
+
+
+def _interference(seen: Seen) -> Iterator[str]:
+    yield from said_of_interference(seen.name, seen.data.data.pair.pair, seen.asked.gears)
 
 
 def _grind(seen: Seen) -> Iterator[str]:
@@ -66,4 +71,4 @@ def _figure(seen: Seen) -> str:
     return f"relief_over_torque_{seen.name}" if seen.data.for_range else f"relief_{seen.name}"
 
 
-RELIEF_ANSWER = Answer(_grind, _at_half_load, _exact, figure=_figure)
+RELIEF_ANSWER = Answer(_interference, _grind, _at_half_load, _exact, figure=_figure)

@@ -15,6 +15,7 @@ from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import grinding_table
 from fegear.results.relief.ground_tips import tip_numbers
 from fegear.results.relief.harris import HARRIS_CHART
+from fegear.results.relief.interference_words import said_of_interference
 from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_face_data import TipsShown
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS, said_at
@@ -29,6 +30,10 @@ def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_")
 
 
+def _interference(seen: Seen) -> Iterator[str]:
+    yield from said_of_interference(seen.name, seen.data.data.pair, seen.asked.gears)
+
+
 def _grind(seen: Seen) -> Iterator[str]:
     if seen.data.shapes:
         yield from said_at(seen, seen.data.ends, seen.data.ends)
@@ -41,7 +46,7 @@ def _figure(seen: Seen) -> str:
 
 RELIEF_OVER_FACE_SHEET = Sheet(
     of=TipsShown,
-    answer=Answer(_grind, figure=_figure),
+    answer=Answer(_interference, _grind, figure=_figure),
     tables=(
         grinding_table("grinding_{name}", "Tip relief to grind on {name}", "grinding"),
         OVER_RANGE,

@@ -171,7 +171,14 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         best, rows = d.over_range[f"{shape} tip relief"], _ground(seen, shape)
     else:
         shape = chosen
-    ground = [row.words for row in rows]
+    faint = [row for row in rows if _is_faint(seen, row)]
+    if rows and len(faint) == len(rows):
+        yield _nothing_to_grind(seen, none, rows, ends)
+        single = d.over_range.get(f"{shape} tip relief for one load")
+        if single and len(every) > 1:
+            yield from _said_of_small_torques(seen, best, single)
+        return
+    ground = [row.words for row in rows if row not in faint]
     at = tuple(dict.fromkeys(i % best.torque.size for i in ends))
     most = best.most if ground else None
     left = left_words(none.peak_to_peak, best.peak_to_peak, most, best.torque, at, best.share)
@@ -194,6 +201,26 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
             f"Pair {seen.name}: tip relief designed for {torque_words(nominal)} only gives {more} µm peak-to-peak "
             f"at {torque_words(single.torque[i])}, more than without relief ({less} µm)."
         )
+
+
+def _is_faint(seen: Seen, row: Grinding) -> bool:
+    """Whether an amount is so far below its tolerance that grinding it cannot be told from not grinding."""
+    off: float = seen.asked.tolerances[MEMBERS.index(row.member)].amount
+    return row.amount < _FAINT * off
+
+
+def _nothing_to_grind(seen: Seen, none: LeftOverRange, rows: Sequence[Grinding], ends: tuple[int, ...]) -> str:
+    """That the best relief is too small to be ground, and what remains without one."""
+    at = tuple(dict.fromkeys(i % none.torque.size for i in ends))
+    torques = [torque_words(none.torque[i]) for i in (min(at), max(at))]
+    where = f"from {torques[0]} to {torques[1]}" if none.torque.size > 1 else f"at {torques[0]}"
+    small = " and ".join(f"{microns(row.amount)} µm on gear {row.gear}" for row in rows)
+    off = max(seen.asked.tolerances[MEMBERS.index(row.member)].amount for row in rows)
+    left = ", ".join(f"{microns(none.peak_to_peak[i])} µm at {torque_words(none.torque[i])}" for i in at)
+    return (
+        f"Pair {seen.name}: no tip relief needed {where}: the optimum, {small}, is below a quarter of its tolerance "
+        f"(± {microns(off)} µm) and cannot be ground; transmission error without relief {left}, peak to peak."
+    )
 
 
 def _ground(seen: Seen, shape: str) -> list[Grinding]:
@@ -290,8 +317,8 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
             yield f"Pair {seen.name}: {decides}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 and best.share is None else ""
     for row in rows:
-        off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
-        if row.amount < _FAINT * off:
+        if _is_faint(seen, row):
+            off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
             amount, allowed_off = microns(row.amount), microns(off)
             yield (
                 f"Pair {seen.name}: {amount} µm on gear {row.gear} is below a quarter of its tolerance "

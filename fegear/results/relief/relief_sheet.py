@@ -24,7 +24,7 @@ from fegear.geometry.pair import MEMBERS, Member
 from fegear.results.gear.path_marks import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
-from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, tip_numbers, tips_of
+from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, said_of_flat_optima, tip_numbers, tips_of
 from fegear.results.relief.harris import HARRIS_CHART, HarrisMap
 from fegear.results.relief.left_errors import LeftError, left_error
 from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
@@ -446,6 +446,7 @@ RELIEF_SHEET = Sheet(
             when=lambda seen: seen.asked.part.film is not None,
         ),
         Remark(_diagonal_remark, when=lambda seen: "diagonal only" in seen.data.left),
+        said_of_flat_optima,
         _neglected,
     ),
     settings={
