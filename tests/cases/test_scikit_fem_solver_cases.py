@@ -17,11 +17,12 @@ CASES = Path(__file__).parents[2] / "cases"
 SAME, SAME_OF_DIFFERENCES = 1e-10, 1e-6
 #: A ten-millionth of a base pitch beside a change of contact round-off of the place is 1e-9 of what a pair bears there.
 SAME_BESIDE_CHANGES = 5e-8
+#: Both solve the same mesh: what they agree on does not depend on how fine it is.
 FEW = {
-    "nasa_four_square": ('results=["stiffness", "root-stress"]', "stiffness.positions=8"),
-    "pinion_and_wheel": ('results=["stiffness", "load-sharing", "transmission-error"]',),
-    "ring_gear": ('results=["stiffness"]', "stiffness.positions=8"),
-    "own_mesh": ("stiffness.positions=8",),
+    "nasa_four_square": ('results=["stiffness", "root-stress"]', "accuracy.tolerance=2e-2", "stiffness.positions=8"),
+    "pinion_and_wheel": ('results=["stiffness", "load-sharing", "transmission-error"]', "accuracy.tolerance=2e-2"),
+    "ring_gear": ('results=["stiffness"]', "accuracy.tolerance=2e-2", "stiffness.positions=8"),
+    "own_mesh": ("accuracy.tolerance=2e-2", "stiffness.positions=8"),
     "spur_over_the_face": ("accuracy.tolerance=5e-2", "stiffness.positions=2", "stiffness.face_positions=2"),
 }
 
