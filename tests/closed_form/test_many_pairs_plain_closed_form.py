@@ -5,9 +5,11 @@ As machine code they leave no trace, and take ten seconds to compile; a few posi
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,6 +28,8 @@ from fegear.contact.many import (
     over_mesh,
 )
 from fegear.contact.many.arrays import ManyReliefs
+from fegear.contact.plane import peaks
+from fegear.contact.plane import tooth_stress as plane_stress
 from fegear.contact.plane.base_pitch import roll_positions
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
@@ -184,6 +188,70 @@ def test_followed_root_stresses_are_those_of_a_pair_to_round_off(pairs, many):
         assert found.compression[m, 0, 0] == pytest.approx(compression, rel=1e-12)
         assert abs(found.tension_range[m, 0, 0] - float(each.tension_range[0])) < 1e-12 * tension
     assert np.isnan(found.tension[:, 1]).all()
+
+
+def test_peaks_followed_less_far_are_still_those_of_a_pair_under_each_of_its_loads(pairs, many, monkeypatch):
+    """The same search cut short in both: two maxima of a curve, two passes, one point on either side."""
+    for name, value in (("_FOLLOWED", 2), ("_PASSES", 2), ("_EACH_SIDE", 1)):
+        monkeypatch.setattr(followed_peaks, name, value)
+    monkeypatch.setattr(peaks, "_POINTS", 1)
+    monkeypatch.setattr(plane_stress, "refined_peaks", functools.partial(peaks.refined_peaks, followed=2, passes=2))
+    known = known_pairs(shipped_atlas("A"), many, reliefs=RELIEFS, root_stress=True)
+    fillets = replace(known.fillets, length=known.fillets.length * np.array([1.0, np.nan]))
+    # the larger load first: nothing of it is left for the next one
+    found = many_roots.root_stresses(known.engagements, fillets, LOADS[::-1], samples=3, followed=True)
+    one = _engagement(pairs[0], True, RELIEFS, 0)
+    sources = {member: (one.compliance.source(member),) for member in ("driver", "driven")}
+    for k, load in enumerate(LOADS[::-1].tolist()):
+        states = loaded_states(one, (), [load], with_peaks(one, load, roll_positions(one, 3), sources))
+        for m, member in enumerate(("driver", "driven")):
+            each = tooth_stress(one, states, member, estimates=False)
+            tension, compression = float(each.largest_tension[0]), float(each.largest_compression[0])
+            assert found.tension[m, 0, k] == pytest.approx(tension, rel=1e-12)
+            assert found.compression[m, 0, k] == pytest.approx(compression, rel=1e-12)
+            assert abs(found.tension_range[m, 0, k] - float(each.tension_range[0])) < 1e-12 * tension
+    assert np.isnan(found.tension[:, 1]).all()
+
+
+@pytest.mark.parametrize("begins", [(), (0.0,), (0.3, 1.7), (0.25, 0.3, 1.0)])
+def test_positions_of_followed_peaks_are_those_of_a_base_pitch(begins):
+    start, pitch, count = -0.4, 2.0, 8
+    numbers, edges, out = np.zeros(32), start + np.array([*begins, 9.0]), np.full(60, np.nan)
+    numbers[corners.START], numbers[corners.PITCH] = start, pitch
+    found = followed_peaks.positions(numbers, count, edges, len(begins), out)
+    engagement = SimpleNamespace(
+        pair=SimpleNamespace(x_start=start, base_pitch=pitch), breaks=tuple(edges[: len(begins)].tolist())
+    )
+    np.testing.assert_allclose(out[:found], roll_positions(engagement, count), rtol=0.0, atol=1e-15)
+    assert np.isnan(out[found + 2 :]).all()
+
+
+def test_local_maxima_are_followed_by_their_heights():
+    """At most four, the highest first, of equal ones the first; none lower than the highest by more than 5 %."""
+
+    def found(*curve):
+        out = np.full(6, -7, dtype=np.int64)
+        count = followed_peaks.peaks_of(np.array([*curve, 1e9]), len(curve), out)
+        assert (out[count:] == -7).all()
+        return out[:count].tolist()
+
+    assert found(1.0, 3.0, 2.0, 2.9, 0.0) == [1, 3]
+    assert found(3.0, 1.0, 2.86, 1.0, 2.84) == [0, 2]
+    assert found(0.0, 1.0, 2.9, 2.9, 1.0, 3.0) == [5, 2, 3]
+    assert found(2.9, 0.0, 2.95, 0.0, 3.0, 0.0, 2.98, 0.0, 2.97) == [4, 6, 8, 2]
+    assert found(-4.0, -3.0, -4.0, -3.1, -4.0, -3.2) == [1, 3]
+    assert found(2.0) == [0]
+
+
+def test_of_maxima_of_one_height_the_first_place_counts():
+    def first(at, value, count):
+        return followed_peaks.first_of_tied(np.array(at), np.array(value), count)
+
+    assert first([3.0, 1.0, 2.0], [5.0, 4.0, 5.0], 3) == 2
+    assert first([3.0, 1.0, 2.0], [5.0, 5.0 * (1.0 - 1e-10), 9.0], 2) == 1
+    assert first([3.0, 1.0, 2.0], [5.0, 5.0 * (1.0 - 1e-8), 5.0 * (1.0 + 1e-10)], 3) == 2
+    assert first([3.0, 1.0], [-5.0, -5.0 * (1.0 + 1e-10)], 2) == 1
+    assert first([3.0, 1.0], [-5.0, -5.0 * (1.0 + 1e-8)], 2) == 0
 
 
 def test_undercut_flanks_begin_where_those_of_a_gear_do(many):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics.train.resolved_response import BEND, broken, resolved_grid
+from fegear.dynamics.train.resolved_response import BEND, SHORTEST, broken, resolved_grid
 
 
 def oscillator(x, natural, zeta):
@@ -60,3 +60,56 @@ def test_poles_outside_or_upon_the_ends_do_no_harm():
     assert np.isfinite(x).all()
     assert x[0] > 0.0
     assert broken(x, np.ones(x.size), [0.0, 7.0])[0].size == x.size
+    three, places = np.array([0.0, 1.0, 2.0]), [1.7, 0.0, 0.2, 2.0]
+    assert broken(three, three, places)[0].tolist() == [0.0, 0.2, 1.0, 1.7, 2.0]
+
+
+@pytest.mark.parametrize("pole", [0.1, 0.9, 1.7])
+def test_a_pole_is_approached_as_near_from_either_side(pole):
+    """By a millionth of the range, also where the grid itself has a point upon it or nearer."""
+    for low, high in ((0.0, 2.0), (-3.0, 2.0), (0.05, 1.75)):
+        near = SHORTEST * (high - low)
+        grid = np.sort(np.concatenate([np.linspace(low, high, 41), pole + near * np.array([-1.5, -0.4, 0.4])]))
+        x = resolved_grid(lambda p: (1.0 / np.abs(p - pole))[:, None], grid, undamped=[pole])
+        off = x - pole
+        assert -off[off < 0.0].max() == pytest.approx(near, rel=1e-6)
+        assert off[off > 0.0].min() == pytest.approx(near, rel=1e-6)
+        assert (x[0], x[-1]) == (low, high)
+
+
+def test_the_unit_of_an_amplitude_does_not_matter_nor_what_is_small_beside_others():
+    """Down into a zero to a thousand millionth of the usual amplitude; below that, and below 1e-12 of others, not."""
+    grid, noise = np.linspace(0.0, 2.0, 30), np.random.default_rng(3)
+
+    def response(p, small):
+        hit = np.where(p > 0.6, np.abs((p - 1.3217) / (p - 0.3)), 1e-11 * noise.random(p.size))
+        return np.stack([hit, small * (2.0 + np.sin(300.0 * p))], axis=1)
+
+    usual = resolved_grid(lambda p: response(p, 1e-14), grid)
+    for unit in (1e-9, 1e9):
+        np.testing.assert_array_equal(resolved_grid(lambda p, unit=unit: unit * response(p, 1e-14), grid), usual)
+    assert usual.size < 500
+    assert np.diff(usual).min() <= SHORTEST * 2.0
+    assert resolved_grid(lambda p: response(p, 1e-11), grid).size > 1000
+
+
+def test_intervals_beside_bends_are_looked_at_again_and_the_search_ends(monkeypatch):
+    """A kink off the middle of a cell: its halves bend on and on, down to a millionth of the range, not beyond."""
+    kink = 0.3217
+    asked = []
+
+    def response(p):
+        asked.append(p.size)
+        return np.exp(np.where(p > kink, 40.0 * (p - kink), 0.0))[:, None]
+
+    x = resolved_grid(response, np.linspace(0.0, 1.0, 4))
+    drawn = np.interp(np.linspace(0.0, 1.0, 5001), x, np.log(response(x)[:, 0]))
+    exact = 40.0 * np.maximum(np.linspace(0.0, 1.0, 5001) - kink, 0.0)
+    assert np.abs(drawn - exact).max() < 4.0 * BEND
+    assert x.size < 70
+    assert sum(asked[:-1]) < 120  # what is straight is looked at once
+    jump = resolved_grid(lambda p: np.where(p > kink, 1.0, 2.0)[:, None], np.linspace(0.0, 1.0, 4))
+    assert 0.5 * SHORTEST < np.diff(jump).min() <= SHORTEST
+    monkeypatch.setattr("fegear.dynamics.train.resolved_response._MOST", 50)
+    many = resolved_grid(lambda p: (2.0 + np.sin(1e5 * p))[:, None], np.linspace(0.0, 1.0, 40))
+    assert 50 < many.size <= 100
