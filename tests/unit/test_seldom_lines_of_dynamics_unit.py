@@ -1,0 +1,320 @@
+"""Lines of the dynamics that only long runs come to, each by a law of its own: made-up parts in place of the run."""
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import ConvergenceError
+from fegear.dynamics.compound import mesh_phases
+from fegear.dynamics.compound.compound_set import Shaft
+from fegear.dynamics.helical_pair.mode_following import _nearest_approach, _State
+from fegear.dynamics.motion import coexisting, motion, steady_state
+from fegear.dynamics.motion.motion import Trajectory, propagate
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.shooting import floquet_frame
+from fegear.dynamics.planetary.mesh_law import MeshSprings, WidenedSprings
+from fegear.dynamics.planetary.set_motion import SetMotion
+from fegear.dynamics.planetary.steady_modes import on_common_pieces
+from fegear.dynamics.train.back_flanks import BackFlanks
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.network import Link, Network, Slip
+from fegear.dynamics.train.one_cause import _fitted
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.segments import lags_by_pivots
+from fegear.dynamics.train.torque_response import _ways
+from fegear.dynamics.train.train import Body, Mesh, Torque, Train
+
+K, FORCE, R, J = 2e8, 500.0, 0.05, 2e-3
+
+
+def wave(mean, depth, phase=0.0):
+    return Periodic.fit(lambda s: mean * (1.0 + depth * np.cos(2.0 * np.pi * s + phase)), degree=12, tolerance=1e-9)
+
+
+# ---- trains ----------------------------------------------------------------------------------------------------------
+def test_the_even_stiffness_of_back_flanks_is_the_reverse_of_the_mean_compliance():
+    """Of K (1 + d cos) that is K sqrt(1 - d^2)."""
+    even = BackFlanks(wave(K, 0.6), 0.3).even
+    assert even.shift == 0.3
+    assert even.stiffness(np.array([0.0, 0.2, 0.7])) == pytest.approx([0.8 * K] * 3, rel=1e-9)
+
+
+def test_a_break_that_is_one_with_the_end_of_a_period_makes_no_piece():
+    found = Periodic.fit(lambda s: s * (1.0 - s), breaks=(0.5, 0.5 + 5e-13, 1.0 - 5e-13, 5e-13), degree=4)
+    assert found.breaks == pytest.approx([0.0, 0.5, 1.0], abs=0.0)
+    # not so near, it does
+    assert Periodic.fit(lambda s: s * (1.0 - s), breaks=(0.5, 1.0 - 1e-11), degree=4).breaks.size == 4
+
+
+def test_what_a_link_s_angle_is_the_sum_of():
+    """Angles of nodes of any size: links of the tree are their own, others add up to nothing round their loop."""
+    ends = [(0, 1), (2, 1), (2, 3), (3, 0), (4, 2), (4, 4), (1, 4)]
+    stiff = [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0]  # the third, a damper only, is the last to be on the tree
+    links = [Link(a, b, np.float64(k), np.float64(1.0), -1) for (a, b), k in zip(ends, stiff, strict=True)]
+    rows = _ways(links, 5)
+    angles = np.random.default_rng(1).normal(size=5)
+    own = np.array([angles[a] - angles[b] for a, b in ends])
+    on_tree = np.count_nonzero(rows, axis=1) == 1
+    assert on_tree.tolist() == [True, True, False, True, True, True, False]
+    np.testing.assert_allclose(rows @ own, np.where(on_tree, own, 0.0), atol=1e-12)
+    np.testing.assert_array_equal(np.diag(rows), 1.0)
+
+
+def test_lags_by_pivots_are_those_of_the_equations_with_dampers_that_slip():
+    """Two gear pairs and a damper on 2 q_0 - 0.5 q_2, solved as they stand in doubles."""
+    mass, ground = np.array([2.0, 3.0, 0.7]), np.array([0.1, 0.0, 0.3])
+    links = ((0, 1, 400.0, 1.5), (1, 2, 900.0, 0.4))
+    slips = ((0, 2, 2.0, -0.5, 7.0), (1, 0, 1.0, 3.0, 0.2))
+    turns, long = np.array([0.5, 2.0]), np.longdouble
+    network = Network(
+        3, mass.astype(long), ground.astype(long),
+        tuple(Link(a, b, long(k), long(c), mesh) for mesh, (a, b, k, c) in enumerate(links)),
+        tuple(Slip(a, b, long(p), long(q), c) for a, b, p, q, c in slips), turns.astype(long),
+    )  # fmt: skip
+    ways = np.zeros((2, 3))
+    for mesh, (a, b, _, _) in enumerate(links):
+        ways[mesh, a], ways[mesh, b] = turns[mesh], -turns[mesh]
+    at = np.array([3.0, 14.0])
+    for mesh in (0, 1):
+        found = lags_by_pivots(network, at.astype(long), mesh)
+        for n, w in enumerate(at):
+            matrix = np.diag(-w * w * mass + 1j * w * ground)
+            for a, b, k, c in links:
+                of = np.zeros(3)
+                of[a], of[b] = 1.0, -1.0
+                matrix = matrix + (k + 1j * w * c) * np.outer(of, of)
+            for a, b, p, q, c in slips:
+                of = np.zeros(3)
+                of[a], of[b] = p, q
+                matrix = matrix + 1j * w * c * np.outer(of, of)
+            exact = ways @ np.linalg.solve(matrix, ways[mesh])
+            np.testing.assert_allclose([complex(one.value[n]) for one in found], exact, rtol=1e-11)
+            assert all(float(one.error[n]) > 0.0 for one in found)
+
+
+@pytest.mark.parametrize("power", [0.0, 0.5])
+def test_a_cause_that_explains_nothing_changes_nothing(power):
+    base = np.array([100.0, 230.0, 410.0])
+    found, computed = _fitted(lambda factors: base * np.asarray(factors)[:, None] ** power, base)
+    assert found == 1.0
+    np.testing.assert_array_equal(computed, base)
+
+
+def test_a_cause_that_explains_all_is_found():
+    base = np.array([100.0, 230.0, 410.0])
+    found, computed = _fitted(lambda factors: base * np.asarray(factors)[:, None] ** 0.5, base * 1.2)
+    assert found == pytest.approx(1.44, rel=1e-5)
+    assert computed == pytest.approx(1.2 * base, rel=1e-5)
+
+
+# ---- helical pairs ---------------------------------------------------------------------------------------------------
+def test_two_modes_come_nearest_where_their_line_passes_the_origin():
+    """Half the difference d and coupling c of two squares: nearest where (d, c) is shortest, apart by twice that."""
+    vectors = np.eye(3)[:, [2, 0, 1]]
+
+    def state(value, difference, coupling):
+        two = np.array([[5.0 + 0.5 * difference, coupling], [coupling, 5.0 - 0.5 * difference]])
+        matrix = np.zeros((3, 3))
+        matrix[:2, :2], matrix[2, 2] = two, 99.0
+        return _State(value, np.ones(3), vectors, matrix, np.eye(3))
+
+    at, apart = _nearest_approach(state(1.0, -3.0, 0.1), state(3.0, 1.0, 0.1), 1, 2)
+    assert (at, apart) == pytest.approx((2.5, 0.2))
+    alike = state(1.0, 3.0, 2.0)
+    assert _nearest_approach(alike, state(3.0, 3.0, 2.0), 1, 2) == pytest.approx((1.0, 5.0))
+
+
+# ---- planetary sets --------------------------------------------------------------------------------------------------
+def test_the_other_shaft_of_a_compound_set_sees_its_planet_where_that_stands():
+    """The planet sees its mate where the pair's direction is; a ring likewise, a planet from the other side."""
+    toothed = SimpleNamespace(
+        other=Shaft.__new__(Shaft), other_wheel=SimpleNamespace(internal=False),
+        planets=SimpleNamespace(angles=(0.7, 2.0)),
+    )  # fmt: skip
+    of = SimpleNamespace(direction=lambda one: 0.2)
+    assert mesh_phases._seen(of, toothed, 0) == 0.2
+    assert mesh_phases._seen(of, toothed, 1) == 0.7
+    toothed.other_wheel.internal = True
+    assert mesh_phases._seen(of, toothed, 1) == 0.2
+    toothed.other, toothed.other_wheel.internal = SimpleNamespace(), False
+    assert mesh_phases._seen(of, toothed, 1) == 0.2 + math.pi
+
+
+def test_springs_of_wider_teeth_are_so_many_times_as_stiff_under_so_many_times_the_force():
+    few = {key: np.arange(3.0) + number for number, key in enumerate(MeshSprings._fields)}
+    one = MeshSprings(**few)
+    teeth = SimpleNamespace(at=lambda place: one, cycles=4, breaks=np.array([0.1]))
+    wide = WidenedSprings(teeth, 2.5)
+    found = wide.at(np.zeros(3))
+    for key in MeshSprings._fields:
+        expected = few[key] * (2.5 if key in ("stiffness", "level") else 1.0)
+        np.testing.assert_array_equal(getattr(found, key), expected)
+    assert wide.cycles == 4
+    assert wide.breaks.tolist() == [0.1]
+
+
+def test_forces_on_common_pieces_are_the_functions_without_their_means_each_behind_by_its_delay():
+    """Breaks on either side of a base pitch's end, nearer than any piece, are one."""
+    saws = [Periodic.fit(lambda s, a=a: a * s * (1.0 - s), degree=4) for a in (3.0, 5.0)]
+    for delays in ((0.25, 0.6), (0.0, 1.0 - 1e-14), (0.5, 0.5 + 1e-14)):
+        found = on_common_pieces(saws, np.array(delays))
+        assert found.starts.size == (2 if delays[0] == 0.25 else 1)
+        assert found.widths.sum() == pytest.approx(1.0)
+        v = np.array([[-0.8, 0.3, 0.9]])
+        for piece, (start, width) in enumerate(zip(found.starts, found.widths, strict=True)):
+            place = start + 0.5 * width * (v[0] + 1.0)
+            exact = [one(place - late) - one.mean for one, late in zip(saws, delays, strict=True)]
+            np.testing.assert_allclose(found.at(np.array([piece]), v)[:, 0], exact, atol=1e-10)
+
+
+def test_a_set_at_another_speed_and_with_more_damping_is_the_same_beside():
+    @dataclass(frozen=True)
+    class Linear:
+        damping_ratio: float
+        meshed: str = "meshed"
+
+    @dataclass(frozen=True)
+    class Moving:
+        linear: Linear
+        mesh_frequency: float = 3.0
+
+    moves = Moving(Linear(0.02))
+    assert SetMotion.more_damped(moves, 4.0) == Moving(Linear(0.08))
+    assert SetMotion.more_damped(moves, 400.0) == Moving(Linear(0.99))
+    assert SetMotion.at_speed(moves, 14.0 * math.pi) == Moving(Linear(0.02), pytest.approx(7.0))
+
+
+# ---- motion in time --------------------------------------------------------------------------------------------------
+def two_discs(damping=40.0, **others):
+    mesh = Mesh("g", "1", "2", R, R, 30, 30, K, damping, **others)
+    train = Train(
+        (Body("1", J), Body("2", J)), meshes=(mesh,), torques=(Torque("1", FORCE * R), Torque("2", FORCE * R))
+    )
+    return MotionModel(train, (MeshExcitation.from_mesh(wave(K, 0.2), Periodic.constant(0.0)),), 90.0)
+
+
+def test_more_damping_is_that_of_the_teeth():
+    found = two_discs(40.0).more_damped(2.5)
+    assert found.train.meshes[0].damping == 100.0
+    assert found.train.meshes[0].stiffness == K
+    assert found.speed == 90.0
+
+
+def test_a_motion_that_cannot_be_followed_says_of_what_there_was_too_much(monkeypatch):
+    model, kernel = two_discs(), motion.kernel
+    packed = pack(model)
+    start = np.zeros(packed.size)
+
+    def ends_with(code):
+        fields = {key: np.zeros(1) for key in kernel.Travelled._fields} | {"code": code, "steps": 7, "changes": 9}
+        monkeypatch.setattr(kernel, "compiled", lambda: lambda *given: tuple(kernel.Travelled(**fields)))
+
+    for code, what in ((kernel.TOO_MANY_STEPS, "time steps"), (kernel.TOO_MANY_STEPS + 1, "changes of contact")):
+        assert code != kernel.DONE
+        ends_with(code)
+        with pytest.raises(ConvergenceError, match=rf"at 90 rad/s stopped after 7 steps: too many {what} in 2 units"):
+            propagate(packed, start, start, 2.0)
+
+
+def test_a_request_to_stop_comes_through_the_errors_that_hide_it(monkeypatch):
+    hidden, outer = SystemError("inner"), SystemError("outer")
+    hidden.__cause__, outer.__cause__ = KeyboardInterrupt(), hidden
+
+    def stopped(*given):
+        raise outer
+
+    packed = pack(two_discs())
+    monkeypatch.setattr(motion.kernel, "compiled", lambda: stopped)
+    with pytest.raises(KeyboardInterrupt):
+        propagate(packed, np.zeros(packed.size), np.zeros(packed.size), 1.0)
+    monkeypatch.setattr(motion.kernel, "compiled", lambda: lambda *given: (_ for _ in ()).throw(SystemError("alone")))
+    with pytest.raises(SystemError, match="alone"):
+        propagate(packed, np.zeros(packed.size), np.zeros(packed.size), 1.0)
+
+
+def test_the_force_of_a_gear_pair_is_that_of_its_springs_and_of_its_damper_while_teeth_touch():
+    """Two pairs: one with a damper that follows the stiffness in contact, C sqrt(K(t)/K), the other with its own."""
+    elastic = np.array([[3.0, 4.0, 5.0], [3.0, 0.0, 0.0]])
+    stiffness = np.array([[2.0, 7.0, 1.0], [2.0, 7.0, 1.0]])
+    packed = SimpleNamespace(
+        damping=np.array([0.5, 0.25]), mesh_of=np.array([0, 0, 1]), approach=np.array([[1.0, 2.0], [0.0, 4.0]]),
+        force_unit=10.0, momentary=np.array([True, False]), stiffness=np.array([4.0, 9.0]),
+    )  # fmt: skip
+    rate, contact = np.array([[0.3, 0.1], [0.3, 0.1]]), np.array([[1, 1, 1], [1, 0, 0]])
+    moves = SimpleNamespace(
+        packed=packed, passage=SimpleNamespace(contact=contact), _springs=lambda time: (elastic, stiffness),
+        _at=lambda time, derivative: (rate, np.array([0, 1])),
+    )  # fmt: skip
+    found = Trajectory.mesh_forces(moves, np.array([0.0, 1.0]))
+    whole, part = (0.5 * 0.5 * 10.0 * math.sqrt(k / 4.0) for k in (9.0, 2.0))
+    np.testing.assert_allclose(found, [[7.0 + whole, 5.0 + 0.25 * 0.4 * 10.0], [3.0 + part, 0.0]])
+
+
+def test_growth_is_the_mean_logarithm_after_the_first_fifth(monkeypatch):
+    steps = iter([9.0, 9.0, *np.exp(np.arange(10.0))])
+    monkeypatch.setattr(coexisting, "moving", lambda packed: np.array([True, False, True]))
+
+    def passage(packed, x, v, duration, **how):
+        size = next(steps)
+        return SimpleNamespace(x=x + 1.0, v=v, tangent=np.diag([size, 1e9, size]))
+
+    monkeypatch.setattr(coexisting, "propagate", passage)
+    packed = SimpleNamespace(period=1.0)
+    assert coexisting.growth(packed, 0.0, 0.0, 1e-6, periods=10) == pytest.approx(4.5)
+    steps = iter([1.0, 0.0])
+    assert coexisting.growth(packed, 0.0, 0.0, 1e-6, periods=10) == -math.inf
+
+
+def test_states_of_an_orbit_follow_each_other_period_by_period(monkeypatch):
+    monkeypatch.setattr(coexisting, "moving", lambda packed: np.array([True, False, True, True]))
+    asked = []
+
+    def passage(packed, x, v, duration, *, tolerance, peaks):
+        asked.append((duration, tolerance, peaks))
+        return SimpleNamespace(x=2.0 * x, v=v - 1.0)
+
+    monkeypatch.setattr(coexisting, "propagate", passage)
+    state = np.array([1.0, 5.0, 3.0, 4.0])
+    orbit = SimpleNamespace(
+        packed=SimpleNamespace(period=0.4), x=state[:2], v=state[2:], periods=3, state=state[[0, 2, 3]]
+    )
+    points = coexisting._points(orbit, 1e-7)
+    assert [one.tolist() for one in points] == [[2.0, 2.0, 3.0], [4.0, 1.0, 2.0], [8.0, 0.0, 1.0]]
+    assert asked == [(0.4, 1e-7, False)] * 3
+    assert not coexisting._closes_sooner(orbit, 1e-7)
+    assert not coexisting._same(orbit, orbit, 1e-7)
+    for at in (0, 1, 2):  # an orbit that passes there is the same; the last point is where it began, not sooner
+        orbit.state = points[at] + 0.4 * coexisting.SAME
+        assert coexisting._closes_sooner(orbit, 1e-7) == (at < 2)
+        assert coexisting._same(orbit, orbit, 1e-7)
+    other = SimpleNamespace(**{**vars(orbit), "periods": 2})
+    assert not coexisting._same(orbit, other, 1e-7)
+
+
+def test_teeth_that_never_part_have_their_closed_motion_or_grow(monkeypatch):
+    """Where none is found as fast as a motion grows, beside an unstable one by its largest multiplier."""
+    monkeypatch.setattr(steady_state, "_growing", lambda packed, rate, multipliers=None: (rate, multipliers))
+    monkeypatch.setattr(steady_state, "growth", lambda packed, x, v, step: ("growth", packed, x, v, step))
+    monkeypatch.setattr(steady_state, "periodic_motion", lambda orbit: orbit)
+    orbit = SimpleNamespace(stable=False, radius=math.e**2, multipliers="multipliers")
+    for found, expected in (
+        (None, (("growth", "packed", 1, 2, 3), None)),
+        (orbit, (pytest.approx(2.0), "multipliers")),
+    ):
+        monkeypatch.setattr(steady_state, "close", lambda *given, found=found: found)
+        assert steady_state._linear("packed", 1, 2, 3) == expected
+    orbit.stable = True
+    assert steady_state._linear("packed", 1, 2, 3) is orbit
+
+
+def test_a_floquet_frame_takes_a_period_apart_or_is_none():
+    turn = np.array([[0.5, 0.3], [0.0, -0.2]])
+    frame = floquet_frame(turn)
+    apart = frame @ turn @ np.linalg.inv(frame)
+    assert sorted(np.diag(apart).real) == pytest.approx([-0.2, 0.5])
+    np.testing.assert_allclose(apart - np.diag(np.diag(apart)), 0.0, atol=1e-14)
+    jordan = np.array([[0.5, 1.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1]])
+    np.testing.assert_array_equal(floquet_frame(jordan), np.eye(3))
