@@ -5,7 +5,7 @@
 Tables of standards and of makers were compared with their print when they were typed in; what a key or an argument is
 where it is not given is a promise. Of the rooms that hold such numbers (`ROOMS`) ``constants.json`` keeps what their
 names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
-count in comparisons, and bounds; of the others what is neutral where it is not given: true, false, 0, 1. Of every
+count in comparisons, and bounds; of the others what is neutral where it is not given: true, false, 0, 1, -1. Of every
 result it keeps what it takes and for what it asks, and in which files its tables stand. How finely something is
 searched or drawn is free to change, and not kept. Long tables are kept as a sum in which every number has a weight of
 its own. Only what is kept and still there is compared; after a change that is meant, ``--accept`` keeps what is found.
@@ -139,12 +139,12 @@ def of_results():
 
 
 def neutral(name, were=()):
-    """Of a module of the other rooms: flags, zeros and ones that are taken where nothing is given, and what were."""
+    """Of a module of the other rooms: flags, zeros, ones, minus ones taken where nothing is given, and what were."""
     declared = of_module(name, None).items()
     found = {known: kept for known, kept in declared if len(kept) == 1}
     return {
         known: kept for known, kept in found.items()
-        if known.endswith(UNSEEN) or known in were or kept[0] in (0.0, 1.0)
+        if known.endswith(UNSEEN) or known in were or kept[0] in (-1.0, 0.0, 1.0)
     }  # fmt: skip
 
 
@@ -152,8 +152,7 @@ def found(were=None):
     """Of all modules, and of all results; of what was neutral what it is now."""
     were = kept() if were is None else were
     every = {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
-    every |= {name: neutral(name, were.get(name, ())) for name, _ in modules(OTHERS)}
-    return {name: of_name for name, of_name in every.items() if of_name}
+    return every | {name: neutral(name, were.get(name, ())) for name, _ in modules(OTHERS)}
 
 
 def kept():
@@ -162,7 +161,7 @@ def kept():
 
 
 def differences(old, new):
-    """What differs of what is in both, in words."""
+    """What differs of what is in both, in words; a module of which nothing is found any more is there all the same."""
     return [
         f"{module}.{name}: {old[module][name]} was kept, {new[module].get(name, [0])} is found"
         for module in old if module in new
@@ -192,7 +191,7 @@ def main():
     if asked.accept:
         new = found({})
         parts = []
-        for module in sorted(new):
+        for module in sorted(name for name, of_name in new.items() if of_name):
             told = {name: [whole(one) for one in of_name] for name, of_name in new[module].items()}
             parts.append(f" {json.dumps(module)}: {json.dumps(told, sort_keys=True)}")
         KEPT.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
