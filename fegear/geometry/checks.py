@@ -87,21 +87,45 @@ def gear_checks(name: str, gear: Gear, *, assumed_rim: bool = False) -> tuple[Ch
     ]  # fmt: skip
     if not assumed_rim:
         checks.append(Check(name, "rim below the teeth", backup_ratio(gear) * depth, LEAST_RIM * depth, "mm", hole))
-    if isinstance(tooth, Tooth):
-        checks.append(_undercut(name, tooth, m))
+    if (undercut := undercut_of(gear)) is not None:
+        checks.append(_undercut(name, undercut))
     return tuple(checks)
 
 
-def _undercut(name: str, tooth: Tooth, module: float) -> Check:
-    """How much of the involute the rack's tip cuts away, and the profile shift from which on it cuts nothing."""
+class Undercut(NamedTuple):
+    """What the rack's tip cuts off the involute.
+
+    Attributes
+    ----------
+    lost : float
+        Above the base circle [m]; zero for none.
+    profile_shift : float
+    enough : float
+        Profile shift from which on nothing is cut away, rounded up to four digits.
+    """
+
+    lost: float
+    profile_shift: float
+    enough: float
+
+
+def undercut_of(gear: Gear) -> Undercut | None:
+    """How much of the involute the rack's tip cuts away; None of teeth that no rack generates."""
+    tooth = gear.tooth
+    if not isinstance(tooth, Tooth):
+        return None
     least, lost = tooth.least_profile_shift, 0.0
     if tooth.profile_shift < least - ROUNDED_SHIFTS:
-        lost = (tooth.form_radius - tooth.base_radius) * module
-    enough = math.ceil(least * 1e4) * 1e-4
+        lost = (tooth.form_radius - tooth.base_radius) * gear.module
+    return Undercut(lost, tooth.profile_shift, math.ceil(least * 1e4) * 1e-4)
+
+
+def _undercut(name: str, found: Undercut) -> Check:
     return Check(
-        name, "undercut", 0.0 - lost, 0.0, "mm",
-        f"increase profile_shift to at least {enough:.4f}, or the number of teeth",
-        finding=f"{lost * 1e3:.4g} mm of the involute above the base circle at profile_shift = {tooth.profile_shift:g}",
+        name, "undercut", 0.0 - found.lost, 0.0, "mm",
+        f"increase profile_shift to at least {found.enough:.4f}, or the number of teeth",
+        finding=f"{found.lost * 1e3:.4g} mm of the involute above the base circle at profile_shift = "
+        f"{found.profile_shift:g}",
     )  # fmt: skip
 
 

@@ -1,9 +1,11 @@
 """Who may speak to the page: this machine, by its own name, the account that runs it, with the secret of its cookie.
 
-An address brings a key that works once: what it opens gets the cookie, and the next key is printed. A second key, of
-those who look on, works as often as it is used: its cookie reads, and what would change anything is answered by 403,
-requests and messages alike, before anything else sees them. A browser that
-fegear itself starts gets its address by a file that its owner only can read, as command lines are read by everybody.
+An address brings a key: what it opens gets the cookie. The printed one works again for another browser where the system
+tells that it is one of the account that runs the window, as others are refused whatever they know; elsewhere it works
+once, and the next one is printed. A second key, of those who look on, works as often as it is used: its cookie reads,
+and what would change anything is answered by 403, requests and messages alike, before anything else sees them. A
+browser that fegear itself starts gets its address, which works once, by a file that its owner only can read, as command
+lines are read by everybody.
 """
 
 from __future__ import annotations
@@ -38,9 +40,7 @@ _LEADS = (
     '<meta http-equiv="refresh" content="1; url={address}"><title>fegear</title></head>'
     '<body><script>location.replace({quoted})</script><a href="{address}">fegear</a></body></html>\n'
 )
-_REFUSED = (
-    "Access denied: open the address printed last by fegear open. Each address works once, for the same user account.\n"
-)
+_REFUSED = "Access denied: open the address printed last by fegear open, in the user account that runs it.\n"
 #: Where Linux tells which account a connection belongs to.
 _CONNECTIONS = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 _ROOT = 0
@@ -58,7 +58,7 @@ _NOBODY = -1
 
 
 class Keys:
-    """Keys that work once, and the secret that they are exchanged for.
+    """Keys that work once, or again for one account, and the secret that they are exchanged for.
 
     Attributes
     ----------
@@ -71,22 +71,26 @@ class Keys:
     def __init__(self) -> None:
         self.secret, self.look, self.look_secret = (secrets.token_urlsafe(24) for _ in range(3))
         self._open: dict[str, Callable[[], object]] = {}
+        self._lasting: set[str] = set()
 
-    def another(self, used: Callable[[], object]) -> str:
-        """Make a key; `used` is called when it is."""
+    def another(self, used: Callable[[], object], *, again: bool = False) -> str:
+        """Make a key; `used` is called when it is used up: with `again` not by the account that runs the window."""
         key = secrets.token_urlsafe(24)
         self._open[key] = used
+        if again:
+            self._lasting.add(key)
         return key
 
     def is_open(self, key: str) -> bool:
         """Whether a key has not been used."""
         return key in self._open
 
-    def take(self, key: str) -> bool:
-        """Use a key; False if it is none, or has been used."""
+    def take(self, key: str, *, own: bool = False) -> bool:
+        """Use a key; False if it is none, or has been used up. `own` is whether the account that asks is known."""
         for one in list(self._open):
             if hmac.compare_digest(one.encode(), key.encode()):
-                self._open.pop(one)()
+                if not (own and one in self._lasting):
+                    self._open.pop(one)()
                 return True
         return False
 
@@ -118,9 +122,12 @@ class Doorkeeper:
         for name, value in scope["headers"]:
             head = name.decode("latin-1").lower()
             heads[head] = "; ".join(filter(None, [heads.get(head), value.decode("latin-1")]))
-        if not self._is_ours(scope, heads):
+        asking = account_of(scope.get("client"), self._port)
+        if not self._is_ours(asking, heads):
             await _refuse(scope, send)
-        elif _opens(scope, heads) and self._keys.take(_key_of(scope)):  # used up though the browser has the cookie
+        elif _opens(scope, heads) and self._keys.take(
+            _key_of(scope), own=asking is not None
+        ):  # though it has the cookie
             cookie = f"fegear-{self._port}={self._keys.secret}; HttpOnly; SameSite=Strict; Path=/"
             await _answer(_with_heads(send), 200, leading_to("/"), "text/html", [(b"set-cookie", cookie.encode())])
         elif self._has_cookie(heads, f"fegear-{self._port}", self._keys.secret):
@@ -134,14 +141,13 @@ class Doorkeeper:
         else:
             await _refuse(scope, send)
 
-    def _is_ours(self, scope: Scope, heads: dict[str, str]) -> bool:
+    def _is_ours(self, asking: int | None, heads: dict[str, str]) -> bool:
         """Whether it comes to this machine by its own name, from no other site's page and from no other account."""
         if heads.get("host") not in self._hosts:  # another name for this machine is another site's (DNS rebinding)
             return False
         origin = heads.get("origin")
         if origin is not None and origin.removeprefix("http://") not in self._hosts:
             return False
-        asking = account_of(scope.get("client"), self._port)
         return asking is None or asking in (_ROOT, os.getuid())
 
     @staticmethod

@@ -8,6 +8,7 @@ const fegearGlance = (() => {
   let told = null, view = {}, pair = null, pairs = {}, kind = "pair"; // the pair, or the set, that is shown
   let pinned = null; // of A: { specs, numbers }
   const specs = new Map(), numbers = new Map(); // key -> { spec, darker }; name -> number
+  let halves = {}; // pair -> peak-to-peak transmission error at half the load and at all of it [um]
   const plots = new Map(); // name of a picture -> what is drawn of it
   let place = { marks: {} };
   const made = (tag, cls, text) => {
@@ -24,6 +25,7 @@ const fegearGlance = (() => {
       "How large is the peak-to-peak transmission error, and does it rise or fall at half the torque?",
       "Over what share of the path of contact do two tooth pairs carry the load?",
       "Which gear has the higher root stress, and at which position in the mesh is it highest?",
+      "Is a gear undercut, and which profile shift avoids it?",
     ],
     wide: [
       "At which end of the face is the load larger, and how large is K_Hβ?",
@@ -40,7 +42,11 @@ const fegearGlance = (() => {
   const share = (part) => `${Math.round(100 * part)} %`;
   function ofError() {
     const one = numbers.get(`${pair}.te_peak_to_peak`);
-    return one ? `The peak-to-peak transmission error is ${rounded(one)}. Halve the torque to see whether it falls.` : "";
+    if (!one) return "";
+    const at = halves[pair], now = `The peak-to-peak transmission error is ${rounded(one)}`;
+    if (!at || Math.abs(at.full - one.value) > 0.02 * one.value) return `${now}; that at half the torque follows.`; // of the case before
+    const ratio = at.half / at.full, how = Math.abs(ratio - 1) < 0.01 ? "stays at" : ratio < 1 ? "falls to" : "rises to";
+    return `${now}; at half the torque it ${how} ${rounded({ value: at.half, unit: one.unit })}.`;
   }
   function ofSharing() {
     const { data, loadAt } = fegearGears.inside(pair);
@@ -64,7 +70,12 @@ const fegearGlance = (() => {
     }
     return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
   }
-  const ANSWERS = { plane: [ofError, ofSharing, ofRoots], wide: [() => "", ofError, ofRoots], set: [() => "", () => ""] };
+  function ofUndercut() {
+    const cut = pairs[pair]?.mesh?.undercut;
+    if (!cut) return "";
+    return cut.length ? cut.map(({ member, lost, enough }) => `The ${member} gear is undercut: ${Number(lost.toPrecision(2))} mm of its involute are cut away; profile_shift = ${enough.toFixed(4)} and more avoid it.`).join(" ") : "Neither gear is undercut.";
+  }
+  const ANSWERS = { plane: [ofError, ofSharing, ofRoots, ofUndercut], wide: [() => "", ofError, ofRoots], set: [() => "", () => ""] };
   let hiding = false;
   /** The button by which a lecturer writes another question in the place of the one that is asked; an empty one is none. */
   function ownQuestion(asked) {
@@ -228,6 +239,7 @@ const fegearGlance = (() => {
     due = 0;
     lay();
     const moving = fegear.isMoving();
+    if (view.exercise && view.revealed && !moving) ask(); // its answer is of what has been found meanwhile
     for (const kept of plots.values()) {
       const found = specs.get(kept.key);
       kept.empty.hidden = !!found;
@@ -269,7 +281,8 @@ const fegearGlance = (() => {
     const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
     const ratios = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
     const several = kind === "set" || Object.keys(pairs).length > 1; // then it is said whose numbers and pictures these are
-    const all = [...wanted, ...ratios], [preview] = previews.values(), laid = JSON.stringify([kind, pair, several, preview, all.map((one) => one.name)]);
+    const undercuts = kind === "set" ? [] : (pairs[pair]?.mesh?.undercut ?? []).map(({ member, lost, shift, enough }) => ({ name: `undercut ${member}`, label: `undercut, ${member}`, text: String(Number(lost.toPrecision(2))), value: lost, unit: "mm", error: "", told: `The tool cuts away ${Number(lost.toPrecision(3))} mm of the involute above the base circle at profile_shift = ${Number(shift.toPrecision(4))}; nothing from ${enough.toFixed(4)} on.` }));
+    const all = [...wanted, ...ratios, ...undercuts], [preview] = previews.values(), laid = JSON.stringify([kind, pair, several, preview, all.map((one) => one.name)]);
     if (host.dataset.laid !== laid) {
       host.dataset.laid = laid;
       cells.clear();
@@ -298,7 +311,7 @@ const fegearGlance = (() => {
         if (place.textContent !== words) place.textContent = words;
       }
       label.parentElement.classList.toggle("rough", !!one.rough);
-      label.parentElement.title = one.error ? `${one.text} ± ${one.error} ${one.unit}: estimated numerical error (mesh, positions)` : "";
+      label.parentElement.title = one.error ? `${one.text} ± ${one.error} ${one.unit}: estimated numerical error (mesh, positions)` : one.told ?? "";
     }
   }
 
@@ -320,13 +333,15 @@ const fegearGlance = (() => {
     document.getElementById("maps")?.classList.toggle("stale", dimmed && !fegear.isMoving()); // the map is made anew when all is at rest
   }
   return {
+    /** What the Harris maps bring of half the load. */
+    halved(found) { halves = found; ask(); },
     begin(content) {
       told = content;
       view = { ...content.view };
       specs.clear();
       numbers.clear();
       pinned = null;
-      [pairs, pair, kind] = [{}, null, "pair"];
+      [pairs, pair, kind, halves] = [{}, null, "pair", {}];
       apply();
     },
     view: () => view,

@@ -215,6 +215,7 @@ const fegearHands = (() => {
   }
   // ---- the Harris map: made at rest, its present load followed while the slider moves -----------------------------------
   async function harris({ pairs }, { paint, sections }) {
+    fegearGlance.halved(pairs);
     for (const [pair, kept] of shown) {
       const content = pairs[pair], key = `hand map ${pair}`;
       if (!content) { [...kept.map.querySelectorAll("figure")].forEach(fegearFigure.drop); sections.delete(key); kept.now = null; continue; }

@@ -157,7 +157,7 @@ def _serve(
 
 
 class _Door:
-    """Addresses of the page, each with a key that works once.
+    """Addresses of the page: one that is printed, one that leads a browser at the start, one of those who look on.
 
     Parameters
     ----------
@@ -178,8 +178,8 @@ class _Door:
         """Print an address as soon as it answers, and lead a browser to another; called within the loop."""
         self._opening = asyncio.get_running_loop().create_task(self._open(browser=browser))
 
-    def _address(self, used: Callable[[], object]) -> str:
-        return f"http://{HOST}:{self._port}/?key={self.keys.another(used)}"
+    def _address(self, used: Callable[[], object], *, again: bool = False) -> str:
+        return f"http://{HOST}:{self._port}/?key={self.keys.another(used, again=again)}"
 
     async def _open(self, *, browser: bool) -> None:
         for _ in range(_TRIES):
@@ -188,7 +188,7 @@ class _Door:
                 connection.close()
                 break
             await asyncio.sleep(_PAUSE)
-        self._say(f"Open {self._address(self._print_another)}")
+        self._say(f"Open {self._address(self._print_another, again=True)}")
         if self._look:
             self._say(f"Read-only, as often as it is used: http://{HOST}:{self._port}/?look={self.keys.look}")
         self._say("Stop with Ctrl-C; unsaved changes are kept for the next start.")
@@ -197,7 +197,9 @@ class _Door:
 
     def _print_another(self) -> None:
         with contextlib.suppress(OSError):  # of a terminal that is closed
-            self._say(f"This address has been used; for another browser open {self._address(self._print_another)}")
+            self._say(
+                f"This address has been used; for another browser open {self._address(self._print_another, again=True)}"
+            )
 
     async def _lead(self) -> None:
         """Open a browser by a file: what stands on its command line is read by every account of this machine."""

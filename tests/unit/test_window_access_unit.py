@@ -83,6 +83,30 @@ def test_a_key_opens_the_page_once_and_its_cookie_from_then_on():
     assert asked(door, f"key={again}")["status"] == 403
 
 
+@pytest.mark.parametrize(("account", "again"), [(lambda: os.getuid(), 200), (lambda: None, 403)])
+def test_the_printed_address_opens_another_browser_of_the_account_that_runs_the_window(monkeypatch, account, again):
+    """A projector's browser that was started again was refused; where no system tells the account it still is."""
+    monkeypatch.setattr("fegear.window.access.account_of", lambda *_: account())
+    keys, used = Keys(), []
+    door, key = Doorkeeper(page, 5000, keys), keys.another(lambda: used.append("used"), again=True)
+    assert asked(door, f"key={key}")["status"] == 200
+    second = asked(door, f"key={key}")
+    assert second["status"] == again
+    assert ("set-cookie" in second) == keys.is_open(key) == (not used) == (again == 200)
+    led = keys.another(lambda: None)  # by the file at the start: once
+    assert [asked(door, f"key={led}")["status"] for _ in range(2)] == [200, 403]
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="accounts have numbers on POSIX only")
+def test_another_account_is_refused_with_the_printed_address(monkeypatch):
+    monkeypatch.setattr("fegear.window.access.account_of", lambda *_: os.getuid() + 1)
+    keys = Keys()
+    door, key = Doorkeeper(page, 5000, keys), keys.another(lambda: None, again=True)
+    if os.getuid() + 1 != 0:
+        assert asked(door, f"key={key}")["status"] == 403
+        assert asked(door, cookie=f"fegear-5000={keys.secret}")["status"] == 403
+
+
 READS = ["40", "40{}", "41", "1", "3", '42["handshake",{"client_id":"x"}]', '42["ack",{}]']
 WRITES = [
     '42["event",{"id":1}]', '42["piece",{}]', '42["log",{}]', '42["javascript_response",{}]', '42["handshake2",{}]',

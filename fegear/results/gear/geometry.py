@@ -21,6 +21,8 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Table
 from fegear.engine.value import Value
+from fegear.geometry.checks import undercut_of
+from fegear.geometry.gear import Gear
 from fegear.geometry.gear_data import MODIFICATIONS, GearData, MeshData, measured
 from fegear.geometry.inspection import usual_span
 from fegear.geometry.internal_tooth import InternalTooth
@@ -374,6 +376,7 @@ def _in_mesh(seen: Seen) -> Iterator[str]:
     """What a drawing of each pair begins with."""
     for name, pair in seen.data.pairs.items():
         z = f"{abs(pair.driver.tooth.teeth)} and {abs(pair.driven.tooth.teeth)} teeth"
+        z += "".join(_undercut(member, pair.gear(member)) for member in MEMBERS)
         ratio = f"contact ratio {figures(pair.contact_ratio)}"
         if pair.driver.helix_angle != 0.0:
             ratio += f", overlap ratio {figures(pair.overlap_ratio)}"
@@ -384,13 +387,24 @@ def _in_mesh(seen: Seen) -> Iterator[str]:
         )
 
 
+def _undercut(name: str, gear: Gear) -> str:
+    """A clause of a sentence where the tool cuts into the involute of a gear; else empty."""
+    found = undercut_of(gear)
+    if found is None or not found.lost > 0.0:
+        return ""
+    return (
+        f", {name} undercut ({figures(found.lost * 1e3, 2)} mm of the involute; none from profile_shift = "
+        f"{found.enough:.4f} on)"
+    )
+
+
 def _lone_gears(seen: Seen) -> Iterator[str]:
     """Of each gear in no pair."""
     for one in _lone(seen) or ():
         gear = one.gear
         yield (
             f"Gear {one.name}: {abs(gear.tooth.teeth)} teeth of module {figures(gear.module * 1e3, 5)} mm, tip "
-            f"diameter {figures(2e3 * gear.tip_radius, 6)} mm."
+            f"diameter {figures(2e3 * gear.tip_radius, 6)} mm{_undercut(one.name, gear)}."
         )
 
 

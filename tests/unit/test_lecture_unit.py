@@ -1,0 +1,59 @@
+"""What a lecture asks first: undercut, said before anything is solved, and the transmission error at half the torque."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+from fegear.window.on_gears import gears_in_mesh
+from fegear.window.order import HarrisMaps
+
+
+def scene_of(*, shift=0.0, torque="400 N*m", results=("geometry",)):
+    gear = {"module": "5 mm", "face_width": "50 mm"}
+    gears = {name: {"teeth": z, "profile_shift": x, **gear} for name, z, x in (("p", 14, shift), ("w", 37, -shift))}
+    pair = {"driver": "p", "driven": "w", "torque": torque, "compliance": {"source": "weber-banaschek"}}
+    document = {"title": "a lecture", "results": list(results), "gear": gears, "pair": {"I": pair}}
+    return build_scene({**document, "effects": {"hertz": "load-dependent"}}, "lecture", Path())
+
+
+def run(scene):
+    return run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+
+
+def test_undercut_is_said_before_anything_is_solved():
+    scene = scene_of()
+    (found,) = gears_in_mesh(scene, "I")["undercut"]
+    tooth = scene.gears["p"].tooth
+    # with its rounding of 0.25 modules the straight part of the rack's tip reaches 1.25 - 0.25 (1 - sin 20 deg) deep
+    sine = np.sin(np.radians(20.0))
+    assert found["enough"] == pytest.approx(1.25 - 0.25 * (1.0 - sine) - 14 * sine**2 / 2, abs=1e-4)
+    assert found["member"] == "driver"
+    assert found["lost"] == pytest.approx(5.0 * (tooth.form_radius - tooth.base_radius), rel=1e-9)
+    (said,) = run(scene).outcomes[Task("geometry", "")].answer.sentences
+    least = f"none from profile_shift = {found['enough']:.4f} on"
+    assert f"14 and 37 teeth, driver undercut (0.047 mm of the involute; {least}), contact ratio" in said
+
+
+def test_from_the_least_profile_shift_on_nothing_is_cut_away():
+    enough = gears_in_mesh(scene_of(), "I")["undercut"][0]["enough"]
+    assert gears_in_mesh(scene_of(shift=enough), "I")["undercut"] == []
+    assert gears_in_mesh(scene_of(shift=enough - 0.01), "I")["undercut"]
+    (said,) = run(scene_of(shift=enough)).outcomes[Task("geometry", "")].answer.sentences
+    assert "undercut" not in said
+
+
+def test_an_exercise_has_the_transmission_error_at_half_the_torque():
+    whole = run(scene_of(results=["transmission-error"]))
+    found = HarrisMaps().at_rest(whole)["I"]
+    half = run(scene_of(results=["transmission-error"], torque="200 N*m"))
+    for key, one in (("full", whole), ("half", half)):
+        expected = next(value for value in one.values if value.name == "I.te_peak_to_peak")
+        assert found[key] == pytest.approx(expected.value, rel=5e-3)
+    assert found["half"] < 0.9 * found["full"]
