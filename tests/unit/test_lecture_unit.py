@@ -1,4 +1,4 @@
-"""What a lecture asks first: undercut, said before anything is solved, and the transmission error at half the torque."""
+"""What a lecture asks first: undercut, before anything is solved, and the transmission error at half the torque."""
 
 from pathlib import Path
 
