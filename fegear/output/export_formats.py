@@ -181,6 +181,15 @@ FORMATS: Mapping[str, Format] = MappingProxyType({
         "*_solid.vtu", "ParaView: the same mesh and its nodal forces", asymmetric=True,
         racks="fegear.output.rack_mesh_files:written_solid_vtu",
     ),
+    "svg": Format(
+        "case", "gears in mesh with stress and loads, SVG", "fegear.output.drawn_mesh:written_svg", "mesh_PAIR_*.svg",
+        "slides: both gears of every loaded plane (2D) pair at points A to E of the path of contact, with the von "
+        "Mises stress inside their teeth and the load of each tooth pair",
+    ),
+    "pdf": Format(
+        "case", "gears in mesh with stress and loads, PDF", "fegear.output.drawn_mesh:written_pdf", "mesh_PAIR_*.pdf",
+        "the same on paper",
+    ),
     "fmu": Format(
         "case", "each loaded pair as a force element, FMI 3.0", "fegear.output.fmu:written_fmu", "mesh_PAIR.fmu",
         "Simulink, OpenModelica, Adams and other programs that run FMUs: every loaded pair, see below",

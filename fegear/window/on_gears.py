@@ -15,10 +15,8 @@ import numpy as np
 from fegear.base.errors import FegearError
 from fegear.engine.plan import make_plan
 from fegear.engine.stage import Task
-from fegear.geometry.checks import undercut_of
-from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
-from fegear.results.gear.drawing import moving_pair, tool_envelope
+from fegear.results.gear.drawing import moving_pair, tool_envelope, undercut_in_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,7 +25,6 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.geometry.pair import GearPair
     from fegear.results.gear.crack_shown import CracksShownData
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
     from fegear.results.pair.loaded_flanks import LoadedWidePair
@@ -261,20 +258,13 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     return found | {
         "rows": rows,
         "ratios": ratios,
-        "undercut": _undercut(pair),
+        "undercut": [
+            {"member": member, "lost": one.lost * 1e3, "shift": one.profile_shift, "enough": one.enough}
+            for member, one in undercut_in_mesh(pair).items()
+        ],
         "wide": name in scene.wide_pairs,
         "refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)},
     }
-
-
-def _undercut(pair: GearPair) -> list[dict[str, Any]]:
-    """What the tool cuts off the involutes of both gears, for the strip: the gears that have any."""
-    found = ((member, undercut_of(pair.gear(member))) for member in MEMBERS)
-    return [
-        {"member": member, "lost": one.lost * 1e3, "shift": one.profile_shift, "enough": one.enough}
-        for member, one in found
-        if one is not None and one.lost > 0.0
-    ]
 
 
 def _stages(scene: Scene, name: str) -> dict[str, str]:

@@ -10,16 +10,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.sheet.load_words import loads_as_given
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.pair.loaded_teeth import teeth_of
-from fegear.results.relief.harris import NOW, load_now, slider_map
+from fegear.results.relief.harris import NOW, half_and_full, load_now, slider_map
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
@@ -114,18 +112,12 @@ class HarrisMaps:
             self._begun[task.subject] = begun
             with loads_as_given(results.scene, task.subject):
                 figure = slider_map(task.subject, teeth, _MOST * begun)
-            half, full = (float(1e6 * np.ptp(curve)) for curve in _half_and_full(teeth))
+            half, full = half_and_full(teeth)
             drawn = {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)}
             found[task.subject] = {
                 "figure": drawn, "darker": darker([figure]), "now": NOW, "half": half, "full": full,
             }  # fmt: skip
         return found
-
-
-def _half_and_full(teeth: LoadedTeeth) -> Iterable[Array]:
-    """Transmission error over a base pitch at half the present load and at all of it [m]."""
-    _, _, error = teeth.error_under([0.5 * teeth.nominal, teeth.nominal], POSITIONS)
-    return error.T
 
 
 def load_now_of(pair: str, teeth: LoadedTeeth) -> dict[str, Any]:

@@ -165,7 +165,15 @@ def _dark(item: HeatMap, value: float) -> bool:
 def _field(axes: Any, _panel: Panel, item: TriangleField) -> Any:
     x, y = np.asarray(item.points)
     return axes.tripcolor(
-        x, y, item.triangles.T, item.values, shading="gouraud", cmap=SEQUENTIAL, vmin=0.0, vmax=item.top
+        x,
+        y,
+        item.triangles.T,
+        item.values,
+        shading="gouraud",
+        cmap=SEQUENTIAL,
+        vmin=0.0,
+        vmax=item.top,
+        rasterized=True,  # as triangles an SVG has 17 MB
     )
 
 

@@ -21,6 +21,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure, MeshField
 from fegear.engine.figure.items import Curve, Points, TriangleField, edges, outline, polylines
 from fegear.engine.figure.panel import Panel
+from fegear.geometry.checks import Undercut, undercut_of
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, GearPair, Member
@@ -374,6 +375,12 @@ def moving_pair(pair: GearPair, teeth: int = _TEETH) -> MovingPair:
         pair.driver.module,
         pair.driver.twist * pair.driver.base_radius,
     )
+
+
+def undercut_in_mesh(pair: GearPair) -> dict[Member, Undercut]:
+    """What the tool cuts off the involutes of a pair, of the gears that have any undercut."""
+    found = {member: undercut_of(pair.gear(member)) for member in MEMBERS}
+    return {member: one for member, one in found.items() if one is not None and one.lost > 0.0}
 
 
 #: Positions of the tool in one space.

@@ -197,6 +197,13 @@ def load_now(teeth: LoadedTeeth) -> tuple[float, Array, Array]:
     return now.load, drawn(now, "x"), drawn(now, "transmission_error")
 
 
+def half_and_full(teeth: LoadedTeeth) -> tuple[float, float]:
+    """Peak-to-peak transmission error at half the nominal load and at all of it [um]."""
+    _, _, error = teeth.error_under([0.5 * teeth.nominal, teeth.nominal], POSITIONS)
+    half, full = drawn(HarrisCurve, "peak_to_peak", np.ptp(error, axis=0)).tolist()
+    return half, full
+
+
 def slider_map(name: str, teeth: LoadedTeeth, greatest: float) -> Figure:
     """The Harris map beside a load slider: the family up to the greatest load, and the present load in it.
 
