@@ -305,8 +305,10 @@ def test_only_the_owner_of_the_window_and_the_administrator_come_in(monkeypatch,
     """Whoever runs the window: here account 1000. Where the system does not tell who asks, the key decides."""
     monkeypatch.setattr(access.os, "getuid", lambda: 1000)
     monkeypatch.setattr(access, "account_of", lambda _client, _port: account)
-    door = Doorkeeper(page, 5000, Keys())
-    assert door._is_ours({}, HOST) is let_in
+    door = Doorkeeper(page, 5000, keys := Keys())
+    opened = asked(door, f"key={keys.another(lambda: None, again=True)}")
+    assert opened["status"] == (200 if let_in else 403)
+    assert door._is_ours(account, HOST) is let_in
 
 
 def test_the_page_opens_files_below_the_folders_that_were_opened(places):
