@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 #: Significant digits of a value without an error; whole numbers are written out up to the limit.
 _DIGITS, _WHOLE = 6, 1e9
@@ -53,6 +57,24 @@ def percents(low: float, high: float) -> str:
 def in_words(count: int) -> str:
     """A count of a sentence: ``"three"``, ``"14"``."""
     return _COUNTS[count] if count < len(_COUNTS) else str(count)
+
+
+def column_figures(values: Sequence[float], digits: int = 4) -> list[str]:
+    """Rounded numbers of one column, all with the decimals that the largest of them has: ``["0.978", "1.002"]``.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Empty where they are not finite.
+    digits : int
+        Significant ones of the largest.
+    """
+    known = [abs(one) for one in values if math.isfinite(one)]
+    largest = max(known, default=0.0)
+    decimals = max(digits - 1 - math.floor(math.log10(largest)), 0) if largest else 0
+    if all(abs(one - round(one)) < 0.5 * 10.0**-decimals for one in known):
+        decimals = 0
+    return [f"{one:.{decimals}f}" if math.isfinite(one) else "" for one in values]
 
 
 def plain(value: float) -> str:

@@ -117,8 +117,16 @@ class Table(Alike):
 
     @property
     def filled(self) -> Table:
-        """The same without columns in which no row has a number."""
-        columns = tuple(one for one in self.columns if one.si.dtype.kind != "f" or not np.isnan(one.si).all())
+        """The same without columns in which no row has a number or a text."""
+        columns = tuple(
+            one
+            for one in self.columns
+            if not (
+                np.isnan(one.si).all()
+                if one.si.dtype.kind == "f"
+                else one.si.dtype.kind == "U" and (one.si == "").all()
+            )
+        )
         return self if len(columns) == len(self.columns) else replace(self, columns=columns)
 
     def column(self, name: str) -> Column:

@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fegear.base.printed import figures
+from fegear.base.printed import column_figures, figures
 from fegear.engine.table import Table
 from fegear.output.file_names import file_name
 
@@ -49,6 +49,11 @@ def _written(values: NDArray[np.generic], form: str) -> list[str]:
         return [str(value) for value in values]
     write = form.format  # Python's own numbers are written five times as fast as numpy's
     return [write(value) if math.isfinite(value) else "" for value in values.tolist()]
+
+
+def read_cells(values: NDArray[np.generic]) -> list[str]:
+    """A column as a person reads it beside the others of a table: numbers of four digits with equal decimals."""
+    return column_figures(values.tolist()) if values.dtype.kind == "f" else [str(value) for value in values]
 
 
 def table_file(table: Table) -> str:
@@ -117,7 +122,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
 
 def row_lines(table: Table) -> list[str]:
     """Lines for the terminal: heads, and a line for each row of the table; numbers of four digits, to the right."""
-    columns = [[one.head, *_written(one.values, "{:.4g}")] for one in table.columns]
+    columns = [[one.head, *read_cells(one.values)] for one in table.columns]
     texts = [one.values.dtype.kind == "U" for one in table.columns]
     widths = [max(map(len, column)) for column in columns]
     return [

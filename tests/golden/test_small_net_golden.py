@@ -14,7 +14,7 @@ from fegear.case.drafts.kinds import KINDS
 from fegear.case.drafts.text import draft
 from fegear.engine.run import Silence
 from fegear.output.figures import described
-from fegear.output.report.blocks import Group
+from fegear.output.report.blocks import Group, Notes
 from fegear.output.report.run import run_page
 from fegear.results.catalogue import RESULTS
 
@@ -527,7 +527,8 @@ def check_first_screen(found):
     assert [section.title for section in page.sections[:3]] == ["Answer", "Notes", "Results"]
     said, notes, values = (section.blocks for section in page.sections[:3])
     wanted = {step.task for step in found.plan.steps if step.wanted}
-    assert found.answer.sentences == (said[0].sentences if found.answer.sentences else ())
+    lines = [line for sentence in found.answer.sentences for line in sentence.splitlines()]
+    assert lines == [line for block in said if isinstance(block, Notes) for line in block.sentences]  # about a table
     outcomes = [found.outcomes[task] for task in wanted]
     assert said or not any(outcome.values or outcome.figures for outcome in outcomes)
     fails = sum(class_of(note) is NoteClass.FAILS for note in found.notes(list(found.remarks), information=False))

@@ -1,5 +1,6 @@
 """What several gauges say together: one factor is told from one gauge that is off."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from fegear.engine.answered import Answered
 from fegear.engine.run_answer import joined
+from fegear.results.pair.gauge_teeth import TraceZero, teeth_apart
 from fegear.results.pair.gauges_together import GaugeGain, common_factor, of_all_gauges
 
 
@@ -72,6 +74,40 @@ def test_what_no_factor_explains_is_said():
 
 def test_fewer_than_three_measured_gauges_say_nothing_together():
     assert of_all_gauges([*gauges(0.9, 0.9), None, None]) == of_all_gauges([]) == ""
+
+
+def zeros(*shifts, teeth=23, entered=(), on=("p", "pinion", "driver", "f.csv")):
+    entered = entered or [1] * len(shifts)
+    return [
+        ("ABC"[i], TraceZero(on, tooth - 1, teeth, math.radians(shift)))
+        for i, (shift, tooth) in enumerate(zip(shifts, entered, strict=True))
+    ]
+
+
+def test_shifts_of_gauges_on_one_gear_are_whole_pitches():
+    pitch = 360.0 / 23.0
+    assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch, entered=(1, 9))) == ""
+    assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch, entered=(1, 3))) == (
+        "Shifts: 243.8 - 118.6° (gauges B, A) are 8.00 tooth pitches: gauge B is on tooth 9, not 3, with A on tooth 1."
+    )
+    assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch)).endswith(": gauge B is on tooth 9, with A on tooth 1.")
+    over_zero = zeros(-20.0, 340.0 - 3.0 * pitch + 0.01, entered=(5, 2))
+    assert teeth_apart(over_zero) == ""
+    assert teeth_apart(zeros(10.0, 9.9)) == teeth_apart(zeros(9.9, 10.0)) == ""
+    assert "are 7.40 tooth pitches, not a whole number: check the angle for slip" in teeth_apart(
+        zeros(0.0, 7.4 * pitch, 0.0)
+    )
+    other = [*zeros(0.0), *zeros(7.4 * pitch, on=("p", "wheel", "driven", "f.csv"))]
+    assert teeth_apart(other) == teeth_apart([("A", None), *zeros(0.0)]) == teeth_apart([]) == ""
+
+
+def test_the_teeth_are_said_behind_the_ratios():
+    three = [replace(one, zero=zero) for one, (_, zero) in zip(gauges(1.0, 0.99, 1.01), zeros(0.0, 90.0, 0.0, teeth=20),
+                                                               strict=True)]  # fmt: skip
+    assert of_all_gauges(three).startswith("All three gauges agree")
+    assert of_all_gauges(three).endswith(" Shifts: 90.0 - 0.0° (gauges g1, g0) are 5.00 tooth pitches: gauge g1 is on "
+                                         "tooth 6, with g0 on tooth 1.")  # fmt: skip
+    assert of_all_gauges(three[:2]).startswith("Shifts: 90.0")
 
 
 def test_the_common_sentence_is_first():

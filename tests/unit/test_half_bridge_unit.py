@@ -147,3 +147,9 @@ def test_a_half_bridge_in_motion(strains, tmp_path):
     assert data.bridge_peak == pytest.approx(np.abs(strains[1]).max(), rel=0.04)  # without contact of the tip edges
     assert any(one.startswith("Gauge t less c, in motion: measured strain agrees") for one in results.answer.sentences)
     assert data._computed(data.compared).limits(0.0).upper > 0.0
+    table = results.outcomes[next(one for one in results.outcomes if str(one) == "dynamic-strain of t")]
+    (row,) = table.answer.overviews
+    assert row.name == "dynamic_gauges"
+    assert row.column("torque").values.tolist() == pytest.approx([16.0])
+    assert row.column("scale").values.tolist() == pytest.approx([1.01], abs=2e-3)
+    assert table.answer.fact.agrees

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.printed import column_figures
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.engine.answered import Answered
@@ -14,6 +15,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.run_answer import joined
 from fegear.engine.table import Column, Table
+from fegear.output.report.blocks import DataTable
 from fegear.output.spoken_values import answer_lines
 from fegear.output.tables import row_lines
 from fegear.results.catalogue import STAGES
@@ -21,12 +23,12 @@ from fegear.results.catalogue import STAGES
 _CACHE = SolutionCache()
 
 
-def run(gauges, folder=Path()):
+def run(gauges, folder=Path(), torques=("16 N*m",)):
     gear = {"module": "2 mm", "face_width": "10 mm"}
     document = {
         "results": ["gauge"],
         "gear": {"a": {"teeth": 20, "profile_shift": 0.1, **gear}, "b": {"teeth": 31, **gear}},
-        "pair": {"p": {"driver": "a", "driven": "b", "torque": "16 N*m"}},
+        "pair": {"p": {"driver": "a", "driven": "b", "torques": list(torques)}},
         "gauge": {name: {"gear": "a", "grid_length": "0.3 mm", **more} for name, more in gauges.items()},
         "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True},
         "accuracy": {"tolerance": 1e-2},
@@ -62,7 +64,7 @@ def test_every_gauge_has_its_row_and_the_one_that_fails_is_first(tmp_path):
     assert row["good"][1:] == pytest.approx((1.01, 20.0, 40.0), abs=0.4)
     assert row["turned"][0] == "fits with its sign reversed"
     assert row["twice"][0] == "does not agree: 2 times"
-    assert row["plain"][0] == "no trace"
+    assert row["plain"][0] == ""
     assert np.isnan(row["plain"][1:]).all()
     assert cells["torque"] == pytest.approx([16.0] * 4)
     assert found.tables["gauges"] is not None
@@ -77,9 +79,34 @@ def test_every_gauge_has_its_row_and_the_one_that_fails_is_first(tmp_path):
 def test_columns_of_traces_are_not_shown_where_nothing_was_measured():
     found = run({"one": {}, "two": {"grid_length": "0.2 mm"}, "three": {"fillet": "compression"}})
     lines = answer_lines(found.answer)
-    assert lines[1].split() == ["gauge", "torque", "[N.m]", "computed_peak", "[um/m]", "verdict"]
+    assert lines[1].split() == ["gauge", "torque", "[N.m]", "computed_peak", "[um/m]"]
     assert [line.split()[0] for line in lines[2:5]] == ["one", "two", "three"]
     assert {"scale", "shift [deg]"} <= {column.head for column in found.tables["gauges"].columns}  # the file has all
+
+
+def test_before_there_is_a_trace_the_peak_of_every_torque_is_in_the_table():
+    found = run({"one": {}, "two": {"fillet": "compression"}}, torques=["4 N*m", "16 N*m", "8 N*m"])
+    table = found.tables["gauges"]
+    assert table.column("gauge").values.tolist() == ["one"] * 3 + ["two"] * 3
+    assert table.column("torque").values.tolist() == pytest.approx([4.0, 8.0, 16.0] * 2)
+    for name in ("one", "two"):
+        peaks = next(one.data for task, one in found.outcomes.items() if str(task) == f"gauge of {name}").peak_strain
+        mine = table.column("gauge").values == name
+        assert sorted(np.abs(table.column("computed_peak").si[mine])) == pytest.approx(sorted(np.abs(peaks)))
+    assert len(answer_lines(found.answer)[1:8]) == 7
+
+
+def test_numbers_of_a_column_have_equal_decimals():
+    assert column_figures([0.97791, 1.0, 1.0172]) == ["0.978", "1.000", "1.017"]
+    assert column_figures([118.62, 243.8, math.nan]) == ["118.6", "243.8", ""]
+    assert column_figures([150.0, 300.0]) == ["150", "300"]
+    assert column_figures([-1234.6, 2.0]) == ["-1235", "2"]
+    assert column_figures([0.0]) == ["0"]
+    assert column_figures([math.nan]) == [""]
+    column = Column("scale", np.array([0.97791, 1.0]), "")
+    block = DataTable(Table("t", (Column("gauge", np.array(["a", "b"])), column)), brief=True, as_on_terminal=True)
+    assert [row[1] for row in block.rows] == [("0.978", "0.97791"), ("1.000", "1")]
+    assert row_lines(block.table) == ["gauge  scale", "a      0.978", "b      1.000"]
 
 
 def test_tables_of_subjects_are_joined_in_the_order_of_their_ranks():

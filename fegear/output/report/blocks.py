@@ -12,7 +12,7 @@ from fegear.base.printed import rounded
 from fegear.base.spoken_names import spoken
 from fegear.engine.inexact import is_inexact
 from fegear.output.numbers import plain_number, pretty_unit, with_error
-from fegear.output.tables import cells, table_file
+from fegear.output.tables import cells, read_cells, table_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -250,10 +250,13 @@ class DataTable(Block):
     table : Table
     brief : bool
         Beside an answer: all of its rows, with the digits that a person reads; all digits and errors on request.
+    as_on_terminal : bool
+        Of a brief one, whether its columns have the digits that the terminal shows.
     """
 
     table: Table
     brief: bool = False
+    as_on_terminal: bool = False
 
     @property
     def file(self) -> str:
@@ -305,7 +308,13 @@ class DataTable(Block):
             one.name.removesuffix("_error"): one.values for one in self.table.columns if one.name.endswith("_error")
         }
         columns = [
-            list(zip(_read(column, errors.get(column.name)), shown, strict=False))
+            list(
+                zip(
+                    read_cells(column.values) if self.as_on_terminal else _read(column, errors.get(column.name)),
+                    shown,
+                    strict=False,
+                )
+            )
             for column, shown in zip(self.table.columns, full, strict=True)
         ]
         return list(zip(*columns, strict=True))

@@ -97,7 +97,7 @@ def _answer(
     )
     blocks: tuple[Block, ...] = (
         *(Notes(part, "answer") for part in (before,) if part),
-        *(DataTable(table.filled, brief=True) for table in answer.overviews),
+        *(DataTable(table.filled, brief=True, as_on_terminal=True) for table in answer.overviews),
         *(Notes(part, "answer") for part in (behind,) if part),
     )
     if figure is None:

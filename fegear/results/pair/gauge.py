@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, cast
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from fegear.base.notes import about
 from fegear.base.printed import figures, percent, with_rough_error
@@ -23,12 +21,12 @@ from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
-from fegear.results.gear.solved_gear import solid_solution_of, solution_of
+from fegear.results.pair.followed_gauge import gauge_in_plane, gauge_on_face
 from fegear.results.pair.gauge_data import GaugeData
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
 from fegear.results.pair.gauges_together import GaugeGain, of_all_gauges
 from fegear.results.pair.half_bridge import HalfBridge
-from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_pair, loaded_teeth, needs_teeth
+from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.over_loads import OVER_LOADS
 from fegear.results.pair.placed_gauge import (
     DASHED,
@@ -41,9 +39,6 @@ from fegear.results.pair.placed_gauge import (
     compared,
     comparison_table,
     comparison_values,
-    gauges_on,
-    placed_gauge,
-    placed_on_face,
 )
 from fegear.results.pair.trace_levels import over_torque
 from fegear.results.pair.trace_verdict import Otherwise
@@ -54,10 +49,8 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.gauge_strain import GaugeHistory, StrainWith
-    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
-    from fegear.results.pair.placed_gauge import PlacedGauge
 
 #: Seconds of both fillets over the path.
 _SECONDS = 0.4
@@ -136,7 +129,10 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
-    followed = (_on_face if asked.wide else _in_plane)(asked, upstream)
+    followed = (
+        gauge_on_face(gauge, upstream, neglected=asked.neglected) if asked.wide else
+        gauge_in_plane(gauge, upstream, estimates=asked.estimates, neglected=asked.neglected)
+    )  # fmt: skip
     at, bridge = teeth.loads.index(teeth.nominal), None
     if gauge.second:
         other: GaugeData = upstream[Task("gauge", gauge.second)]
@@ -180,50 +176,6 @@ def _torques(history: GaugeHistory, loads: Sequence[float], at: int, halves: int
     return {f"{figures(loads[i] * lever, 5)} N m": peak / peaks[at] for i, peak in enumerate(peaks) if i != at}
 
 
-@dataclass(frozen=True)
-class _Followed:
-    """A gauge on its way through the mesh: place, strain, clearance [modules], strain with more effects."""
-
-    place: PlacedGauge
-    history: GaugeHistory
-    clearance: float
-    more: dict[str, StrainWith]
-
-
-def _in_plane(asked: GaugeInputs, upstream: Upstream) -> _Followed:
-    from fegear.contact.plane.gauge_history import gauge_history, gauge_neglects
-
-    gauge, solved = asked.gauge, solution_of(upstream, asked.gauge.gear)
-    teeth, place = loaded_pair(upstream, gauge.pair), placed_gauge(gauge, solved)
-    grids, opposite = gauges_on(gauge, place, solved)
-    history = gauge_history(
-        teeth.engagement, teeth.shifted, teeth.loads, teeth.nominal, gauge.member, grids, opposite,
-        place.displacement, gauge.tooth, estimates=asked.estimates,
-    )  # fmt: skip
-    more = {}
-    if asked.neglected:
-        alone = grids.only(int(np.argmin(np.abs(place.displacement))))
-        more = gauge_neglects(teeth.spec, teeth.engagement, gauge.member, alone, opposite, gauge.tooth)
-    clearance = place.clearance(history.pair, gauge.member, gauge.side, solved.fine.flank)
-    return _Followed(place, history, clearance, more)
-
-
-def _on_face(asked: GaugeInputs, upstream: Upstream) -> _Followed:
-    from fegear.contact.wide.gauge_on_face import wide_gauge_history, wide_gauge_neglects
-
-    gauge, solved = asked.gauge, solid_solution_of(upstream, asked.gauge.gear)
-    teeth = cast("LoadedWidePair", loaded_teeth(upstream, gauge.pair))
-    place = placed_on_face(gauge, solved, teeth.pair.gear(gauge.member))
-    history = wide_gauge_history(
-        teeth, gauge.member, gauge.side, gauge.grid, place.middle, place.displacement, gauge.z, solved
-    )
-    more = {}
-    if asked.neglected:
-        more = wide_gauge_neglects(teeth, gauge.member, gauge.side, gauge.grid, place.middle, gauge.z, solved)
-    clearance = place.clearance(teeth.pair, gauge.member, gauge.side, solved.fine.flank)
-    return _Followed(place, history, clearance, more)
-
-
 def _peaks(seen: Seen) -> list[str]:
     """Peak strain and stress, each with its error where that takes digits that its single value has."""
     data: GaugeData = seen.data
@@ -253,11 +205,15 @@ def _neglected(seen: Seen) -> str:
     return remark(f"Gauge {seen.name}", asked.effects, asked.tolerance, effect, [said])
 
 
-def _row(seen: Seen) -> GaugeRow:
-    """The gauge at the nominal load beside other gauges."""
+def _rows(seen: Seen) -> list[GaugeRow]:
+    """The gauge at the nominal load beside other gauges; before there is a trace at every load, ascending."""
     data: GaugeData = seen.data
-    torque = data.loads[data.at] * data.history.pair.driver.base_radius * seen.asked.halves
-    return GaugeRow.of(seen.name, data, torque, data.traced_peak)
+    lever = data.history.pair.driver.base_radius * seen.asked.halves
+    if data.compared is None:
+        peaks = sorted(zip(data.loads, data.peak_strain.tolist(), strict=True))
+        return [GaugeRow.of(seen.name, data, load * lever, peak) for load, peak in peaks]
+    torque = data.loads[data.at] * lever
+    return [GaugeRow.of(seen.name, data, torque, data.traced_peak)]
 
 
 def _subject(seen: Seen) -> str:
@@ -269,7 +225,7 @@ def _subject(seen: Seen) -> str:
 def _gain(seen: Seen) -> GaugeGain | None:
     """What the gauge adds to the sentence about all of them; None without a verdict."""
     data: GaugeData = seen.data
-    return data.gain_beside_others(seen.name)
+    return data.gain_beside_others(seen.asked.gauge)
 
 
 #: Of a history, in the order of its columns.
@@ -405,7 +361,7 @@ _SHEET = Sheet(
         _peaks,
         "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
-        overview=gauge_rows("gauges", "Measured and computed strain of all gauges", _row),
+        overview=gauge_rows("gauges", "Measured and computed strain of all gauges", _rows),
         fact=_gain, common=of_all_gauges,
     ),
     remarks=(

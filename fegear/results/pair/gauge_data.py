@@ -8,14 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.base.notes import Note, NoteClass, class_of
+from fegear.base.notes import Note, class_of
 from fegear.base.shown import shown, shows
+from fegear.case.built.gauges import Gauge
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_places, reach_of_places
-from fegear.results.pair.gauges_together import GaugeGain
+from fegear.results.pair.gauges_together import GaugeGain, gain_of
 from fegear.results.pair.half_bridge import HalfBridge
 from fegear.results.pair.trace_levels import OverTorque
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, alike, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
@@ -213,19 +214,14 @@ class GaugeData(BesideTrace):
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
 
-    def gain_beside_others(self, name: str) -> GaugeGain | None:
+    def gain_beside_others(self, gauge: Gauge) -> GaugeGain | None:
         """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict.
 
         Nor has one of which the ratio depends on the torque a ratio to compare.
         """
-        found, judged = self.compared, self.judged
-        if found is None or not judged or (self.linearity and self.over_torque and not self.over_torque.linear):
+        if self.compared is None or (self.linearity and self.over_torque and not self.over_torque.linear):
             return None
-        limits = self._computed(found).limits_of(found)
-        return GaugeGain(
-            name, found.gain, limits.together(-1.0), limits.together(1.0), self.load_tolerance,
-            judged.kind is NoteClass.INFORMATION, alike(found, self.otherwise),
-        )  # fmt: skip
+        return gain_of(gauge, self, self._computed(self.compared))
 
     @property
     @shows("um/m", "peak of the strain less that of the second gauge of the half bridge", name="bridge_peak_strain")

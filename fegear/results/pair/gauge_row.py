@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.trace_verdict import BesideTrace
 
-#: Words where nothing was measured, and where it is not judged.
-_NO_TRACE, _DRAFT = "no trace", "not judged"
+#: Word where a trace is not judged.
+_DRAFT = "not judged"
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class GaugeRow:
         """Of a gauge with the peak that is computed for it."""
         found = data.compared
         if found is None:
-            return cls(name, torque, peak, *(math.nan,) * 4, _NO_TRACE)
+            return cls(name, torque, peak, *(math.nan,) * 4, "")
         return cls(
             name, torque, peak, found.gain, _if_fitted(found, "offset"), _if_fitted(found, "shift"),
             found.rms if found.fits else math.nan, data.judged.word or _DRAFT,
@@ -50,9 +50,9 @@ def _if_fitted(found: FittedCurve, quantity: Fitted) -> float:
     return float(getattr(found, quantity)) if quantity in found.fit else math.nan
 
 
-def gauge_rows(name: str, title: str, row: Callable[[Seen], GaugeRow]) -> Rows:
-    """A table of gauges, of which each has one row."""
+def gauge_rows(name: str, title: str, rows: Callable[[Seen], list[GaugeRow]]) -> Rows:
+    """A table of gauges, of which each has one row, or without a trace one for each torque."""
     return Rows(
         name, title, ("gauge", "torque", "peak", "scale", "offset", "shift", "residual", "verdict"),
-        of=lambda seen: [row(seen)],
+        of=rows,
     )  # fmt: skip

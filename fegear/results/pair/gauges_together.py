@@ -13,11 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.notes import NoteClass
 from fegear.base.printed import figures, in_words, percent
-from fegear.results.pair.trace_verdict import Otherwise
+from fegear.results.pair.gauge_teeth import TraceZero, teeth_apart
+from fegear.results.pair.trace_verdict import Otherwise, alike
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from fegear.case.built.gauges import Gauge
+    from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak
 
 #: Gauges from which on something is said of all of them.
 _SEVERAL = 3
@@ -43,6 +48,8 @@ class GaugeGain:
         Whether its own verdict is that both agree.
     alike : bool
         Whether only the ratio may be wrong: the shapes agree, and nothing else explains the trace better.
+    zero : TraceZero or None
+        Where its tooth is in contact, by the angle of its trace; None where that was not fitted.
     """
 
     name: str
@@ -52,6 +59,7 @@ class GaugeGain:
     load: float
     agrees: bool
     alike: bool
+    zero: TraceZero | None = None
 
     def within(self, factor: float) -> bool:
         """Whether the strain agrees with a computed one that is multiplied by a factor."""
@@ -64,6 +72,30 @@ class GaugeGain:
         return 0.5 * (self.below + self.above)
 
 
+def gain_of(gauge: Gauge, data: BesideTrace, peak: ComputedPeak) -> GaugeGain | None:
+    """What a gauge says beside others; None without a verdict.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    data : BesideTrace
+    peak : ComputedPeak
+        What its trace is judged by.
+    """
+    found, judged = data.compared, data.judged
+    if found is None or not judged:
+        return None
+    limits, same = peak.limits_of(found), alike(found, data.otherwise)
+    zero = None
+    if same and gauge.measured is not None and "shift" in found.fit:
+        on = gauge.pair, gauge.gear, gauge.member, gauge.measured.file
+        zero = TraceZero(on, gauge.tooth, data.otherwise.teeth, found.shift)
+    return GaugeGain(
+        gauge.name, found.gain, limits.together(-1.0), limits.together(1.0), gauge.load_tolerance,
+        judged.kind is NoteClass.INFORMATION, same, zero,
+    )  # fmt: skip
+
+
 def common_factor(gauges: Sequence[GaugeGain]) -> float:
     """Mean of measured / computed strain, geometric, each gauge weighted by its limit."""
     weights = [1.0 / max(one.limit, 1e-6) ** 2 for one in gauges]
@@ -71,7 +103,7 @@ def common_factor(gauges: Sequence[GaugeGain]) -> float:
 
 
 def of_all_gauges(gauges: Sequence[GaugeGain | None]) -> str:
-    """Sentence about all gauges that have a trace; empty for fewer than three.
+    """Sentences about all gauges that have a trace: their ratios, from three on, and their teeth; empty for none.
 
     Parameters
     ----------
@@ -79,6 +111,11 @@ def of_all_gauges(gauges: Sequence[GaugeGain | None]) -> str:
         None for a gauge without a verdict.
     """
     measured = [one for one in gauges if one is not None]
+    return " ".join(filter(None, (of_ratios(measured), teeth_apart([(one.name, one.zero) for one in measured]))))
+
+
+def of_ratios(measured: Sequence[GaugeGain]) -> str:
+    """Sentence about measured / computed strain of all gauges; empty for fewer than three."""
     if len(measured) < _SEVERAL:
         return ""
     failing = [one for one in measured if not one.agrees]

@@ -40,9 +40,9 @@ def place_of_gain(displacement: Array, gains: Array, gain: float, beyond: float 
     for end, beside in ((0, 1), (-1, -2)):
         if beyond > 1.0 and (last := displacement[end]):  # where the fillet ends there is no place
             slope = (gains[end] - gains[beside]) / (last - displacement[beside])
-            at = 0 if end == 0 else place.size
-            place = np.insert(place, at, beyond * last)
-            ratio = np.insert(ratio, at, gains[end] + slope * (beyond - 1.0) * last)
+            before = 0 if end == 0 else place.size
+            place = np.insert(place, before, beyond * last)
+            ratio = np.insert(ratio, before, gains[end] + slope * (beyond - 1.0) * last)
     off = ratio - gain
     at = np.flatnonzero(off[:-1] * off[1:] <= 0.0)
     if not at.size:

@@ -29,6 +29,8 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
+from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
+from fegear.results.pair.gauges_together import GaugeGain, gain_of, of_all_gauges
 from fegear.results.pair.loaded_teeth import kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     LEFT_OUT,
@@ -47,7 +49,7 @@ from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged,
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
@@ -138,6 +140,8 @@ class DynamicStrain(BesideTrace):
         Quasi-static strain with each effect that is off, of the second gauge of a half bridge.
     gains : mapping of str to float
         Relative change of measured / computed strain by each neglected effect of what the trace is of.
+    torque : float
+        Mean of the driver of its mesh [N m].
     """
 
     found: ToothStrain
@@ -152,6 +156,7 @@ class DynamicStrain(BesideTrace):
     displaced_second: Array | None = None
     with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
     gains: Mapping[str, float] = field(default_factory=dict)
+    torque: float = 0.0
 
     @property
     @shows("um/m", "dynamic peak of the strain less that of the second gauge of the half bridge",
@@ -174,6 +179,10 @@ class DynamicStrain(BesideTrace):
         if self.compared is None or (self.sharper and self.found.peak_error is None):
             return Judged("")
         return verdict(self.compared, self._computed(self.compared), self.otherwise, brief=brief)
+
+    def gain_beside_others(self, gauge: Gauge) -> GaugeGain | None:
+        """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict."""
+        return None if self.compared is None else gain_of(gauge, self, self._computed(self.compared))
 
     def _computed(self, compared: FittedCurve) -> ComputedPeak:
         """What the trace is judged by."""
@@ -255,6 +264,7 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
         found, alone, gauge.load_tolerance, measured, otherwise, asked.sharper if asked.wide else "", neglected,
         including(dict.fromkeys([*neglected, *changes]), asked.off), seen, displaced,
         more if asked.in_bridge else {}, {effect: 1.0 / (1.0 + change) - 1.0 for effect, change in changes.items()},
+        force.train.meshes[force.mesh].force * found.pair.driver.base_radius,
     )  # fmt: skip
 
 
@@ -317,6 +327,18 @@ def _peak(seen: Seen) -> list[str]:
             "{v[dynamic_peak_strain]}, {v[dynamic_strain_ratio]} times the quasi-static one."
         )
     ]
+
+
+def _rows(seen: Seen) -> list[GaugeRow]:
+    """The gauge beside other gauges."""
+    data: DynamicStrain = seen.data
+    return [GaugeRow.of(seen.name, data, data.torque, (data.seen or data.found).peak)]
+
+
+def _of_all(gauges: Sequence[GaugeGain | None]) -> str:
+    """Sentence about all gauges in motion; empty for none."""
+    said = of_all_gauges(gauges)
+    return f"In motion: {said[0].lower()}{said[1:]}" if said else ""
 
 
 def _subject(seen: Seen) -> str:
@@ -382,6 +404,8 @@ _SHEET = Sheet(
         "Gauge {name}: displaced within its tolerance the dynamic peak changes by up to "
         "{v[dynamic_change_by_placement]}.",
         figure="dynamic_strain_{name}", rank=lambda seen: seen.data.urgency,
+        overview=gauge_rows("dynamic_gauges", "Measured and dynamic strain of all gauges", _rows),
+        fact=lambda seen: seen.data.gain_beside_others(seen.asked.gauge), common=_of_all,
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
