@@ -6,13 +6,16 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part, PositiveTorque, at_most, refuse
+from fegear.case.part import Number, Part, PositiveSpeed, PositiveTorque, at_most, refuse
 
 
 class ErrorTracePart(Part):
     """``traces = [{ file, torque }, ...]``: one trace of both encoders at one torque."""
 
-    file: str = Field(description="CSV file with the columns `angle [deg]` (rotation of `shaft`) and `te [um]`.")
+    file: str = Field(
+        description="CSV file with the columns `angle [deg]` (rotation of `shaft`), or `time [s]` at a constant speed, "
+        "and `te [um]`."
+    )
     torque: PositiveTorque | None = Field(
         default=None,
         description="Torque on the driver at which it was measured, one of the pair's loads. Default: the levels of "
@@ -50,6 +53,16 @@ class EncodersPart(Part):
         description="Column of the rotation of the other shaft, in place of `te_column`: the transmission error is the "
         "difference of both angles, by the base radii. Requires `offset` in `fit`.",
     )
+    time: str | None = Field(default=None, description="Unit of the column of the time, if its head has none.")
+    time_column: str = Field(
+        default="time",
+        description="Column of the time, of files without the angle: the rotation is that at a constant `speed`.",
+    )
+    speed: PositiveSpeed | None = Field(
+        default=None,
+        description="Constant speed of `shaft` during the traces, if they are over time; it is found from the period "
+        "of the mesh within ±5 %. Default: that of the pair.",
+    )
     torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
     torque_column: str = Field(
         default="torque",
@@ -82,6 +95,8 @@ class EncodersPart(Part):
         if self.torque_column in (self.angle_column, self.te_column):
             other = "angle" if self.torque_column == self.angle_column else "transmission error"
             raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
+        if self.time_column in (self.angle_column, self.te_column, self.torque_column):
+            raise refuse("is another column, too", "specify another column", key="time_column")
         if self.mate_column is not None:
             self._check_mate()
         torques = [trace.torque for trace in self.traces if trace.torque is not None]

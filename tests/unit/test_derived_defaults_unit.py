@@ -337,7 +337,7 @@ NOT_WRITTEN = {
     "CompoundPlanetPart.body", "CompoundShaftPart.body",
     "CostPart.gear", "CostPart.pair", "CrackGrowthPart.cycle_shares",
     "CrackGrowthPart.step", "CrackPart.tangent_angle", "CutterPart.teeth", "DesignChartPart.mesh",
-    "DesignPart.peak", "ErrorTracePart.torque",
+    "DesignPart.peak", "EncodersPart.speed", "ErrorTracePart.torque",
     "ExcitationPart.speed", "FlankDesignPart.centre", "FlankDesignPart.grid", "FlankDesignPart.length",
     "FlankDesignPart.load", "FlankDesignPart.loads", "FlankDesignPart.pair", "FlankMapPart.over_face",
     "GearBodyPart.hub_width", "GearPlacePart.seat", "IsoPart.micropitting_material_factor",

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.case.built.trace_levels import over_pitch
+
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
 
@@ -86,6 +88,25 @@ def steady_turning(time: Array, signal: Array, stated: float) -> SteadyTurning:
         return SteadyTurning(stated, found=False)
     factor = _by_harmonics(turns, clipped, factor, 2.0 * _STEP / span)
     return SteadyTurning(stated * factor, found=True, wander=_wander(turns * factor, clipped))
+
+
+def mesh_turning(time: Array, error: Array, stated: float, teeth: int) -> SteadyTurning:
+    """The constant speed of a shaft by the mesh period of a transmission error near a stated speed.
+
+    What varies more slowly than a tooth pitch (runout) is taken off first: it does not repeat with the pitch.
+
+    Parameters
+    ----------
+    time, error : ndarray, shape (N,)
+        [s], ascending; [m].
+    stated : float
+        [rad/s].
+    teeth : int
+        Of the gear on the shaft.
+    """
+    fast = error - over_pitch(error, stated * (time - time[0]), _TURN / teeth)
+    found = steady_turning(time, fast, stated * teeth)
+    return SteadyTurning(found.speed / teeth, found.found, found.wander / teeth)
 
 
 def _liveliest(turns: Array, signal: Array) -> float:

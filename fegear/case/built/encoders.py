@@ -10,6 +10,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
+from fegear.base.printed import percent
+from fegear.case.built.angle_of_time import mesh_turning
 from fegear.case.built.trace_levels import no_level, of_driven, said_of_pair, said_of_rest, torque_levels
 from fegear.case.csv_file import read_columns
 
@@ -27,6 +29,9 @@ _ABOUT = 0.03
 _LARGEST = 5e-3
 #: Difference of the ratio of two encoders from that of the teeth from which on they are not those of the pair.
 _OTHER_RATIO = 0.01
+#: Deviation from the rotation at a constant speed from which on it is said, a tooth pitch being a turn [rad].
+_WANDERS = 0.02 * 2.0 * np.pi
+_RPM = 30.0 / np.pi
 
 
 @dataclass(frozen=True)
@@ -114,7 +119,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
     for i, one in enumerate(part.traces):
         key = f"encoders.{name}.traces[{i}]"
         wanted = nominal if one.torque is None else one.torque / lever
-        read = _trace(scene, part, placed, one.file, f"{key}.file")
+        read = _trace(scene, name, placed, one.file, f"{key}.file")
         if one.torque is None and read.torque is not None:
             torques = np.array(loads) * lever
             pitch = 2.0 * np.pi / abs((placed.driver if part.shaft == "driver" else placed.driven).teeth)
@@ -161,22 +166,36 @@ class _Columns:
     reading: str
 
 
-def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str) -> _Columns:
+def _trace(scene: Scene, name: str, pair: GearPair, file: str, key: str) -> _Columns:
     """Columns of one file."""
+    part = scene.case.encoders[name]
     along, angles = part.te_at == "line-of-action", part.mate_column is not None
     measured, word = (part.mate_column, "mate_column") if part.mate_column else (part.te_column, "te_column")
     columns = {
         part.angle_column: "angle", measured: "length" if along and not angles else "angle",
-        part.torque_column: "torque",
+        part.torque_column: "torque", part.time_column: "time",
     }  # fmt: skip
     given = {
         part.angle_column: part.angle, measured: part.angle if angles else part.te, part.torque_column: part.torque,
+        part.time_column: part.time,
     }  # fmt: skip
     units = {name: unit for name, unit in given.items() if unit}
     found = read_columns(scene.file(file, key), key, columns, units, gaps=True)
-    for column, of in ((part.angle_column, "angle_column"), (measured, word)):
-        found.require(column, key, file, of)
-    angle, te = found[part.angle_column], found[measured]
+    over_time = not angles and part.angle_column not in found and part.time_column in found
+    if over_time:
+        found.require(measured, key, file, word)
+    else:
+        for column, of in (
+            (part.angle_column, "angle_column (at a constant speed: time_column and speed)"),
+            (measured, word),
+        ):
+            found.require(column, key, file, of)
+    te = found[measured]
+    angle, said = (
+        _rotation(scene, name, pair, file, key, found[part.time_column], te)
+        if over_time
+        else (found[part.angle_column], "")
+    )
     for what, values in (("angle", angle), ("angle" if angles else "transmission error", te)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
             raise InputError(key, f'"{file}"', f"has the same {what} in every line", "check the columns")
@@ -192,7 +211,38 @@ def _trace(scene: Scene, part: EncodersPart, pair: GearPair, file: str, key: str
             key, f"range of {largest * 1e3:.4g} mm", f"is above {_LARGEST * 1e3:g} mm",
             "check the unit of the angles" if angles else "check the unit and te_at",
         )  # fmt: skip
-    return _Columns(angle, te, found.get(part.torque_column), found.reading)
+    reading = ", ".join(filter(None, (found.reading, said)))
+    return _Columns(angle, te, found.get(part.torque_column), reading)
+
+
+def _rotation(
+    scene: Scene, name: str, pair: GearPair, file: str, key: str, time: Array, te: Array
+) -> tuple[Array, str]:  # fmt: skip
+    """Rotation of the shaft at a constant speed from the time of the samples [rad], and how that was found."""
+    part = scene.case.encoders[name]
+    of_pair = scene.case.pair[pair_of_encoders(scene, name)].speed
+    gear = pair.driver if part.shaft == "driver" else pair.driven
+    if part.speed is None and of_pair is None:
+        raise InputError(
+            f"encoders.{name}.speed", "(not given)", f'is required: "{file}" has the time in column '
+            f"{part.time_column} and no column {part.angle_column}",
+            'set speed to the constant speed of shaft during the trace, e.g. "60 rpm", or set angle_column',
+        )  # fmt: skip
+    if np.any(np.diff(time) <= 0.0):
+        raise InputError(
+            key, f'"{file}"', f"must have ascending times in column {part.time_column}", "sort the lines"
+        )  # fmt: skip
+    teeth = abs(gear.teeth)
+    stated = part.speed or (of_pair or 0.0) * abs(pair.driver.teeth) / teeth
+    found = mesh_turning(time, te, stated, teeth)
+    at = f"{stated * _RPM:.6g} rpm, the {'stated speed' if part.speed else 'speed of the pair'}"
+    if found.found:
+        at = f"{found.speed * _RPM:.6g} rpm, the period of the mesh (stated: {stated * _RPM:.6g} rpm)"
+    said = f"rotation from the time at {at}"
+    if found.wander * teeth > _WANDERS:
+        share = percent(found.wander * teeth / (2.0 * np.pi))
+        said += f"; the speed was not constant: parts of the trace are up to {share} of a tooth pitch off"
+    return found.speed * (time - time[0]), said
 
 
 def _of_both_shafts(

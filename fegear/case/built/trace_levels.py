@@ -41,7 +41,7 @@ def torque_levels(torque: Array, angle: Array, pitch: float, levels: Array, band
     band : float
         Relative deviation from a level within which samples belong to it.
     """
-    mean, found = _over_pitch(torque, angle, pitch), {}
+    mean, found = over_pitch(torque, angle, pitch), {}
     nearest = np.argmin(np.abs(mean[:, None] - levels), axis=1)
     near = np.abs(mean - levels[nearest]) <= band * levels[nearest]
     for k in range(levels.size):
@@ -53,8 +53,8 @@ def torque_levels(torque: Array, angle: Array, pitch: float, levels: Array, band
     return found
 
 
-def _over_pitch(torque: Array, angle: Array, pitch: float) -> Array:
-    """Mean of the torque over a tooth pitch around each sample, shape (N,)."""
+def over_pitch(torque: Array, angle: Array, pitch: float) -> Array:
+    """Mean of the torque, or of another quantity, over a tooth pitch [rad] around each sample, shape (N,)."""
     step = float(np.median(np.abs(np.diff(angle)))) if angle.size > 1 else 0.0
     window = min(max(int(pitch / step) if step > 0.0 else 1, 1), torque.size)
     total, at = np.concatenate([[0.0], np.cumsum(torque)]), np.arange(torque.size)
