@@ -1,6 +1,7 @@
 """Keys of a case in combinations that are seldom: which one a refusal names, and what is taken where none is given."""
 
 import math
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import pytest
@@ -10,6 +11,9 @@ from fegear.case.built import compound as built_compound
 from fegear.case.built.odd_teeth import keyway_of
 from fegear.case.built.tip_tolerances import flank_tolerance, tip_tolerances
 from fegear.case.compound import CompoundPart
+from fegear.case.drafts import two_stages
+from fegear.case.drafts.first_size import MODULES
+from fegear.case.drafts.two_stages import TWO_STAGES
 from fegear.case.odd_tooth import KeywayPart
 from fegear.case.reading import build_scene
 from fegear.case.sizing import SizingPart
@@ -194,3 +198,77 @@ def test_a_backlash_of_half_a_module_is_a_wrong_unit():
     assert error.key == "pair.I.normal_backlash"
     assert "more than half a module" in error.rule
     assert scene_of(case({"normal_backlash": "0.2 mm"})).pairs["I"].normal_backlash == pytest.approx(0.2e-3, rel=1e-6)
+
+
+# ---- drafts of gearboxes ---------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("begins", "room"), [(2.0, 2.0), (2.0, 3.0), (2.5, 10.0), (2.0, 99.0), (32.0, 99.0)])
+def test_a_second_stage_takes_the_first_module_of_the_series_that_has_room(monkeypatch, begins, room):
+    """Where none has any, it is that of its torque."""
+    tried = []
+
+    def laid(stages):
+        tried.append(stages[1])
+        return SimpleNamespace(stages=(stages[0], SimpleNamespace(si=lambda _name: stages[1] * 1e-3)), module=stages[1])
+
+    monkeypatch.setattr(two_stages, "_first", lambda _answers: "first")
+    monkeypatch.setattr(two_stages, "_second", lambda _answers, _first, least: max(least, begins))
+    monkeypatch.setattr(two_stages, "laid_out", laid)
+    monkeypatch.setattr(two_stages, "_beside", lambda draft, stage: stage == 1 and draft.module >= room)
+    found = two_stages.two_stages(None)
+    assert tried == [one for one in MODULES if begins <= one <= room]
+    assert found.module == (begins if room > MODULES[-1] else room)
+
+
+def test_axes_have_room_for_bearings_and_the_wheel_beside_the_shaft(monkeypatch):
+    """Bearings of 60 and 80 mm need 70 mm, the wheel of 95 mm tip radius beside a shaft of 40 mm 115 mm, and a gap."""
+
+    def laid(distances):
+        shafts = [
+            SimpleNamespace(thick=0.04, bearings={"l": SimpleNamespace(outside=d), "r": SimpleNamespace(outside=0.05)})
+            for d in (0.06, 0.08, 0.08)
+        ]
+        return SimpleNamespace(
+            shafts=shafts, distances=distances, stages=[SimpleNamespace(si=lambda _name: 2e-3)] * len(distances)
+        )
+
+    monkeypatch.setattr(two_stages, "_tips", lambda _stage: (0.02, 0.095))
+    gap = two_stages._APART * 2e-3
+    assert gap > 0.0
+    for first, second, apart in (
+        (0.0701, 0.1151, True), (0.0699, 0.1151, False), (0.0701, 0.1149, False), (0.2, 0.2, True)
+    ):  # fmt: skip
+        assert two_stages._apart(laid((first + gap, second + gap))) is apart
+    assert two_stages._apart(laid((0.0701 + gap,)))
+    shorter = [laid((0.2, 0.0801 + gap)), laid((0.2, 0.0799 + gap))]  # bearings of 80 mm on both
+    monkeypatch.setattr(two_stages, "_tips", lambda _stage: (0.02, 0.01))
+    assert [two_stages._apart(one) for one in shorter] == [True, False]
+
+
+@pytest.mark.parametrize("kind", [TWO_STAGES, "gearbox"])
+@pytest.mark.parametrize(
+    ("given", "room", "module"), [(None, 2.5, 2.5), (None, 2.0, 2.0), (None, 99.0, 2.0), (2.0, 99.0, 2.0)]
+)
+def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypatch, kind, given, room, module):
+    @dataclass(frozen=True)
+    class Given:
+        kind: str
+        suited: dict
+
+        def assumed(self, _name):
+            return given is None
+
+        def si(self, _name):
+            return float(self.suited["module"].split()[0]) * 1e-3
+
+        def __getitem__(self, name):
+            return {"torque": "50 N*m"}[name]
+
+    laid = {TWO_STAGES: lambda answers: answers, "gearbox": lambda answers: answers[0]}
+    monkeypatch.setattr(two_stages, "two_stages", laid[TWO_STAGES] if kind == TWO_STAGES else None)
+    monkeypatch.setattr(two_stages, "laid_out", laid["gearbox"] if kind != TWO_STAGES else None)
+    monkeypatch.setattr(two_stages, "_apart", lambda one: one.si("module") >= (room - 1e-6) * 1e-3)
+    start = Given(kind, {"module": "2 mm"})
+    found = two_stages.with_room(start)
+    assert found.si("module") == pytest.approx(module * 1e-3)
+    assert (found is start) == (module == 2.0)
+    assert found is start or found.suited["torque"] == "50 N*m"

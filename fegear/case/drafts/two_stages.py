@@ -137,13 +137,15 @@ def two_stages(answers: Answers) -> LaidOut:
     ----------
     answers : Answers
     """
-    first, least = _first(answers), 0.0
+    first = _first(answers)
+    least: float | None = 0.0
     drafts: list[LaidOut] = []
-    while not drafts or drafts[-1].stages[1].si("module") < 0.999e-3 * MODULES[-1]:
+    while least is not None:
         drafts.append(laid_out((first, _second(answers, first, least))))
         if _beside(drafts[-1], 1):
             return drafts[-1]
-        least = next(one for one in MODULES if one > 1.001e3 * drafts[-1].stages[1].si("module"))
+        tried = drafts[-1].stages[1].si("module")
+        least = next((one for one in MODULES if one > 1.001e3 * tried), None)
     return drafts[0]
 
 
