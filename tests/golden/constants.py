@@ -5,10 +5,11 @@
 Tables of standards and of makers were compared with their print when they were typed in; what a key or an argument is
 where it is not given is a promise. Of the rooms that hold such numbers (`ROOMS`) ``constants.json`` keeps what their
 names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
-count in comparisons, and bounds; of the others what is neutral where it is not given: true, false, 0, 1, -1. Of every
-result it keeps what it takes and for what it asks, and in which files its tables stand. How finely something is
-searched or drawn is free to change, and not kept. Long tables are kept as a sum in which every number has a weight of
-its own. Only what is kept and still there is compared; after a change that is meant, ``--accept`` keeps what is found.
+count in comparisons, and bounds; of the others what is neutral where it is not given (true, false, 0, 1, -1) or called
+usual. Of every result it keeps what it takes and for what it asks, and in which files its tables stand. How finely
+something is searched or drawn is free to change, and not kept. Long tables are kept as a sum in which every number has
+a weight of its own. Only what is kept and still there is compared; after a change that is meant, ``--accept`` keeps
+what is found.
 """
 
 import argparse
@@ -138,11 +139,15 @@ def of_results():
     return kept
 
 
-def neutral(name, were=()):
-    """Of a module of the other rooms: flags, zeros, ones, minus ones taken where nothing is given, and what were."""
+def neutral(name, path, were=()):
+    """Of a module of the other rooms: flags, zeros, ones, minus ones taken where nothing is given, and what were.
+
+    And what it calls usual: that is taken where nothing is given, too.
+    """
     declared = of_module(name, None).items()
     found = {known: kept for known, kept in declared if len(kept) == 1}
-    return {
+    usual = {known: kept for known, kept in of_module(name, path).items() if known.lstrip("_").startswith("USUAL")}
+    return usual | {
         known: kept for known, kept in found.items()
         if known.endswith(UNSEEN) or known in were or kept[0] in (-1.0, 0.0, 1.0)
     }  # fmt: skip
@@ -152,7 +157,7 @@ def found(were=None):
     """Of all modules, and of all results; of what was neutral what it is now."""
     were = kept() if were is None else were
     every = {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
-    return every | {name: neutral(name, were.get(name, ())) for name, _ in modules(OTHERS)}
+    return every | {name: neutral(name, path, were.get(name, ())) for name, path in modules(OTHERS)}
 
 
 def kept():

@@ -1,15 +1,19 @@
 """What goes where in lines that only long runs reach: places of REXS models, present designs, odd teeth in space."""
 
+import base64
 import math
+import struct
 from contextlib import nullcontext
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.built import odd_solid_teeth
 from fegear.design.flanks import flank_design
-from fegear.exchange.rexs import places
+from fegear.exchange.rexs import places, reading
 from fegear.exchange.rexs.written_shafts import write_shaft_results
 from fegear.fem.solid.odd import odd_solid_influence
 from fegear.results.gear import odd_solid_gear
@@ -231,3 +235,48 @@ def test_which_tolerance_decides_is_asked_of_what_is_to_be_ground(monkeypatch, l
     else:
         assert decisive == ("searched", "pair", "numbers", tolerance, "most")
         assert finer == ("most", "none", 3)
+
+
+@pytest.mark.parametrize(
+    ("code", "kind", "numbers"),
+    [
+        ("float64", "d", (1.5, -2.25, 1e300)),
+        ("float32", "f", (1.5, -2.25)),
+        ("int32", "i", (7, -8, 9, 10)),
+        ("float64", "d", ()),
+    ],
+)
+def test_packed_numbers_of_a_model_are_read_and_matrices_left_out(code, kind, numbers):
+    """REXS 1.6: little-endian numbers in base64."""
+
+    def read(**value):
+        return reading._attribute({"id": "x", "unit": "mm", "value": value}, 3, Path("m.rexs")).value
+
+    packed = base64.b64encode(struct.pack(f"<{len(numbers)}{kind}", *numbers)).decode()
+    assert read(code=code, value=packed) == numbers
+    assert read(code=code, value=packed, rows=2) == "(matrix)"
+    assert read(code="complex128", value=packed) == "(matrix)"
+    assert read(code=code, value=[packed]) == "(matrix)"
+    for damaged in (packed + "?", base64.b64encode(b"123").decode()):
+        with pytest.raises(InputError, match="damaged data for x of component 3"):
+            read(code=code, value=damaged)
+
+
+def test_rows_of_a_matrix_are_not_read_and_numbers_are():
+    def read(value):
+        return reading._attribute({"id": "x", "values": value}, 3, Path("m.rexs"))
+
+    assert read([1.0, 2, "a", [3.0]]).value == (1.0, 2, "a", "(row)")
+    assert (read(4.5).value, read("a").value, read(None).value) == (4.5, "a", "")
+    assert read(1).unit == ""
+
+
+@pytest.mark.parametrize(("given", "number"), [(5, 5), (5.0, 5), ("5", 5), (" 5 ", 5)])
+def test_numbers_of_components_are_whole_however_they_are_written(given, number):
+    assert reading._number({"id": given}, "id", Path("m.rexs")) == number
+
+
+@pytest.mark.parametrize("given", [5.5, True, None, "x", math.inf, [5]])
+def test_what_is_no_whole_number_is_refused(given):
+    with pytest.raises(InputError, match="has a component, relation or load case"):
+        reading._number({"id": given}, "id", Path("m.rexs"))
