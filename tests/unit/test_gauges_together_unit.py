@@ -88,13 +88,14 @@ def test_shifts_of_gauges_on_one_gear_are_whole_pitches():
     pitch = 360.0 / 23.0
     assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch, entered=(1, 9))) == ""
     assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch, entered=(1, 3))) == (
-        "Shifts: 243.8 - 118.6° (gauges B, A) are 8.00 tooth pitches: gauge B is on tooth 9, not 3, with A on tooth 1."
+        "Shifts: those of gauges B (243.8°) and A (118.6°) are 8.00 tooth pitches apart: gauge B is on tooth 9, not 3, "
+        "with A on tooth 1."
     )
     assert teeth_apart(zeros(118.6, 118.6 + 8.0 * pitch)).endswith(": gauge B is on tooth 9, with A on tooth 1.")
     over_zero = zeros(-20.0, 340.0 - 3.0 * pitch + 0.01, entered=(5, 2))
     assert teeth_apart(over_zero) == ""
     assert teeth_apart(zeros(10.0, 9.9)) == teeth_apart(zeros(9.9, 10.0)) == ""
-    assert "are 7.40 tooth pitches, not a whole number: check the angle for slip" in teeth_apart(
+    assert "are 7.40 tooth pitches apart, not a whole number: check the angle for slip" in teeth_apart(
         zeros(0.0, 7.4 * pitch, 0.0)
     )
     other = [*zeros(0.0), *zeros(7.4 * pitch, on=("p", "wheel", "driven", "f.csv"))]
@@ -105,9 +106,9 @@ def test_the_teeth_are_said_behind_the_ratios():
     three = [replace(one, zero=zero) for one, (_, zero) in zip(gauges(1.0, 0.99, 1.01), zeros(0.0, 90.0, 0.0, teeth=20),
                                                                strict=True)]  # fmt: skip
     assert of_all_gauges(three).startswith("All three gauges agree")
-    assert of_all_gauges(three).endswith(" Shifts: 90.0 - 0.0° (gauges g1, g0) are 5.00 tooth pitches: gauge g1 is on "
-                                         "tooth 6, with g0 on tooth 1.")  # fmt: skip
-    assert of_all_gauges(three[:2]).startswith("Shifts: 90.0")
+    assert of_all_gauges(three).endswith("and g0 (0.0°) are 5.00 tooth pitches apart: gauge g1 is on tooth 6, with "
+                                         "g0 on tooth 1.")  # fmt: skip
+    assert of_all_gauges(three[:2]).startswith("Shifts: those of gauges g1 (90.0°)")
 
 
 def test_the_common_sentence_is_first():

@@ -28,6 +28,7 @@ def test_the_cause_that_takes_least_of_its_tolerance_is_first():
     assert likely_causes(0.06, 0.05, PLACES, GAINS).startswith(
         "; likeliest cause: a torque, gauge factor or bridge supply 6.0 % higher (1.2 times load_tolerance), then a"
     )
+    assert "leads" not in likely_causes(-0.06, 0.01, PLACES, GAINS, leads=False)
     assert "times load_tolerance" not in likely_causes(0.06, 0.0, PLACES, GAINS)
     assert likely_causes(0.3, 0.01, PLACES, GAINS).endswith("; no grid within 0.25 mm would explain it")
     alone = likely_causes(0.3, 0.01, np.zeros(1), np.ones(1))

@@ -72,8 +72,8 @@ def teeth_apart(gauges: Sequence[tuple[str, TraceZero | None]]) -> str:
 def _apart(known: str, reference: TraceZero, name: str, zero: TraceZero) -> str:
     """What the shifts of two gauges say; empty where that is as entered."""
     count = zero.pitches_after(reference)
-    shifts = " - ".join(f"{math.degrees(one.shift) % 360.0:.1f}" for one in (zero, reference))
-    start = f"{shifts}° (gauges {name}, {known}) are {count:.2f} tooth pitches"
+    shifts = [f"{math.degrees(one.shift):.1f}°" for one in (zero, reference)]
+    start = f"those of gauges {name} ({shifts[0]}) and {known} ({shifts[1]}) are {count:.2f} tooth pitches apart"
     if abs(count - round(count)) > _NEAR:
         return f"{start}, not a whole number: check the angle for slip or lost pulses, and the gear of both"
     teeth = abs(zero.teeth)

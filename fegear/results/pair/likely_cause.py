@@ -54,7 +54,13 @@ def place_of_gain(displacement: Array, gains: Array, gain: float, beyond: float 
 
 
 def likely_causes(
-    off: float, load_tolerance: float, displacement: Array, gains: Array, fillet_ratio: float = 0.0
+    off: float,
+    load_tolerance: float,
+    displacement: Array,
+    gains: Array,
+    fillet_ratio: float = 0.0,
+    *,
+    leads: bool = True,
 ) -> str:
     """Causes of a difference beyond the limit, the likeliest first, a clause after others.
 
@@ -68,9 +74,11 @@ def likely_causes(
         Of grids within the placement tolerance [m], and measured / computed strain that each would give.
     fillet_ratio : float
         Peak of an equal gauge in the other fillet over that of the gauge, in size; zero where it is not known.
+    leads : bool
+        Whether it may be a quarter bridge, whose leads count.
     """
     by_load = f"a torque, gauge factor or bridge supply {percent(abs(off))} {'higher' if off >= 0.0 else 'lower'}"
-    if -_LEADS < off < 0.0:
+    if leads and -_LEADS < off < 0.0:
         by_load += " (or leads of a quarter bridge with two wires)"
     load = abs(off) / load_tolerance if load_tolerance else np.inf
     ways = [(load, f"{by_load}{_times(load, 'load_tolerance')}")]

@@ -366,8 +366,11 @@ def verdict(
         also = f", {_by(with_them)} it with {effects}" if missing else ""
         judged = (
             f"measured strain does not agree with the computed one: {by} it ({limit}){also}"
-            f"{likely_causes(off, peak.load_tolerance, peak.displacement, peak.gains, otherwise.fillet_ratio)}"
-        )
+            + likely_causes(
+                off, peak.load_tolerance, peak.displacement, peak.gains, otherwise.fillet_ratio,
+                leads=not otherwise.second,
+            )
+        )  # fmt: skip
     if brief:  # what is said without its notes has to name what falsifies it
         drift = found.unfitted_drift
         judged += f"; {saturated}" if (saturated := saturation(found)) else ""
