@@ -6,6 +6,8 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any, TextIO
 
+from fegear.base.printed import percent
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -18,23 +20,35 @@ if TYPE_CHECKING:
 _OFTEN = 0.2
 
 
+#: Seconds after which a log is told how far a stage is, and again.
+_LONG = 60.0
+
+
 class PlainLines:
-    """One line per finished stage, for logs and pipes."""
+    """One line per finished stage, for logs and pipes; of a long stage every minute how far it is."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream, self._title = stream, ""
+        self._begun = self._said = time.monotonic()
 
     def begin(self, title: str, number: int, count: int) -> None:
         """Remember the title; a line appears when the stage is finished."""
         self._title = f"[{number}/{count}] {title}"
+        self._begun = self._said = time.monotonic()
 
     def advance(self, fraction: float) -> None:
-        """Say nothing: a log needs no percentages."""
+        """Say of a long stage how far it is, and how long it has taken."""
+        if (now := time.monotonic()) - self._said >= _LONG:
+            self._said = now
+            self._write(f"{percent(fraction, whole=True)} after {(now - self._begun) / 60.0:.0f} min")
 
     def end(self, seconds: float) -> None:
         """Write the line."""
+        self._write(f"{seconds:.2f} s")
+
+    def _write(self, text: str) -> None:
         with contextlib.suppress(OSError, ValueError):  # a log that is full or closed takes no run with it
-            self._stream.write(f"{self._title}: {seconds:.2f} s\n")
+            self._stream.write(f"{self._title}: {text}\n")
             self._stream.flush()
 
 

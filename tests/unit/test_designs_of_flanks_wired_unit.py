@@ -40,7 +40,7 @@ class Trials:
         high = np.outer(1.0 + np.abs(self.scatter.over_face), self.loads) * self.scale * (1.0 + gap.mean())
         return SimpleNamespace(te=WAVE[:, None] * high[:, None], peak_to_peak=2.0 * high)
 
-    def of_numbers(self, numbers):
+    def of_numbers(self, numbers, near=None):
         return self.of_gap(self.gap(numbers))
 
 

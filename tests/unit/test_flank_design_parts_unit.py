@@ -104,7 +104,7 @@ def steps(monkeypatch):
     put("FlankTrials", Trials)
     put("design_force", lambda lines, loading, load: ("force", lines.name, load))
 
-    def best(trials, family, grid, force, most, starts, scan):
+    def best(trials, family, grid, force, most, starts, scan, ahead=None):
         calls["best"].append((trials, family, grid, force, most, tuple(starts), scan))
         number = 1e-6 * (1 + list(FAMILIES).index(family))
         tips, leads = (number, 1e-3) if "profile" in family else (0.0, 0.0), number if "profile" not in family else 0.0
@@ -167,7 +167,9 @@ def test_every_family_begins_with_the_valleys_of_those_that_it_holds_and_their_s
     calls = steps.calls
     assert list(found.found) == list(FAMILIES)
     assert [one[1] for one in calls["best"]] == list(FAMILIES)
-    assert told == pytest.approx([0.3, *(0.3 + 0.4 * k / len(FAMILIES) for k in range(1, len(FAMILIES) + 1)), 0.8])
+    searched, judged = len(FAMILIES), len(found.states)
+    steps_of_search = [0.3 + 0.4 * k / searched for k in range(1, searched + 1)]
+    assert told == pytest.approx([0.3, *steps_of_search, 0.8, *(0.8 + 0.2 * k / judged for k in range(1, judged + 1))])
     counts = dict(zip(FAMILIES, (0, 0, 2, 10, 12), strict=True))
     for trials, family, grid, force, most, starts, scan in calls["best"]:
         assert (grid, force, most) == ("usual", ("force", "known", 1200.0), 1.4)
@@ -234,9 +236,9 @@ def test_only_families_that_are_asked_for_are_searched_on_a_grid_that_is_given(s
     assert list(found.found) == [first, last]
     assert found.grid == "own"
     assert "grid" not in steps.calls
-    assert told == pytest.approx([0.3, 0.5, 0.7, 0.8])
+    assert told == pytest.approx([0.3, 0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0])
     none, told = designed(steps, families=(), scatter=Scatter(np.array([-1e-6, 1e-6]), np.array([0.5, 0.5])))
-    assert (none.found, told) == ({}, [0.3, 0.8])
+    assert (none.found, told) == ({}, [0.3, 0.8, 0.9, 1.0])
 
 
 def left_by(*found):
@@ -296,7 +298,7 @@ class Valley:
         [[1.0, -1e-3, 1.0, -1e-3, 1.0, 1.0, 0.0, 1.0, 1.0], [-1.0, 1e-3, 1.0, -1e-3, -1.0, 1.0, 0.0, -1.0, 1.0]]
     )
 
-    def of_numbers(self, numbers):
+    def of_numbers(self, numbers, near=None):
         return SimpleNamespace(peak_to_peak=(self.slopes @ numbers)[None, :])
 
 
@@ -366,13 +368,18 @@ def sentences(of, design, torque, over=None, robust=None):
     """What is said of a design whose driver has a base radius of 100 mm; pair I."""
     states = {s.label: s for s in design.states}
     over_range = {
-        label: SimpleNamespace(torque=np.array(torque), peak_to_peak=np.array((over or {}).get(label, [0.0])))
+        label: SimpleNamespace(
+            torque=np.array(torque),
+            peak_to_peak=np.array((over or {}).get(label, [0.0])),
+            share=None,
+            named=(len(torque) - 1, 0)[: len(torque)],
+        )
         for label in states
     }
     pair = SimpleNamespace(driver=SimpleNamespace(base_radius=0.1))
     data = SimpleNamespace(design=design, over_range=over_range, load=design.task.load, grinding=(),
                            data=SimpleNamespace(pair=pair))  # fmt: skip
-    return list(of(SimpleNamespace(name="I", data=data, asked=SimpleNamespace(spectrum=()))))
+    return list(of(SimpleNamespace(name="I", data=data, asked=SimpleNamespace(over=None))))
 
 
 def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_modifications_are_ground():

@@ -29,7 +29,7 @@ class Trials:
         self.leaves, self.factors, self.tried = leaves, factors, []
         self.known, self.cells = "known", "cells"
 
-    def of_numbers(self, numbers):
+    def of_numbers(self, numbers, near=None):
         at = int(numbers[0])
         self.tried.append(at)
         factor = 1.0 if self.factors is None else self.factors[at]
@@ -59,7 +59,7 @@ def search(monkeypatch):
             assert box[1] is HIGH
             return value - (gains or {}).get(int(start[0]), 0.0), start + 0.25
 
-        def valleys(few, more, places, box, most, floors=()):
+        def valleys(few, more, places, box, most, floors=(), ahead=None):
             assert few.tried is trials.tried
             reached = [descend(more, at, more.value(more.leaves[int(at[0])]), box, most) for at in places]
             return sorted(reached, key=lambda one: one[0])[:3] if kept else []
@@ -180,7 +180,7 @@ def test_the_search_goes_on_in_a_wider_box_as_long_as_that_gains(monkeypatch):
         grid.widened = lambda family, at: box(2.0 * most) if at[0] >= most else grid
         return grid
 
-    def valleys(few, more, places, limits, most_factor, floors=()):
+    def valleys(few, more, places, limits, most_factor, floors=(), ahead=None):
         boxes.append(limits[1][0])
         at = np.full(9, min(limits[1][0], least[0]))
         return [(10.0 - at[0], at)]

@@ -37,7 +37,7 @@ class Trials:
         other = (numbers[2] / 20e-6 - 1.0) ** 2 + (numbers[3] / 5e-3 - 1.0) ** 2
         return 1e-6 * (2.3 + 8.0 * across**2 - 0.3 * np.cos(10.0 * along) + 0.5 * along**2 + 20.0 * other)
 
-    def of_numbers(self, numbers, slope=False, near=None):
+    def of_numbers(self, numbers, slope=False, near=None, step=None):
         self.tried += 1
         value = self.left(numbers)
         te = np.array([value, 0.0, 0.0]).reshape(1, 3, 1)

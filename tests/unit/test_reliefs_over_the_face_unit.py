@@ -66,7 +66,7 @@ class Trials:
         found = SimpleNamespace(contact=contact, mean_transmission_error=7e-8 * self.loads)
         return Tried((np.cos(2.0 * np.pi * X)[:, None] * high)[None], (found,))
 
-    def of_numbers(self, numbers):
+    def of_numbers(self, numbers, near=None):
         return self.of_gap(self.gap(numbers))
 
 

@@ -62,7 +62,7 @@ class Trials:
     def of_gap(self, gap):
         return SimpleNamespace(te=1e-3 * (7.0 + np.mean(gap)) * np.linspace(0.0, 1.0, 5)[None, :, None] * self.loads)
 
-    def of_numbers(self, numbers):
+    def of_numbers(self, numbers, near=None):
         return SimpleNamespace(peak_to_peak=1e-3 * np.sum(numbers) * self.loads[None])
 
 

@@ -9,7 +9,7 @@ may be moved, the box is widened and the search goes on.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,6 +30,9 @@ _LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 160, 240, 60, 5
 
 #: Starts for tip reliefs only: floors of valleys and places of the grid, for which fewer are loaded exactly.
 _FLOORS, _ON_GRID, _LEAST_BY_FLOORS = 24, 8, 40
+
+#: Part of the progress of a family for its grid.
+_SCREENED = 0.15
 
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05
@@ -123,6 +126,7 @@ def best_of_family(
     most_factor: float = np.inf,
     starts: Sequence[GroundRelief] = (),
     scan: FlankTrials | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> FamilyBest:
     """Find the modification of a family that leaves the least.
 
@@ -140,13 +144,14 @@ def best_of_family(
         Further starts of descents: the best of smaller families, so that more freedom never leaves more.
     scan : FlankTrials, optional
         Fewer roll positions at which the grid is tried; those of `trials` without.
+    progress : callable, optional
 
     Raises
     ------
     RangeError
         If no combination keeps to the largest K_Hbeta.
     """
-    few = scan or trials
+    few, report = scan or trials, progress or (lambda _fraction: None)
     quick = quick_flanks(few.known, force, _PANELS, few.cells)
     low, high = box = grid.limits(family)
     by_floors = family == "profile" and bool(min(high[GROUPS["driver_tip"][0]], high[GROUPS["driven_tip"][0]]) > 0.0)
@@ -161,8 +166,11 @@ def best_of_family(
     left_on_grid, on_grid = found.best[0]
     ahead = found.best[:_ON_GRID] if by_floors and most_factor == np.inf else found.best
     places = [*(np.clip(start.numbers, low, high) for start in starts), *(at for _, at in ahead)]
+    report(_SCREENED)
     floors = _floors(trials, box) if by_floors else []
-    valleys = deepest_valleys(few, trials, places, box, most_factor, floors)
+    valleys = deepest_valleys(
+        few, trials, places, box, most_factor, floors, lambda part: report(_SCREENED + (1.0 - _SCREENED) * part)
+    )
     if not valleys:  # at more roll positions none keeps to the limit any more: what does so at few of them stays
         valleys = [(trials.value(trials.of_numbers(on_grid).peak_to_peak), on_grid)]
     at_ends = grid.at_ends(family, valleys[0][1])

@@ -351,9 +351,13 @@ def design_flanks(
     wanted = [family for family in FAMILIES if family in task.families]
     for number, family in enumerate(wanted):
         starts = _starts([found[held] for held in held_by(family) if held in found])
-        found[family] = best_of_family(more, family, grid, force, task.most_factor, starts, few)
+
+        def ahead(part: float, first: float = number / len(wanted), share: float = 1.0 / len(wanted)) -> None:
+            report(0.3 + 0.4 * (first + share * part))
+
+        found[family] = best_of_family(more, family, grid, force, task.most_factor, starts, few, ahead)
         grid = found[family].grid  # what a family needs, those that hold it need, too
-        report(0.3 + 0.4 * (number + 1) / len(wanted))
+        ahead(1.0)
     if wanted and task.scatter.over_face.size > 1:
         starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
         scattered, scan = (replace(one, scatter=task.scatter) for one in (more, few))
@@ -369,8 +373,11 @@ def design_flanks(
     }
     here = replace(few, loads=np.array([task.load]), apart=aligned.at(pair, known.lines), weights=None)
     over = _OverLoads(judge.under(loads, apart), replace(more, weights=None))
-    states = tuple(_state(label, relief, here, judge, over, task)
-                   for label, relief in reliefs.items())  # fmt: skip
+    judged: list[FlankState] = []
+    for label, relief in reliefs.items():
+        judged.append(_state(label, relief, here, judge, over, task))
+        report(0.8 + 0.2 * len(judged) / len(reliefs))
+    states = tuple(judged)
     design = FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
     return replace(design, finer=_classes_finer(over, pair, design), decisive=_decisive(over, pair, design))
 

@@ -120,7 +120,8 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
         Nominal.
     tolerance : FlankTolerance
     """
-    return _worst(lambda one: trials.of_numbers(one).peak_to_peak[0], trials, pair, numbers, tolerance)
+    near = trials.of_numbers(numbers)
+    return _worst(lambda one: trials.of_numbers(one, near=near).peak_to_peak[0], trials, pair, numbers, tolerance)
 
 
 def _worst(
@@ -149,12 +150,13 @@ def decisive_tolerances(
         Largest peak-to-peak transmission error within all tolerances [m].
     """
     seen: dict[bytes, Array] = {}
+    near = trials.of_numbers(numbers)
 
     def left(one: Array) -> Array:
         """Under each load; most combinations belong to several tolerances."""
         key = one.tobytes()
         if key not in seen:
-            seen[key] = trials.of_numbers(one).peak_to_peak[0]
+            seen[key] = trials.of_numbers(one, near=near).peak_to_peak[0]
         return seen[key]
 
     def worst(given: FlankTolerance) -> Array:

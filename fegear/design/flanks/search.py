@@ -75,7 +75,7 @@ def descend(
         for corrected in (False, True):
             new = p.copy()
             new[free] = np.clip(p[free] + step, low[free], high[free])
-            tried = trials.of_numbers(new, slope=True, near=here.tried)
+            tried = trials.of_numbers(new, slope=True, near=here.tried, step=new - p)
             keeps = most_factor == np.inf or tried.face_load_factor.max() <= most_factor * (1.0 + _AT_LIMIT)
             gain = value - trials.value(tried.peak_to_peak)
             if (keeps and gain > _LEAST_GAIN * (value - promised)) or corrected:

@@ -7,7 +7,8 @@ best of what they reach go leaps along and across the valleys, each followed by 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,8 @@ _ASIDE = (-0.15, 0.15)
 _SCOUTED, _SETTLED = 2e-3, 1e-5
 #: Descents from starts at most, and how far apart these are in at least one number, over the box.
 _DESCENTS, _APART = 24, 0.1
+#: Part of the progress for the descents from starts.
+_DESCENDED = 0.6
 #: Tips: amount and length of driver and driven gear.
 _TIPS = 4
 
@@ -82,7 +85,7 @@ def leaps(numbers: Array, box: tuple[Array, Array]) -> tuple[list[Array], list[A
 
 def deepest_valleys(
     few: FlankTrials, more: FlankTrials, starts: Iterable[Array], box: tuple[Array, Array],
-    most_factor: float = np.inf, floors: Iterable[Array] = (),
+    most_factor: float = np.inf, floors: Iterable[Array] = (), progress: Callable[[float], None] | None = None,
 ) -> list[tuple[float, Array]]:  # fmt: skip
     """Descend from every start, and leap on from the best of what is reached.
 
@@ -98,32 +101,42 @@ def deepest_valleys(
         Largest K_Hbeta that is allowed, at all loads and misalignments.
     floors : iterable of ndarray, shape (9,)
         Further starts, each in a valley of its own: from all of them goes a descent.
+    progress : callable, optional
+        Of the whole: first of the descents, then of the rounds of leaps, of which there may be fewer.
 
     Returns
     -------
     list of (float, ndarray)
         What is left [m] and where, the best first; empty where no start keeps to the largest K_Hbeta.
     """
+    report = progress or (lambda _fraction: None)
 
-    def begun(at: Array) -> tuple[float, Array] | None:
-        tried = more.of_numbers(at)
+    def begun(at: Array, near: Tried | None = None) -> tuple[float, Array] | None:
+        tried = more.of_numbers(at, near=near)
         return (more.value(tried.peak_to_peak), at) if keeps(tried, most_factor) else None
 
     def led(start: tuple[float, Array]) -> tuple[float, Array]:
         return descend(more, start[1], start[0], box, most_factor, _SCOUTED)
 
-    def quickly(at: Array) -> float:
-        return few.value(few.of_numbers(at).peak_to_peak)
+    def quickly(at: Array, near: Tried) -> float:
+        return few.value(few.of_numbers(at, near=near).peak_to_peak)
 
     known = sorted((one for one in map(begun, starts) if one is not None), key=_left)
     apart = [*(one for one in map(begun, floors) if one is not None), *_far_apart(known, box)]
     if not apart:
         return []
-    reached = sorted(map(led, apart), key=_left)[:_LEAPERS]
-    for _ in range(_ROUNDS):
+    reached = []
+    for number, start in enumerate(apart):
+        reached.append(led(start))
+        report(_DESCENDED * (number + 1) / len(apart))
+    reached = sorted(reached, key=_left)[:_LEAPERS]
+    for turn in range(_ROUNDS):
         before = reached[0][0]
         for k, (value, at) in enumerate(reached):
-            beside = [begun(one) for some in leaps(at, box) for one in sorted(some, key=quickly)[:_FOLLOWED]]
+            report(1.0 - (1.0 - _DESCENDED) * 0.5 ** (turn + k / len(reached)))
+            here, rough = more.of_numbers(at), few.of_numbers(at)
+            ordered = (sorted(some, key=partial(quickly, near=rough)) for some in leaps(at, box))
+            beside = [begun(one, here) for some in ordered for one in some[:_FOLLOWED]]
             reached[k] = min([(value, at), *(led(one) for one in beside if one is not None)], key=_left)
         reached.sort(key=_left)
         if reached[0][0] > (1.0 - _GAIN) * before:
