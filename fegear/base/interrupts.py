@@ -14,6 +14,10 @@ Heard = Callable[[int, FrameType | None], object]
 _LATER = 0.02
 #: What asks a program to end.
 REQUESTS_TO_STOP = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
+#: What a script may make raise besides: its timers, and what others send it.
+OF_SCRIPTS = tuple(
+    getattr(signal, n) for n in ("SIGALRM", "SIGVTALRM", "SIGPROF", "SIGUSR1", "SIGUSR2") if hasattr(signal, n)
+)
 
 
 @contextmanager

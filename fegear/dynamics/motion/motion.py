@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, InputError
+from fegear.base.interrupts import OF_SCRIPTS, REQUESTS_TO_STOP, deaf
 from fegear.base.tally import note, tallied
 from fegear.dynamics.motion import kernel
 from fegear.dynamics.motion.motion_model import Moving, Packed, pack
@@ -102,11 +103,14 @@ def propagate(
     friction = bool(packed.poly[:, 2:].any())
     rule = kernel.Rule(order, tolerance, longest, record or 20_000 + int(200 * duration), peaks, record, friction)
     try:
-        found = kernel.Travelled(*kernel.compiled()(
-            packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
-            X, V, start, start + duration, active, status is None,
-        ))  # fmt: skip
-    except SystemError as error:  # a Ctrl-C on the way, found as arrays were handed back
+        # What is handed back is made by Python: raised there, a Ctrl-C is a segmentation fault with Python 3.12.
+        with deaf((*REQUESTS_TO_STOP, *OF_SCRIPTS)):
+            handed_back = kernel.compiled()(
+                packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
+                X, V, start, start + duration, active, status is None,
+            )  # fmt: skip
+        found = kernel.Travelled(*handed_back)
+    except SystemError as error:  # where signals cannot wait, a Ctrl-C is found as arrays are handed back
         cause: BaseException = error
         while isinstance(cause, SystemError) and cause.__cause__ is not None:
             cause = cause.__cause__
