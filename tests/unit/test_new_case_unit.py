@@ -21,9 +21,10 @@ from fegear.case import examples
 from fegear.case.built.design_range import design_range
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.drafts.answers import HELICAL, Answers, kind_of, questions
-from fegear.case.drafts.first_size import with_teeth_of_ratio
+from fegear.case.drafts.first_size import face_for, module_for, with_teeth_of_ratio
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.drafts.text import draft
+from fegear.case.drafts.two_stages import centre_distance
 from fegear.case.reading import build_scene, read_scene
 from fegear.contact.wide.on_shafts import EvenForces, load_gearbox
 from fegear.engine.plan import make_plan
@@ -134,12 +135,14 @@ def test_a_gearbox_for_a_ratio_has_hunting_teeth(say, tmp_path, ratio, stages):
 
 
 def test_the_module_of_a_drafted_gearbox_follows_from_its_torque(say, tmp_path):
-    """Twice the module carries eight times the torque; other kinds, and a given module, stay."""
+    """Twice the module carries eight times the torque, on twice the face; other kinds, and a given module, stay."""
+    assert module_for(160.0, 21) == pytest.approx(2.0 * module_for(20.0, 21))
+    assert face_for(160.0, 21, module_for(160.0, 21)) == pytest.approx(2.0 * face_for(20.0, 21, 1.25e-3), abs=1e-3)
     modules = {}
     for torque in ("20 N m", "160 N m"):
         assert say("new", "x", "--kind", "gearbox", "--torque", torque, "--no-schema", "--force", "-q")[0] == 0
         modules[torque] = read_scene(tmp_path / "x.toml").case.gear["pinion"].normal_module
-    assert modules["160 N m"] == pytest.approx(2.0 * modules["20 N m"])
+    assert modules["160 N m"] > 1.5 * modules["20 N m"]  # bearings of the small one need room
     for more, module in ((("--kind", "pair"), 3e-3), (("--kind", "gearbox", "--module", "4 mm"), 4e-3)):
         assert say("new", "x", "--torque", "20 N m", *more, "--no-schema", "--force", "-q")[0] == 0
         part = read_scene(tmp_path / "x.toml").case.gear["pinion"]
@@ -150,10 +153,29 @@ def test_a_given_module_that_leaves_no_room_is_said(say):
     given = ("--kind", "gearbox", "--teeth", "17", "17", "--torque", "49.4 N m", "--no-schema")
     code, out, err = say("new", "x", *given, "--module", "2.5 mm")
     assert code == 0
-    assert "intersect: radii 52 mm, axes of shafts input and output 45.23 mm apart" in out + err
+    assert re.search(r"intersect: radii \d+ mm, axes of shafts input and output 45.23 mm apart", out + err)
     code, out, err = say("new", "y", *given)  # without it the module is larger
     assert code == 0
     assert "intersect" not in out + err
+
+
+def test_stages_of_a_power_have_their_own_module_and_face_whole_centre_distances_and_backlash():
+    given = {"teeth": "21 95 21 65", "torque": "190.986 N*m"}
+    case = tomllib.loads(draft(Answers(TWO_STAGES, given), "case"))
+    gears = list(case["gear"].values())
+    assert [one["normal_module"] for one in gears] == ["2.5 mm", "2.5 mm", "4 mm", "4 mm"]
+    assert [one["face_width"] for one in gears] == ["42 mm", "42 mm", "75 mm", "75 mm"]
+    scene = build_scene(case, "case", Path())
+    for name, pinion, wheel in (("I", *gears[:2]), ("II", *gears[2:])):
+        pair = case["pair"][name]
+        assert re.fullmatch(r"\d+ mm", pair["centre_distance"])
+        assert pair["normal_backlash"].endswith(" um")
+        assert pinion["profile_shift"] > 0.3 > wheel["profile_shift"]
+        of_shifts = centre_distance(Answers("gearbox", {
+            "teeth": f"{pinion['teeth']} {wheel['teeth']}", "module": pinion["normal_module"],
+            "profile_shift": f"{pinion['profile_shift']} {wheel['profile_shift']}",
+        }))  # fmt: skip
+        assert of_shifts == pytest.approx(scene.pairs[name].centre_distance, abs=1e-6)
 
 
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 3.0, 4.4])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from fegear.base.errors import InputError
 from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
-from fegear.case.drafts.first_size import module_for
+from fegear.case.drafts.first_size import face_for, module_for
 from fegear.case.drafts.kinds import KINDS, TWO_STAGES
 from fegear.case.nearest import nearest
 from fegear.geometry.rack import BasicRack
@@ -158,6 +158,11 @@ class Answers:
         """Whether the driven gear is a ring gear, whose number of teeth is negative."""
         return self.numbers("teeth")[-1].startswith("-")
 
+    @property
+    def sized(self) -> bool:
+        """Whether module and face width follow from a given torque."""
+        return self.kind in ("gearbox", TWO_STAGES) and self.assumed("module") and not self.assumed("torque")
+
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: two are those of each stage, else the last one is repeated."""
         found, gears = _split(self[name]), len(KINDS[self.kind].gears)
@@ -256,7 +261,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
         ),
     ]
     module = _readable(given.get("module", found[1].default), "length")
-    face = f"{_FACE * module * 1e3:.3g} mm"
+    face = f"{_face(kind, given, module) * 1e3:.3g} mm"
     for name in KINDS[kind].asks:
         if name == "face_width":
             found.append(Question(name, "Face width", face, "length"))
@@ -286,7 +291,16 @@ def _module(kind: str, given: Mapping[str, str]) -> str:
     if kind not in ("gearbox", TWO_STAGES) or not torque > 0.0:
         return "3 mm"
     teeth = plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0
-    return f"{module_for(torque, int(teeth), _FACE) * 1e3:.6g} mm"
+    return f"{module_for(torque, int(teeth)) * 1e3:.6g} mm"
+
+
+def _face(kind: str, given: Mapping[str, str], module: float) -> float:
+    """The face width that is assumed [m]: of a gearbox whose module follows from its torque what that needs."""
+    torque = _readable(given.get("torque", ""), "torque")
+    if kind not in ("gearbox", TWO_STAGES) or "module" in given or not torque > 0.0:
+        return _FACE * module
+    teeth = plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0
+    return face_for(torque, int(teeth), module)
 
 
 def ends(text: str) -> tuple[str, str] | None:

@@ -23,8 +23,12 @@ _PINIONS = range(17, 24)
 _STAGE, _PAIR = 6.0, 12.0
 #: How far the ratio of hunting teeth may be off.
 _HUNTING = 0.02
+#: Teeth of pinions among equals: fewer need a larger module, more a wider face.
+_USUAL = 21
 #: What the first draft of case-hardened gears carries: line load over pinion diameter, and over module [Pa].
-_FLANK, _ROOT = 4e6, 70e6
+_FLANK, _ROOT = 3.3e6, 90e6
+#: Face width: at least and at most so many modules, and pinion diameters at most.
+_NARROWEST, _WIDEST, _LONGEST = 8.0, 19.0, 1.0
 #: Ratio of the first of two stages over the two thirds' power of both, and how far it may be off.
 _SPLIT, _OFF = 0.8, 0.08
 
@@ -101,14 +105,15 @@ def _two_stages(ratio: float) -> tuple[int, ...]:
                 others = _stages(ratio * pinion / wheel)
                 found += [(pinion, wheel, *other) for other in others if _hunting(*other)]
 
-    def judged(teeth: tuple[int, ...]) -> tuple[float, float, tuple[int, ...]]:
+    def judged(teeth: tuple[int, ...]) -> tuple[float, float, float, tuple[int, ...]]:
         first, second = teeth[1] / teeth[0], teeth[3] / teeth[2]
-        return round(abs(first * second / ratio - 1.0), 3), round(abs(first / split - 1.0), 2), teeth
+        usual = abs(teeth[0] - _USUAL) + abs(teeth[2] - _USUAL)
+        return round(abs(first * second / ratio - 1.0), 3), usual, round(abs(first / split - 1.0), 2), teeth
 
     return min(found, key=judged)
 
 
-def module_for(torque: float, teeth: int, face: float) -> float:
+def module_for(torque: float, teeth: int, least: float = 0.0) -> float:
     """The smallest preferred module with which case-hardened flanks and roots of a pinion last [m].
 
     Parameters
@@ -116,10 +121,30 @@ def module_for(torque: float, teeth: int, face: float) -> float:
     torque : float
         [N m].
     teeth : int
-    face : float
-        Face width in modules.
+    least : float, optional
+        Module at least [m].
     """
-    flank = 2.0 * torque / (_FLANK * face * teeth**2)
-    root = 2.0 * torque / (_ROOT * face * teeth)
-    needed = 1e3 * max(flank, root) ** (1.0 / 3.0)
-    return next((one for one in MODULES if one >= 0.999 * needed), MODULES[-1]) * 1e-3
+    for one in MODULES:
+        module = one * 1e-3
+        if module > 0.999 * least and _face(torque, teeth, module) <= module * min(_WIDEST, _LONGEST * teeth):
+            return module
+    return MODULES[-1] * 1e-3
+
+
+def face_for(torque: float, teeth: int, module: float) -> float:
+    """Face width with which they last, in whole millimetres and no narrower than gears are [m].
+
+    Parameters
+    ----------
+    torque : float
+        [N m].
+    teeth : int
+    module : float
+        [m].
+    """
+    return math.ceil(1e3 * max(_face(torque, teeth, module), _NARROWEST * module) - 1e-6) * 1e-3
+
+
+def _face(torque: float, teeth: int, module: float) -> float:
+    diameter = module * teeth
+    return 2.0 * torque / diameter / min(_FLANK * diameter, _ROOT * module)

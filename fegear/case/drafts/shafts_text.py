@@ -54,8 +54,8 @@ def shafts_text(found: LaidOut, names: Sequence[str], gears: Sequence[str], on: 
         for role, bearing in sorted(one.bearings.items(), key=lambda each: each[0] == "floating")
     )
     said = (
-        "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15; C is estimated "
-        "from\n# them (ISO 281). Values of a catalogue are better and belong to one designation, as of a 6306:\n"
+        "# Bearings by designation, chosen for the life above at the load above: dimensions by ISO 15, C by the SKF "
+        "General\n# Catalogue. Values of your maker are better and belong to one designation, as of a 6306:\n"
         '# life = { dynamic_rating = "29.6 kN" }, catalogue = { static_rating = "16 kN" }; X, Y and e are of ISO 281.\n'
     )
     if any(one.tapered for one in found.shafts):

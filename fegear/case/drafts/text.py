@@ -78,7 +78,7 @@ driver = {first}
 driven = {second}
 {load}
 speed = {speed}{speed_note}
-# centre_distance = "{centre_distance}"     # default: zero backlash
+{centre_distance}
 {range}
 """
 #: What the rating of a pair asks for besides, assumed.
@@ -109,7 +109,7 @@ _EFFECTS = {
 _ON = "relief = true     # on: tip relief of both gears, crowning of the pinion"
 #: Column of comments behind keys.
 _COMMENTS = 30
-_ASSUMED = "     # assumed"
+_ASSUMED, _SIZED = "     # assumed", "     # assumed, for the torque"
 _OF_DRAWING = "replace by that of the drawing"
 #: Questions about the pair, not its gears.
 _OF_PAIR = ("torque", "speed", "lead_error", "life")
@@ -135,6 +135,8 @@ _BODIES = 10.0
 _STEEL = 7850.0
 #: Backlash of a train's mesh, assumed [modules].
 _BACKLASH = 0.05
+#: Normal backlash of a gearbox's mesh, assumed [modules].
+_BACKLASH_OF_GEARBOX = 0.04
 #: Radius at which a gear body is fixed, over its root radius, and its rim at least, over the tooth depth; half a
 #: contact's width [modules]: as a case without them.
 _BORE, _RIM, _HALF_WIDTH = 0.5, 1.21, 0.02
@@ -176,7 +178,9 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "first": kind.gears[0],
         "second": kind.gears[-1],
         "gears": "" if stages else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
-        "pair": "" if stages else _pair(answers) if "torque" in kind.asks and len(kind.gears) > 1 else "",
+        "pair": ""
+        if stages or "torque" not in kind.asks or len(kind.gears) < 2
+        else _pair(answers, _placed(answers) if _whole(answers) else None),
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -312,10 +316,21 @@ def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
     first, second = map(json.dumps, KINDS[answers.kind].gears)
     distance = length(centre_distance(answers))
     own = {
-        "pair": "I", "first": first, "second": second, "centre_distance": distance, "load": _load(answers),
+        "pair": "I", "first": first, "second": second, "load": _load(answers),
+        "centre_distance": f'# centre_distance = "{distance}"     # default: zero backlash',
         "range": _range(answers), **_texts(answers, ("speed",)),
     }  # fmt: skip
     return _PAIR.format(**{**own, **(other or {})})
+
+
+def _placed(stage: Answers) -> dict[str, str]:
+    """Centre distance in whole millimetres, and backlash, of a stage whose profile shifts make them so."""
+    distance = f"{centre_distance(stage) * 1e3:.0f} mm"
+    backlash = amount(_BACKLASH_OF_GEARBOX * stage.si("module"), "um")
+    return {
+        "centre_distance": f"centre_distance = {toml_string(distance)}     # assumed; profile shifts make it so\n"
+        f"normal_backlash = {toml_string(backlash)}     # assumed: thinner teeth of both gears"
+    }
 
 
 def _operated(answers: Answers) -> str:
@@ -379,6 +394,11 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
     }  # fmt: skip
 
 
+def _whole(answers: Answers) -> bool:
+    """Whether centre distances are whole millimetres by assumed profile shifts."""
+    return answers.sized and "profile_shift" in answers.suited
+
+
 def _bored(found: LaidOut, at: int) -> dict[str, str]:
     """Hole of a gear, and what is said of it where there is none."""
     texts = {"bore_radius": length(found.holes[at])}
@@ -396,6 +416,9 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
                  "face_width_note": "     # assumed: as many modules as that of the first stage"}  # fmt: skip
         if not stage:
             grown = {f"{name}_note": _note(answers, name) for name in ("module", "face_width")}
+        if answers.sized:
+            grown = {"module_note": _SIZED if answers.assumed("module") else "",
+                     "face_width_note": _SIZED if answers.assumed("face_width") else ""}  # fmt: skip
         grown["profile_shift_note"] = _note(answers, "profile_shift")
         for member in range(2):
             at = 2 * stage + member
@@ -405,9 +428,11 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
             "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",
             "speed_note": "     # that of pair I over its ratio",
         } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
+        placed = _placed(own) if _whole(answers) else {}
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
         pairs.append(
-            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows}) + _operated(answers)
+            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **placed})
+            + _operated(answers)
         )
     on = ((0,), (1, 2), (3,))
     return {

@@ -15,14 +15,14 @@ from typing import NamedTuple
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import Answers
-from fegear.case.drafts.first_size import MODULES
+from fegear.case.drafts.first_size import MODULES, face_for, module_for
 from fegear.case.drafts.kinds import TWO_STAGES
 from fegear.geometry.involute import pressure_angle_of_inv
 from fegear.geometry.rack import BasicRack
 from fegear.shafts.axial_factors import AxialFactors
 from fegear.shafts.bearing_seat import SHOULDER
 from fegear.shafts.catalogue_bearing import CatalogueBearing
-from fegear.shafts.designations import KNOWN
+from fegear.shafts.designations import KNOWN, catalogue_rating
 from fegear.shafts.life import LifeRating
 from fegear.shafts.load_ratings import dynamic_rating
 
@@ -34,6 +34,8 @@ _APART = 1.0
 _HOLE = 0.65
 #: Shear stress of a shaft below its torque [Pa]: bends it little enough.
 _SHEAR = 25e6
+#: Least sum of profile shifts, about, and what the difference of both follows from.
+_SHIFTED, _SHARE = 0.1, 0.6
 #: Life that bearings are chosen for, over the required one: the load over the face moves their forces.
 _MORE = 1.25
 _SERIES = {"ball": ("62", "63"), "roller": ("NU2", "NU3"), "tapered": ("302", "322", "303", "323")}
@@ -51,7 +53,7 @@ class ChosenBearing:
     designation : str
         Empty for one of which only a stiffness is assumed.
     rating : LifeRating or None
-        With C to two digits, estimated from its dimensions.
+        With the C that is printed, else estimated from its dimensions.
     bore, width, outside : float
         [m].
     """
@@ -161,14 +163,47 @@ def with_room(answers: Answers) -> Answers:
     if not answers.assumed("module"):
         return answers
     first = answers.si("module")
+    if answers.sized and answers.assumed("profile_shift"):
+        answers = with_whole_distances(answers)
     for module in MODULES:
         if module < 0.999e3 * first:
             continue
         suited = {"module": f"{module:.6g} mm", "torque": answers["torque"]}
         made = replace(answers, suited=suited) if module > 1.001e3 * first else answers
+        if made is not answers and answers.sized and answers.assumed("profile_shift"):
+            made = with_whole_distances(made)
         if _apart(two_stages(made) if made.kind == TWO_STAGES else laid_out((made,))):
             return made
     return answers
+
+
+def with_whole_distances(answers: Answers) -> Answers:
+    """Answers with profile shifts that make all centre distances whole millimetres.
+
+    Sums of shifts are those of the next distances; pinions have the larger share: x_1 = 0.6 (u - 1)/(u + 1) + (x_1 +
+    x_2)/(u + 1), about the rule of ISO/TR 4467 for speed reducing gears.
+
+    Parameters
+    ----------
+    answers : Answers
+    """
+    bare = replace(answers, suited={**answers.suited, "profile_shift": "0"})
+    stages = two_stages(bare).stages if bare.kind == TWO_STAGES else (bare,)
+    shifts = [shift for stage in stages for shift in _whole(stage)]
+    return replace(answers, suited={**answers.suited, "profile_shift": " ".join(f"{one:.4f}" for one in shifts)})
+
+
+def _whole(stage: Answers) -> tuple[float, float]:
+    """Profile shifts of a stage."""
+    distance, module = centre_distance(stage), stage.si("module")
+    whole = math.ceil(1e3 * (distance + _SHIFTED * module)) * 1e-3
+    normal, turn = math.tan(stage.si("pressure_angle")), math.cos(stage.si("helix_angle"))
+    angle = math.atan(normal / turn)
+    working = math.acos(distance * math.cos(angle) / whole)
+    teeth, ratio = sum(map(int, stage.numbers("teeth"))), _ratio(stage)
+    both = teeth * (math.tan(working) - working - math.tan(angle) + angle) / (2.0 * normal)
+    first = round(_SHARE * (ratio - 1.0) / (ratio + 1.0) + both / (ratio + 1.0), 4)
+    return first, both - first
 
 
 def _apart(laid: LaidOut) -> bool:
@@ -247,11 +282,16 @@ def _second(answers: Answers, first: Answers, least: float) -> Answers:
     ratio, module = _ratio(first), answers.si("module")
     grown = min(MODULES, key=lambda one: abs(math.log(one * 1e-3 / (module * ratio ** (1.0 / 3.0)))))
     grown = max(grown, module * 1e3, least)
-    face = answers.si("face_width") * grown * 1e-3 / module
+    face, torque = answers.si("face_width") * grown * 1e-3 / module, first.si("torque") * ratio
+    if answers.sized:
+        pinion = int(teeth[2])
+        grown = max(module_for(torque, pinion, max(module, least * 1e-3)) * 1e3, least)
+        if answers.assumed("face_width"):
+            face = face_for(torque, pinion, grown * 1e-3)
     second = {
         **_kept(answers), "teeth": " ".join(teeth[2:]),
         "profile_shift": " ".join(shifts[2:]), "module": f"{grown:.6g} mm",
-        "face_width": f"{face * 1e3:.3g} mm", "torque": f"{first.si('torque') * ratio:.6g} N*m",
+        "face_width": f"{face * 1e3:.3g} mm", "torque": f"{torque:.6g} N*m",
         "speed": f"{first.si('speed') / ratio * from_si('rpm'):.6g} rpm",
     }  # fmt: skip
     return Answers("gearbox", second)
@@ -391,7 +431,7 @@ def _known(designation: str) -> ChosenBearing:
     one = KNOWN[designation]
     angle = one.contact_angle or None
     inside = CatalogueBearing(one.kind, one.bore, one.outside_diameter, one.width, None, None, angle, 0.0).inside
-    rated = float(f"{dynamic_rating(inside):.2g}")
+    rated = catalogue_rating(designation) or dynamic_rating(inside)
     factors = AxialFactors(inside.kind == "ball", inside.contact_angle, inside.count * inside.element_diameter**2)
     life = LifeRating(rated, inside.kind, axial=factors)
     return ChosenBearing(designation, life, one.bore, one.width, one.outside_diameter)
