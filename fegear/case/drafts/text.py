@@ -135,6 +135,8 @@ _BODIES = 10.0
 _STEEL = 7850.0
 #: Backlash of a train's mesh, assumed [modules].
 _BACKLASH = 0.05
+#: Rounded profile shifts make whole centre distances to so much [mm].
+_ROUNDED_MM = 2e-3
 #: Normal backlash of a gearbox's mesh, assumed [modules].
 _BACKLASH_OF_GEARBOX = 0.04
 #: Radius at which a gear body is fixed, over its root radius, and its rim at least, over the tooth depth; half a
@@ -180,7 +182,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "gears": "" if stages else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
         "pair": ""
         if stages or "torque" not in kind.asks or len(kind.gears) < 2
-        else _pair(answers, _placed(answers) if _whole(answers) else None),
+        else _pair(answers, _placed(answers) if _whole(answers, answers) else None),
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -394,9 +396,10 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
     }  # fmt: skip
 
 
-def _whole(answers: Answers) -> bool:
-    """Whether centre distances are whole millimetres by assumed profile shifts."""
-    return answers.sized and "profile_shift" in answers.suited
+def _whole(answers: Answers, stage: Answers) -> bool:
+    """Whether the centre distance of a stage is whole millimetres by assumed profile shifts."""
+    distance = 1e3 * centre_distance(stage)
+    return answers.sized and "profile_shift" in answers.suited and abs(distance - round(distance)) < _ROUNDED_MM
 
 
 def _bored(found: LaidOut, at: int) -> dict[str, str]:
@@ -428,7 +431,7 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
             "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",
             "speed_note": "     # that of pair I over its ratio",
         } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
-        placed = _placed(own) if _whole(answers) else {}
+        placed = _placed(own) if _whole(answers, own) else {}
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
         pairs.append(
             _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **placed})
