@@ -10,8 +10,9 @@ import pytest
 from fegear.base.errors import ConvergenceError
 from fegear.dynamics.compound import mesh_phases
 from fegear.dynamics.compound.compound_set import Shaft
+from fegear.dynamics.helical_pair import mode_following
 from fegear.dynamics.helical_pair.mode_following import _nearest_approach, _State
-from fegear.dynamics.motion import coexisting, motion, steady_state
+from fegear.dynamics.motion import coexisting, motion, shooting, steady_state
 from fegear.dynamics.motion.motion import Trajectory, propagate
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.shooting import floquet_frame
@@ -125,6 +126,36 @@ def test_two_modes_come_nearest_where_their_line_passes_the_origin():
     assert (at, apart) == pytest.approx((2.5, 0.2))
     alike = state(1.0, 3.0, 2.0)
     assert _nearest_approach(alike, state(3.0, 3.0, 2.0), 1, 2) == pytest.approx((1.0, 5.0))
+
+
+def test_branches_that_meet_are_given_up_after_as_many_bisections_as_asked_for(monkeypatch):
+    """Shapes that are never alike between 2 and 3: nearer to 2 by halves, nothing of it kept."""
+    asked = []
+
+    def modes(build, value):
+        asked.append(value)
+        return _State(value, np.array([1.0, 2.0]), np.eye(2), np.eye(2), np.eye(2))
+
+    def matched(old, new, together):
+        return new, 1.0 if new.value <= 2.0 else 0.3
+
+    monkeypatch.setattr(mode_following, "_modes", modes)
+    monkeypatch.setattr(mode_following, "_matched", matched)
+    first = modes(None, 0.0)
+    path = mode_following._Path(None, first, np.array([1.0, 2.0]), 0.9, 3)
+    assert [one.value for one in path.states] == [1.0, 2.0]
+    asked.clear()
+    with pytest.raises(ConvergenceError, match=r"between 2 and 2.125 \(MAC 0.3 after 3 bisections\)"):
+        path._follow(3.0, 3)
+    assert asked == [3.0, 2.5, 2.25, 2.125]
+    # halves that are alike are kept on the way
+    monkeypatch.setattr(mode_following, "_matched", lambda old, new, together: (
+        new, 1.0 if abs(new.value - old.value) <= 0.3 else 0.3))  # fmt: skip
+    again = mode_following._Path(None, first, np.array([1.0]), 0.9, 2)
+    assert [one.value for one in again.trail] == [0.0, 0.25, 0.5, 0.75, 1.0]
+    assert [one.value for one in again.states] == [1.0]
+    with pytest.raises(ConvergenceError):
+        mode_following._Path(None, first, np.array([1.0]), 0.9, 1)
 
 
 # ---- planetary sets --------------------------------------------------------------------------------------------------
@@ -308,6 +339,27 @@ def test_teeth_that_never_part_have_their_closed_motion_or_grow(monkeypatch):
         assert steady_state._linear("packed", 1, 2, 3) == expected
     orbit.stable = True
     assert steady_state._linear("packed", 1, 2, 3) is orbit
+
+
+@pytest.mark.parametrize("far", [0.0, 1e6])
+def test_round_off_of_large_coordinates_does_not_keep_an_orbit_from_being_found(monkeypatch, far):
+    """A map that halves the distance to its fixed point, with a jitter in the last places of that."""
+    steps = iter(range(99))
+
+    def passage(packed, x, v, duration, **how):
+        jitter = 1e-8 * (-1.0) ** next(steps) if far else 0.0
+        return SimpleNamespace(
+            x=far + 0.5 * (x - far) + jitter, v=-0.5 * v, tangent=np.diag([0.5, -0.5]), changes=0,
+            apart=np.zeros(1), behind=np.zeros(1), high=None,
+        )  # fmt: skip
+
+    monkeypatch.setattr(shooting, "propagate", passage)
+    packed = SimpleNamespace(free=np.array([True]), size=1, period=1.0)
+    found = shooting.close(packed, np.array([far + 2.0]), np.array([0.3]), 2, 1e-14)
+    assert found is not None
+    assert found.periods == 2
+    assert [*found.x, *found.v] == pytest.approx([far, 0.0], abs=1e-7)
+    assert next(steps) < 5
 
 
 def test_a_floquet_frame_takes_a_period_apart_or_is_none():
