@@ -12,15 +12,18 @@ from fegear.dynamics.compound import mesh_phases
 from fegear.dynamics.compound.compound_set import Shaft
 from fegear.dynamics.helical_pair import mode_following
 from fegear.dynamics.helical_pair.mode_following import _nearest_approach, _State
-from fegear.dynamics.motion import coexisting, motion, shooting, steady_state
+from fegear.dynamics.motion import coexisting, motion, motion_over_revolution, shooting, steady_state
 from fegear.dynamics.motion.motion import Trajectory, propagate
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.shooting import floquet_frame
+from fegear.dynamics.planetary.kinematics import CENTRALS
 from fegear.dynamics.planetary.mesh_law import MeshSprings, WidenedSprings
 from fegear.dynamics.planetary.set_motion import SetMotion
+from fegear.dynamics.planetary.set_motion_over_revolution import set_motion_over_revolution
 from fegear.dynamics.planetary.steady_modes import on_common_pieces
 from fegear.dynamics.train.back_flanks import BackFlanks
 from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.friction import with_friction
 from fegear.dynamics.train.network import Link, Network, Slip
 from fegear.dynamics.train.one_cause import _fitted
 from fegear.dynamics.train.periodic import Periodic
@@ -109,6 +112,35 @@ def test_a_cause_that_explains_all_is_found():
     found, computed = _fitted(lambda factors: base * np.asarray(factors)[:, None] ** 0.5, base * 1.2)
     assert found == pytest.approx(1.44, rel=1e-5)
     assert computed == pytest.approx(1.2 * base, rel=1e-5)
+
+
+@pytest.mark.parametrize("ring_drives", [False, True])
+@pytest.mark.parametrize("a_drives", [True, False])
+def test_friction_of_an_internal_pair_has_the_levers_of_its_flanks_and_takes_the_sliding_power(ring_drives, a_drives):
+    """Radii of curvature r tan(alpha) and x, of the ring less toward its tip; power mu F v |x| (1/r_1 - 1/r_2)."""
+    small, large, angle, mu, frequency = 0.04, 0.11, 0.4, 0.05, 600.0
+    pitch = 2.0 * math.pi * small / 28
+    driver, driven = (large, small) if ring_drives else (small, large)
+    one, other = (driver, -driven) if a_drives else (-driven, driver)
+    springs = MeshExcitation.from_tooth_pair(
+        lambda x: 3e8 * np.ones_like(x), lambda x: np.zeros_like(x), -0.8 * pitch, 0.8 * pitch, pitch
+    )
+    teeth = (round(abs(radius) * 700.0) for radius in (one, other))
+    mesh = Mesh("g", "1", "2", one, other, *teeth, 3e8)
+    law = {"a_drives": a_drives, "internal": True}
+    found = with_friction(springs, mesh, pitch, angle, frequency, FORCE, lambda *_: mu, **law)
+    speed = frequency * pitch
+    turning = (speed / one, -speed / other) if a_drives else (-speed / one, speed / other)
+    for j, torques in enumerate(found.friction):
+        s = np.linspace(0.03, 0.97, 12)
+        s = s[found.stiffness[j](s) > 0.0]
+        x = (s + found.first_slot + j) * pitch
+        power = sum(torque(s) * turns for torque, turns in zip(torques, turning, strict=True))
+        np.testing.assert_allclose(power, -mu * speed * np.abs(x) * (1.0 / small - 1.0 / large), rtol=1e-5, atol=1e-8)
+        toward_tip = -x if ring_drives else x  # of the ring, whose flanks are hollow, inward
+        levers = {small: small * math.tan(angle) + toward_tip, large: large * math.tan(angle) + toward_tip}
+        for torque, radius in zip(torques, (one, other), strict=True):
+            np.testing.assert_allclose(np.abs(torque(s)), mu * levers[abs(radius)], rtol=1e-5)
 
 
 # ---- helical pairs ---------------------------------------------------------------------------------------------------
@@ -216,6 +248,87 @@ def test_a_set_at_another_speed_and_with_more_damping_is_the_same_beside():
     assert SetMotion.more_damped(moves, 4.0) == Moving(Linear(0.08))
     assert SetMotion.more_damped(moves, 400.0) == Moving(Linear(0.99))
     assert SetMotion.at_speed(moves, 14.0 * math.pi) == Moving(Linear(0.02), pytest.approx(7.0))
+
+
+def made_up_motion(duration, pitches, columns):
+    """Of a trajectory: waves of one and of three periods in so many base pitches, and one that averaging takes out."""
+    whole = duration / (FREQUENCY * duration / pitches)
+
+    def angles(time, order=0):
+        w = 2.0 * np.pi / whole
+        waves = np.cos(w * time + 0.5 * np.pi * order) * w**order + 0.3 * np.cos(3.0 * w * time)
+        gone = np.cos(np.pi * time / whole) if duration > 1.5 * whole else 0.0
+        return np.stack([(k + 1.0) * waves + gone for k in range(columns)], axis=-1)
+
+    def forces(time):
+        return 50.0 + np.stack([(k + 1.0) * np.cos(2.0 * np.pi * time / whole) for k in range(6)], axis=-1)
+
+    return SimpleNamespace(duration=duration, angles=angles, approach=angles, mesh_forces=forces)
+
+
+FREQUENCY = 250.0
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_motion_over_all_base_pitches_is_that_of_its_trajectory(times):
+    """Sampled from the mesh's own phase on, the mean where it goes round so many times; orders are those of a wave."""
+    pitches, phase = 5, 0.3
+    state = SimpleNamespace(
+        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, 3), repeats=True,
+        model=SimpleNamespace(parts=lambda: SimpleNamespace(frequency=np.array([1.0, FREQUENCY]))),
+    )  # fmt: skip
+    pair = SimpleNamespace(driver=SimpleNamespace(teeth=20), gear=lambda member: SimpleNamespace(teeth=20))
+    found = motion_over_revolution.motion_over_revolution(state, 1, pair, pitches, phase)
+    assert (found.averaged, found.cycles, found.frequency, found.repeats) == (times, pitches, FREQUENCY, True)
+    turned = found.time * FREQUENCY
+    assert (turned[0], turned[-1] + turned[1]) == pytest.approx((0.0, pitches))
+    np.testing.assert_allclose(found.driver_angle, turned * 2.0 * np.pi / 20)
+    angle = 2.0 * np.pi * (turned - phase) / pitches
+    np.testing.assert_allclose(found.te, 2.0 * (np.cos(angle) + 0.3 * np.cos(3.0 * angle)), atol=1e-9)
+    np.testing.assert_allclose(found.te_residual, found.te, atol=1e-9)
+    np.testing.assert_allclose(found.force, 50.0 + 2.0 * np.cos(angle), atol=1e-9)
+    w = 2.0 * np.pi * FREQUENCY / pitches
+    np.testing.assert_allclose(
+        found.acceleration, 2.0 * (-(w**2) * np.cos(angle) + 0.3 * np.cos(3.0 * angle)), rtol=1e-6
+    )
+    orders = found.orders
+    fields = [getattr(orders, name) for name in orders.__dataclass_fields__]
+    np.testing.assert_array_equal(fields[0], np.arange(1, fields[0].size + 1))
+    np.testing.assert_allclose(fields[1], fields[0] / pitches)
+    np.testing.assert_allclose(fields[2], fields[0] * FREQUENCY / pitches)
+    assert fields[3][:3] == pytest.approx([2.0, 0.0, 0.6], abs=1e-9)
+    assert fields[4][:3] == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
+    assert fields[5][0] == pytest.approx(2.0 * w**2)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_motion_of_a_set_over_all_base_pitches_is_that_of_its_trajectory(times):
+    pitches, size = 4, 12
+    work = np.zeros(size)
+    driving = CENTRALS[1]
+    work[1], work[3 * 1 + 2] = 6.0, -2.0  # over what the driving member has of them: 3 and -1
+    meshed = SimpleNamespace(
+        model=SimpleNamespace(torque_load=lambda torque: torque * work, count=3, found="set"), driving=driving,
+        mean_force=70.0,
+    )  # fmt: skip
+    run = SimpleNamespace(
+        linear=SimpleNamespace(meshed=meshed), mesh_frequency=FREQUENCY, period=pitches / FREQUENCY
+    )  # fmt: skip
+    state = SimpleNamespace(
+        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, size), kind="periodic",
+        apart=np.array([0.1, 0.4]), largest=np.array([90.0, 80.0]),
+    )  # fmt: skip
+    found = set_motion_over_revolution(run, state, 2, (20, 31), True)
+    turned = found.signals
+    assert (turned.base_pitches, turned.odd_planet, turned.teeth, turned.frequency) == (pitches, 2, (20, 31), FREQUENCY)
+    assert (turned.found, turned.clockwise, turned.mean_force) == ("set", True, 70.0)
+    count = found.te.size
+    angle = 2.0 * np.pi * np.arange(count) / count
+    np.testing.assert_allclose(found.te, (3.0 * 2.0 - 6.0) * (np.cos(angle) + 0.3 * np.cos(3.0 * angle)), atol=1e-9)
+    assert found.mesh_force.shape == (2, 3, count)
+    for k in range(6):
+        np.testing.assert_allclose(found.mesh_force[k // 3, k % 3], 50.0 + (k + 1.0) * np.cos(angle), atol=1e-9)
+    np.testing.assert_allclose(found.time * FREQUENCY, np.arange(count) * pitches / count)
 
 
 # ---- motion in time --------------------------------------------------------------------------------------------------
