@@ -218,3 +218,27 @@ def test_three_node_triangles_are_read_too(tmp_path):
     radius = [gear.pitch_radius]
     linear = solve_gear(gear, mesh=mesh, estimate_error=False).self_compliance(radius, 5e-5)
     assert linear == pytest.approx(solve_gear(gear).self_compliance(radius, 5e-5), rel=5e-3, abs=0.0)
+
+
+@pytest.mark.parametrize("corners", [3, 6])
+def test_a_mesh_whose_triangles_are_all_clockwise_and_whose_groups_are_numbers_at_points_is_the_same(tmp_path, corners):
+    gear = shifted()
+    data = meshio.read(MESHES / "shifted_40_teeth.inp")
+    cells = data.cells[0].data[:, :corners]
+    kind, used = {3: "triangle", 6: "triangle6"}[corners], np.unique(cells)
+    groups = {name: np.intersect1d(nodes, used) for name, nodes in data.point_sets.items()}
+    at_points = {name: np.isin(np.arange(len(data.points)), nodes).astype(float) for name, nodes in groups.items()}
+    turned = cells[:, [0, 2, 1] if corners == 3 else [0, 2, 1, 5, 4, 3]]
+    meshio.Mesh(data.points, [(kind, cells)], point_sets=groups).write(tmp_path / "a.inp", float_fmt=".16e")
+    meshio.Mesh(data.points, [(kind, turned)], point_data=at_points).write(tmp_path / "b.vtu")
+    one, other = (
+        read_sector_mesh(tmp_path / name, gear.tooth, gear.module, gear.bore_radius) for name in ("a.inp", "b.vtu")
+    )
+    np.testing.assert_allclose(one.points, other.points, atol=1e-12)
+    middles = [np.sort(mesh.points[:, mesh.triangles[3:]].reshape(2, -1)) for mesh in (one, other)]
+    np.testing.assert_allclose(*middles, atol=1e-12)
+    assert one.edges.keys() == other.edges.keys()
+    for name, edges in one.edges.items():
+        assert sorted(map(tuple, np.sort(edges, axis=0).T)) == sorted(map(tuple, np.sort(other.edges[name], axis=0).T))
+    a, b, c = (other.points[:, node] for node in other.triangles[:3])
+    assert ((b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0])).all()

@@ -25,12 +25,14 @@ from fegear.contact.unloaded.separation import Helix
 from fegear.contact.wide import over_revolution, spots, tip_edges
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.fem.plane.condensation import Condensed
+from fegear.fem.plane.gauge import Grid
 from fegear.fem.plane.odd import hole, keyway, odd_solution
 from fegear.fem.plane.odd.cracked_sector import _folds
 from fegear.fem.plane.odd.keyway import Keyway
 from fegear.fem.plane.odd.odd_gear import OddGearInfluence
 from fegear.fem.plane.odd.other_outline import OtherTip
 from fegear.fem.plane.rack.straight_flank import StraightFlank
+from fegear.fem.plane.root_stress import curves_apart, usually_apart
 from fegear.fem.solid import dissection, step_model
 from fegear.fem.solid.odd import odd_solid_solution
 from fegear.fem.solid.odd.odd_solid import OddSolid
@@ -213,6 +215,24 @@ def test_root_stress_of_one_gear_over_the_face_is_the_first_of_what_is_found():
     assert LoadedWidePair.tooth_stress(SimpleNamespace(_largest_over_face=found), "driven", "solved") == (
         "driven", "solved",
     )  # fmt: skip
+
+
+def test_curves_are_apart_where_the_first_counts():
+    """Above half, or a quarter, of its largest value: at most, and on average of squares."""
+    values, others = np.array([[4.0, 2.0, 1.0, -9.0], [8.0, 3.0, 1.0, 4.0]]), np.zeros((2, 4))
+    others[0], others[1] = values[0] + [0.1, -0.3, 5.0, 9.0], values[1] + [0.2, 9.0, 9.0, -0.4]
+    assert curves_apart(values, others) == pytest.approx([0.3, 0.4])
+    assert usually_apart(values, others, 0.5) == pytest.approx([math.sqrt(0.05), math.sqrt(0.1)])
+    assert curves_apart(values, others, 0.25) == pytest.approx([5.0, 9.0])
+    assert usually_apart(values, others, 0.25)[0] == pytest.approx(math.sqrt((0.01 + 0.09 + 25.0) / 3.0))
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5, -0.5, 0.5 * math.pi, 2.5])
+def test_a_turned_grid_reaches_as_far_as_its_corners(direction):
+    grid = Grid(3e-3, 1e-3, direction)
+    c, s = math.cos(direction), math.sin(direction)
+    corners = np.array([[c, -s], [s, c]]) @ np.array([[1.5, 1.5, -1.5, -1.5], [0.5, -0.5, 0.5, -0.5]]) * 1e-3
+    assert (grid.half, grid.half_across) == pytest.approx(tuple(corners.max(axis=1)))
 
 
 # ---- sections --------------------------------------------------------------------------------------------------------
