@@ -43,7 +43,6 @@ def test_it_settles_at_the_resonance_and_where_it_does_not_a_sentence_says_what_
     assert not [remark for remark in newton.remarks if "Averaging" in remark]
 
 
-@pytest.mark.dear
 def test_a_motion_that_no_machine_stays_in_is_named():
     """With a damping ratio of 0.005 the shafts build up a swing beside the mesh's; averaging sees nothing of it."""
     weak = {f"train.shaft.{name}.damping_ratio": 0.005 for name in ("input", "output")}

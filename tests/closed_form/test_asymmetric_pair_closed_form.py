@@ -24,9 +24,12 @@ def rack(angles, tips):
 
 
 def answers(teeth, distance=math.nan):
-    """Centre distance, transmission error, load sharing and root stress of both gears, with all effects."""
+    """Centre distance, transmission error, load sharing and root stress of both gears, with all effects.
+
+    Coarse meshes: what is compared has the same one.
+    """
     pair = GearPair(*(Gear(tooth, M, 0.6 * tooth.root_radius * M, 20e-3) for tooth in teeth), distance)
-    solved = {gear: solve_gear(gear, settings_at(2), estimate_error=False) for gear in (pair.driver, pair.driven)}
+    solved = {gear: solve_gear(gear, settings_at(-2), estimate_error=False) for gear in (pair.driver, pair.driven)}
     loaded = load(PairSpec(pair, (2000.0, 6000.0)), [solved[gear] for gear in (pair.driver, pair.driven)])
     error = loaded.transmission_error()
     sources = {member: {"fe": loaded.engagement.compliance.source(member)} for member in MEMBERS}
@@ -53,7 +56,6 @@ def test_loaded_coast_flanks_are_the_drive_flanks_of_an_exchanged_rack():
     assert drive["mean"] != pytest.approx(coast["mean"], rel=1e-2)
 
 
-@pytest.mark.dear
 def test_a_loaded_pair_of_equal_flanks_is_the_usual_one():
     numbers = ((18, 0.2), (27, 0.0))
     usual = answers([Tooth(z, BasicRack(), x, 0.01) for z, x in numbers])
