@@ -29,7 +29,7 @@ def sentences(seen: Seen) -> Iterator[str]:
     rated, misaligned, weakest = _states(data)
     if data.failures or any(one.fails for one in data.changes):
         # an answer has five sentences, fewer beside another result's: changes are lines of the second one
-        first, *others = *state, *_verdict(data), *weakest, *rated, *(() if state else misaligned)
+        first, *others = *state, *_verdict(data), *weakest, *rated, *([] if state else misaligned)
         yield first
         yield "\n".join(changes)
         yield from others
