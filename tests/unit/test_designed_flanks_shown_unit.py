@@ -366,6 +366,7 @@ def test_a_map_of_a_way_is_over_misalignment_and_load_with_one_scale(monkeypatch
     seen = SimpleNamespace(data=found, one=found.ways[2])
     assert tiles.si(seen).tolist() == found.ways[2].state.mapped.peak_to_peak.T.tolist()
     assert tiles.limits(seen) == (0.5, pytest.approx(48e-6))
+    assert tiles.numbers  # few tiles: each bears its number
 
 
 def test_a_design_is_made_of_the_flanks_without_relief_and_the_coarser_gears(monkeypatch):
