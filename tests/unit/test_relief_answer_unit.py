@@ -258,3 +258,24 @@ def test_the_robustness_states_the_value_at_the_design_load_of_the_design():
     assert as_designed(found, te, "peak_to_peak").nominal == 2.850962e-6
     assert as_designed(found, te, "effective_error").nominal == 1e-6
     assert as_designed(found, None, "peak_to_peak") is found
+
+
+@pytest.mark.parametrize(
+    ("every", "weights"),
+    [((-1, 0), True), ((-1,), False), ((0,), False)],
+)
+def test_the_tolerance_that_decides_is_that_of_the_torque_at_which_most_is_left(every, weights):
+    """Of 3.3 and 4.5 um at most, 3.7 and 7 um without relief, 50 N m counts most; one torque needs no weights."""
+    seen = made((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
+    best = seen.data.over_range["linear tip relief"]
+    decisive = (Decisive("driver", "amount", 2e-6, 5e-6), Decisive("driven", "amount", 2.5e-6, 3e-6))
+    seen.data.over_range["linear tip relief"] = replace(best, decisive=decisive)
+    said_here = list(said_at(seen, every, every))
+    (told,) = (one for one in said_here if "matters most" in one)
+    at_50, at_100 = (
+        "gear p matters most: halved to ± 2.5 µm, at most 2 instead of 3.3 µm at 50 N m",
+        "gear w matters most: halved to ± 1.5 µm, at most 2.5 instead of 4.5 µm at 100 N m",
+    )
+    assert (at_100 if every == (-1,) else at_50) in told
+    (faint,) = (one for one in said_here if "cannot be ground" in one and "omit it" in one)
+    assert ("weights" in faint) is weights
