@@ -8,6 +8,7 @@ import pytest
 
 from fegear.results.gear.crosscheck_answer import said_of_helical, said_of_single_contact, said_of_stiffness
 from fegear.results.gear.crosscheck_iso import IsoPair
+from fegear.results.pair import mesh_stiffness_revolution
 from fegear.results.planetary.compound_set import _answer
 from fegear.results.relief.relief_over_face_sheet import _figure, _grind
 from fegear.results.relief.tolerance_data import Sampled
@@ -211,3 +212,58 @@ def test_who_has_no_transmission_error_is_said_by_number_or_as_the_present_desig
     assert said((0, "no room."), (4, "other.")) == [
         "No transmission error by FE for present design (and 1 more): no room."
     ]
+
+
+# ---- revolutions -----------------------------------------------------------------------------------------------------
+def test_faces_of_cracks_that_may_close_are_those_of_their_teeth_in_meshing_order(monkeypatch):
+    """Tooth 3 of 20 of a driving gear is the 17th to mesh, tooth 5 of a driven one the 5th; tooth 0 is open."""
+
+    class Odd:
+        def __init__(self, teeth, closing):
+            middle, fine = (lambda number: number - 2), SimpleNamespace(closing={one - 2 for one in closing})
+            self.influence = SimpleNamespace(gear=SimpleNamespace(teeth=teeth), from_middle=middle, fine=fine)
+
+    monkeypatch.setattr(mesh_stiffness_revolution, "OddCompliance", Odd)
+    monkeypatch.setattr(
+        mesh_stiffness_revolution,
+        "faces_in_mesh",
+        lambda engagement, over, member, known, number: (over, member, number),
+    )
+    sources = {"driver": Odd(20, {17, 18}), "driven": Odd(31, {5, 17})}
+
+    def faces(**changed):
+        of = sources | changed
+        loaded = SimpleNamespace(engagement=SimpleNamespace(compliance=SimpleNamespace(source=of.get)))
+        asked = SimpleNamespace(cracked=(("driver", (0, 3)), ("driven", (5, 8))))
+        return list(mesh_stiffness_revolution._faces(asked, loaded, "over"))
+
+    assert faces() == [("over", "driver", 17), ("over", "driven", 5)]
+    assert faces(driver=None) == [("over", "driven", 5)]
+
+
+@pytest.mark.parametrize(("member", "wanted"), [("driver", [0, 4, 3, 2, 1]), ("driven", [0, 1, 2, 3, 4])])
+def test_stresses_of_teeth_stand_in_meshing_order_over_their_median(member, wanted):
+    """A tooth's own number times 10 MPa, and 50 for tooth 0: the median is 30."""
+    largest = np.array([50.0, 10.0, 20.0, 30.0, 40.0])
+    found = SimpleNamespace(teeth=5, member=member, largest=largest, largest_error=0.1 * largest)
+    rows = mesh_stiffness_revolution._by_tooth(found, "a")
+    assert rows.gear == "a"
+    # row n is the n-th tooth to mesh; its number is the way round that it is
+    assert np.argsort(rows.tooth).tolist() == list(range(5))
+    of_tooth = [largest[one] for one in wanted]
+    assert rows.root_tension.tolist() == of_tooth
+    assert rows.root_tension_change == pytest.approx([one / 30.0 - 1.0 for one in of_tooth])
+    assert rows.root_tension_error.tolist() == pytest.approx([0.1 * one for one in of_tooth])
+    bare = SimpleNamespace(**vars(found) | {"largest_error": None})
+    assert mesh_stiffness_revolution._by_tooth(bare, "a").root_tension_error is None
+
+
+@pytest.mark.parametrize(("listed", "said"), [((1, 31), 0), ((7, 31), 1), ((7, 5), 2), ((20, 31), 0)])
+def test_fewer_rows_than_teeth_are_explained(listed, said):
+    gears = {"driver": SimpleNamespace(teeth=20), "driven": SimpleNamespace(teeth=31)}
+    stress = [SimpleNamespace(tooth=np.arange(n), gear=name) for n, name in zip(listed, "ab", strict=True)]
+    data = SimpleNamespace(stress=stress, pair=SimpleNamespace(gear=gears.get), base_pitches=7)
+    notes = list(mesh_stiffness_revolution._not_listed(SimpleNamespace(name="I", data=data)))
+    assert len(notes) == said
+    assert not said or "gear a is listed for 7 of its 20 identical teeth: the meshing repeats after 7" in notes[0]
+    assert said < 2 or "gear b is listed for 5 of its 31" in notes[1]
