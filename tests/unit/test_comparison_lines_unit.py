@@ -73,6 +73,8 @@ def test_columns_are_told_from_the_one_that_changes_most_and_four_of_them_at_mos
         "  t, f: by up to +0.5 N at x = 2 mm", "  t, e: by up to +0.4 N at x = 2 mm",
         "  t, d: by up to +0.3 N at x = 2 mm", "  t, c: by up to +0.2 N at x = 2 mm", "  t: 1 more columns",
     ]  # fmt: skip
+    four = table_lines(join(first, second), 0.2 / 4.0 - 1e-9)
+    assert four == lines[:4]
     # Over the largest entry of either: 0.3 of 4 and more.
     assert [line[5] for line in table_lines(join(first, second), 0.3 / 4.0 - 1e-9)] == ["f", "e", "d"]
     less = table_lines(join(second, first), 0.3 / 4.0 - 1e-9)
