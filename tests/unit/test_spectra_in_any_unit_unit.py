@@ -25,22 +25,28 @@ def test_safety_and_damage_are_those_of_the_loaded_levels_in_any_unit(scale, mor
     assert service_life(bins(scale, more), 7.0) == pytest.approx(7.0 / damage(plain), rel=1e-9)
 
 
+@pytest.mark.parametrize("cycles", [9e4, 1e5, 1.02e5, 1.2e5])
+def test_just_beyond_the_knee_of_static_strength_less_is_borne(cycles):
+    curve = Knots(CYCLES, VALUES)
+    assert spectrum_safety([Bin(1000e6, cycles, curve)]) == pytest.approx(curve.at(cycles) / 1000e6, rel=1e-9)
+
+
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("more", [(), ((0.0, 1e9),), ((5e4, 0.0),)])
 def test_an_equivalent_torque_scales_with_its_levels(scale, more):
-    """Of 2e6 cycles of 100 N m where the knee is at 1e6 and p = 3, T_eq = 100 N m 2^(1/3), but no more than 100."""
+    """Of 20 cycles of 100 N m where the knee is at 10 and p = 3, T_eq = 100 N m 2^(1/3), but no more than 100."""
 
     def found(levels, limit, exponent=3.0):
         torque, cycles = np.array([(scale * t, n) for t, n in (*levels, *more)]).T
         return equivalent_torque(torque, cycles, exponent, limit) / scale
 
-    assert found([(100.0, 5e5)], 1e6) == pytest.approx(100.0 * 0.5 ** (1.0 / 3.0))
-    assert found([(100.0, 2e6)], 1e6) == pytest.approx(100.0)
-    both = found([(80.0, 2e5), (100.0, 3e5)], 1e6)
+    assert found([(100.0, 5)], 10) == pytest.approx(100.0 * 0.5 ** (1.0 / 3.0))
+    assert found([(100.0, 20)], 10) == pytest.approx(100.0)
+    both = found([(80.0, 2), (100.0, 3)], 10)
     assert both == pytest.approx(100.0 * (0.3 + 0.2 * 0.8**3) ** (1.0 / 3.0))
-    assert found([(80.0, 8e5), (100.0, 3e5)], 1e6) == pytest.approx(80.0)  # above them the second level does none
+    assert found([(80.0, 8), (100.0, 3)], 10) == pytest.approx(80.0)  # above them the second level does none
     # 60 N m of a level are less than what the first one comes to: no damage
-    assert found([(60.0, 8e5), (100.0, 5e5)], 1e6) == found([(100.0, 5e5)], 1e6)
+    assert found([(60.0, 8), (100.0, 5)], 10) == found([(100.0, 5)], 10)
 
 
 @pytest.mark.parametrize("scale", [1e-10, 1.0])
