@@ -201,10 +201,11 @@ def test_torques_have_what_every_way_leaves_and_at_most_of_those_that_are_ground
         found.over_range["lead"].torque.tolist(), found.over_range["lead"].peak_to_peak.tolist()
     )  # fmt: skip
     one = {"lead": SimpleNamespace(torque=np.array([9.0]), peak_to_peak=np.array([7.0]))}
-    seen = SimpleNamespace(data=SimpleNamespace(over_range=one, design=found.design, load=found.load, data=found.data))
-    torque, left = sheet._left(seen, "lead")
-    assert torque == pytest.approx([1500.0 * PAIR.driver.base_radius])
-    assert left.tolist() == [6e-6]
+    data = SimpleNamespace(over_range=one, design=found.design, load=found.load, data=found.data)
+    for over in (None, "spectrum"):
+        torque, left = sheet._left(SimpleNamespace(data=data, asked=SimpleNamespace(over=over)), "lead")
+        assert torque == pytest.approx([9.0 if over else 1500.0 * PAIR.driver.base_radius])
+        assert left.tolist() == [7.0 if over else 6e-6]
 
 
 def test_rows_and_charts_begin_with_what_is_to_be_ground_then_by_what_is_left():
