@@ -39,6 +39,10 @@ _NEIGHBOUR_WIDTH, _WIDER_POWER, _NARROWER_POWER, _NEIGHBOUR_OF_FEW_EDGES = 0.25,
 #: On external gears the difference between the orders at the start of the flank, where teeth shift, and what it changes
 #: by from there, where their feet bend, have opposite signs, and the sum may vanish where neither error does: of fourth
 #: order each counts by its size (46 gears, docs/numerics.md). On rings, whose sum errs by less than is stated, neither.
+#: On a ring whose outer circle is held most of what the order changes is how the rim gives way, smoothly: the thinner
+#: the rim, the more of that there is and the less of it is error. Up to so many modules of rim the share goes with them
+#: (68 rings with 1.7 to 8 modules, docs/numerics.md).
+_THICK_RIM = 6.5
 #: Of what all teeth have in common, as a gear turns as a whole, that part is, and grows so.
 _COMMON_SHARE, _COMMON_POWER = {2: 0.5, 3: 0.5, 4: 0.15}, 2.5
 #: Root stress of fourth order errs the less beside that of third, the shorter the edges: the part is this power of this
@@ -64,10 +68,14 @@ _NEIGHBOUR_STRESS, _LEAST_NEIGHBOUR_STRESS, _NEIGHBOUR_SCATTER = 1.15, 0.75, 1.5
 #: on that behind it (64 gears and rings, docs/numerics.md).
 _SMOOTH_STRESS: dict[Side, float] = {"tension": 1.4, "compression": 1.8}
 _MOST_SMOOTH: dict[Side, tuple[float, float]] = {"tension": (0.55, 0.3), "compression": (0.7, 0.7)}
+#: On the tension side of the tooth behind, edges that are ever shorter leave a greater part of ever smaller
+#: differences, of what both orders have in common: from this part at the first of these shares of a tooth's own to the
+#: usual one at the second.
+_SHORT_BEHIND, _OF_SHORT_BEHIND = (0.16, 0.28), 0.9
 #: Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs by: on the tooth ahead
-#: and on that behind, and there on the tension side where edges are long, from the first of these shares to the second.
+#: and on that behind, and there on the tension side where edges are short and where they are long, between these.
 _OF_OWN_STRESS: dict[Side, tuple[float, float]] = {"tension": (0.6, 0.35), "compression": (0.9, 0.9)}
-_OF_OWN_BEHIND, _LONG_BEHIND = 0.2, (0.36, 0.55)
+_OF_OWN_SHORT_BEHIND, _OF_OWN_LONG_BEHIND, _LONG_BEHIND = 0.1, 0.2, (0.36, 0.55)
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
@@ -252,7 +260,7 @@ class Estimate:
         start = self._order_at_start(k)
         of_order = np.abs(start) + np.abs(of_order - start)
         of_width *= _WIDTH_SHARE[self.fine.flank.order]
-        return value, of_width + self._neighbour_share * of_order + self._of_edges(k, p, q)
+        return value, of_width + self._neighbour_share * self._share_of_rim * of_order + self._of_edges(k, p, q)
 
     def _order_at_start(self, k: int) -> float:
         """What both orders differ by at the start of the flank, where that counts by itself; else 0."""
@@ -282,6 +290,16 @@ class Estimate:
             share = _NEIGHBOUR_OF_FEW_EDGES
         narrow = min(self.patch / _NEIGHBOUR_WIDTH, 1.0) ** _NARROWER_POWER
         return self._for_width(share, _WIDER_POWER) * narrow
+
+    @cached_property
+    def _share_of_rim(self) -> float:
+        """What the share is multiplied by on a ring with a thin rim; 1 of other gears and orders, and of few edges."""
+        fine = self.fine
+        few = self._edges_below < _FEWEST_KNOWN
+        if not fine.tooth.internal or fine.flank.order < 4 or fine.support is not None or few:
+            return 1.0
+        outer = np.hypot(*fine.mesh.points[:, fine.mesh.edges["bore"][0]]).max()
+        return min(float(outer - fine.tooth.root_radius) / _THICK_RIM, 1.0)
 
     def _for_width(self, share: float, power: float) -> float:
         """A share, more of fourth order where pressures are wide."""
@@ -366,11 +384,13 @@ class Estimate:
             else:
                 share *= _SMOOTH_STRESS[side]
                 share = min(share, _MOST_SMOOTH[side][k < 0]) if self.fine.flank.order == 4 else share
-            error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
-            least = _USUAL * max(self._usual_stress.values())
             part = _OF_OWN_STRESS[side][k < 0]
             if k < 0 and side == "tension" and self.fine.flank.order == 4:
-                part = np.interp(self._stress_share, _LONG_BEHIND, (part, _OF_OWN_BEHIND))
+                share = np.interp(self._stress_share, _SHORT_BEHIND, (_OF_SHORT_BEHIND, _MOST_SMOOTH[side][k < 0]))
+                own = _OF_OWN_SHORT_BEHIND, part, part, _OF_OWN_LONG_BEHIND
+                part = np.interp(self._stress_share, (*_SHORT_BEHIND, *_LONG_BEHIND), own)
+            error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
+            least = _USUAL * max(self._usual_stress.values())
             return np.asarray(np.maximum(error, part * least * np.abs(value)))
         least = _OWN_USUAL * self._usual_stress[side]
         of_order, size = self._of_stress_order(side, value, difference, least)
