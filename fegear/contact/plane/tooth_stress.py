@@ -34,6 +34,8 @@ class LargestBetween(NamedTuple):
         Position of the tooth's contact, and the place along the face [m].
     tension_error, compression_error : ndarray
         Estimated, with what the positions leave open [Pa]; NaN where the source does not know it.
+    least_tension, least_left : ndarray
+        Where the tension is least, and what the positions leave open of it [Pa].
     """
 
     tension: Array
@@ -43,6 +45,8 @@ class LargestBetween(NamedTuple):
     compression_x: Array
     tension_error: Array
     compression_error: Array
+    least_tension: Array
+    least_left: Array
 
 
 @dataclass(frozen=True)
@@ -108,7 +112,9 @@ class ToothStress:
     def range_off(self, i: int) -> float | None:
         """Estimated error of the range of stress under load number i [Pa]: those of both its ends together."""
         least = int(np.argmin(np.where(np.isnan(self.tension[:, i]), np.inf, self.tension[:, i])))
-        return _known(self._tension_off(i) + self.tension_error[least, i])
+        error = self.tension_error[least, i]
+        error = error if self.between is None else np.hypot(error, self.between.least_left[i])
+        return _known(self._tension_off(i) + error)
 
     def x_of_tension(self, i: int) -> float:
         """Position of the tooth's contact under the largest tension of load number i [m]."""
@@ -148,7 +154,9 @@ class ToothStress:
         Over the history, whose first and last positions still have loads on neighbouring teeth: a tooth far from the
         mesh has no stress, so that the range over a revolution is that from zero or from compression.
         """
-        return np.asarray(self.largest_tension - np.fmin.reduce(self.tension, axis=0))
+        between = self.between
+        least = np.fmin.reduce(self.tension, axis=0) if between is None else between.least_tension
+        return np.asarray(self.largest_tension - least)
 
 
 def _or_least(stress: Array) -> Array:

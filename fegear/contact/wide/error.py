@@ -43,8 +43,8 @@ _OF_SPOT = 0.6
 #: What is taken for an error of what coarser gears change of the mean transmission error and of its peak to peak: on
 #: five random pairs they changed it 3 to 14 and 10 to 40 times as much as it was off, on six others 4 to 9 and 2 to 4
 #: times, on a spur pair 2.5 and 1.4 times. Edges are longer by 1.35, so that the mean, an energy, goes with about the
-#: sixth power of the edges.
-OF_GEARS_MEAN, OF_GEARS_SHAPE = 0.5, 0.6
+#: sixth power of the edges. Of single harmonics less is error (of nine helical pairs 0.37 at most).
+OF_GEARS_MEAN, OF_GEARS_SHAPE, OF_GEARS_HARMONICS = 0.5, 0.6, 0.4
 #: The same of K_Hbeta: of five of six pairs 0.1 to 0.4 of it was true, of one 1.1, with as much of longer panels.
 _OF_GEARS_FACE = 0.6
 

@@ -27,7 +27,7 @@ from fegear.contact.loaded_teeth import (
 from fegear.contact.pair_spec import PairSpec
 from fegear.contact.plane.tooth_stress import LargestBetween, ToothStress
 from fegear.contact.wide.compliance import FlankCompliance
-from fegear.contact.wide.error import OF_GEARS_MEAN, OF_GEARS_SHAPE, FlankError
+from fegear.contact.wide.error import OF_GEARS_HARMONICS, OF_GEARS_MEAN, OF_GEARS_SHAPE, FlankError
 from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
@@ -222,10 +222,8 @@ class LoadedWidePair:
         progress(0.5)
         perfect = self._mean_without_gaps()
         parts = zip(each, curves, longer, coarse, strict=True)
-        shifts = [
-            _missed_too(flank_transmission_error_shift(*one, (OF_GEARS_MEAN, OF_GEARS_SHAPE)), one[0], self._missed)
-            for one in parts
-        ]
+        of_gears = OF_GEARS_MEAN, OF_GEARS_SHAPE, OF_GEARS_HARMONICS
+        shifts = [_missed_too(flank_transmission_error_shift(*one, of_gears), one[0], self._missed) for one in parts]
         # What is stated of the whole base pitch is stated once.
         means, swings = self.error.mean.tolist(), self.error.peak_to_peak.tolist()
         shifts = [
@@ -362,22 +360,29 @@ class LoadedWidePair:
     ) -> LargestBetween:
         """Largest root stresses at the roll positions of the whole base pitch: those of the table miss up to 6 %.
 
-        Their errors are what coarser gears leave of them under each load, `off`, and what the positions do.
+        Their errors are what coarser gears leave of them under each load, `off`, and what the positions do, which knows
+        nothing of that.
         """
         from fegear.contact.wide.load_factors import left_of_largest
 
         found, z = self.over.found, self.places_along
         rooted = self.rooted(member, found, solution)
         most, x, along, error = {}, {}, {}, {}
+
+        def left(values: Array) -> Array:
+            return left_of_largest(values, rooted.teeth[:, 0], found.lines.roll.size)
+
         for side, sign in _SIDES:
             felt = [rooted.stress(side, found.contact.force[:, :, i], z).largest(sign) for i in range(found.load.size)]
             values, places = (np.stack([one[k] for one in felt], axis=1) for k in (0, 1))
             at = first_of_largest(sign * values, axis=0), np.arange(found.load.size)
             most[side], x[side], along[side] = values[at], rooted.x[at[0]], places[at]
-            error[side] = off[side] + left_of_largest(sign * values, rooted.teeth[:, 0], found.lines.roll.size)
+            error[side] = np.hypot(off[side], left(sign * values))
+            if side == "tension":
+                least = values.min(axis=0), left(-values)
         return LargestBetween(
             most["tension"], most["compression"], x["tension"], along["tension"], x["compression"], error["tension"],
-            error["compression"],
+            error["compression"], *least,
         )  # fmt: skip
 
     def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], float]:

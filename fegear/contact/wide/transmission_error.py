@@ -129,7 +129,7 @@ def flank_transmission_error_shift(
     fine: FlankTransmissionError,
     longer: FlankTransmissionError,
     coarse: FlankTransmissionError,
-    of_gears: tuple[float, float] = (1.0, 1.0),
+    of_gears: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> TransmissionErrorShift:
     """Estimated errors: the changes by coarser solutions, independent of each other, and that by half of the positions.
 
@@ -139,12 +139,12 @@ def flank_transmission_error_shift(
         What is stated.
     fine, longer, coarse : FlankTransmissionError
         At the same roll positions, these or others: as solved, on longer panels, and of coarser gears on these.
-    of_gears : (float, float)
-        Of what coarser gears change, so much is error: of means, and of the curve's shape.
+    of_gears : (float, float, float)
+        Of what coarser gears change, so much is error: of means, of the curve's shape, of its harmonics.
     """
     # read between the positions as `series_over_pitch` reads what is stated
     fewer = _error(te.load, te.points, *(of_half(te.points, one) for one in (te.values, te.local, te.secant)))
-    of_mean, of_shape = of_gears
+    of_mean, of_shape, of_harmonics = of_gears
 
     def changed(key: str, part: float) -> float:
         by_positions, by_panels, by_gears = (
@@ -157,7 +157,7 @@ def flank_transmission_error_shift(
     by_panels, by_gears = _changed(fine, longer, known), _changed(longer, coarse, known)
     by_positions = no_less_than_shown_by_half(_changed(te, fewer, known))
     # each has a phase of its own: nothing of the three is known of the others
-    amplitude = np.sqrt(by_positions**2 + by_panels**2 + (of_shape * by_gears) ** 2)
+    amplitude = np.sqrt(by_positions**2 + by_panels**2 + (of_harmonics * by_gears) ** 2)
     return TransmissionErrorShift(
         changed("mean", of_mean), changed("peak_to_peak", of_shape), changed("effective_error", of_shape),
         no_less_than_beside(amplitude), changed("mean_secant", of_mean),
