@@ -402,6 +402,43 @@ def test_teeth_that_are_missing_answer_as_the_ordinary_ones_do():
     assert OddSolid.coupling(flank, 7, 7) == ("ordinary", 0)
 
 
+def test_the_largest_stress_of_an_odd_tooth_is_looked_for_below_the_contact_on_the_tooth_that_is_loaded():
+    """Places along the face times contacts, each with the end of the search of its contact."""
+    contacts, places = 2, 3
+    stress = np.arange(4.0 * places * contacts).reshape(4, places, contacts)
+
+    def largest(flat, sign, end):
+        assert flat.shape == (4, places * contacts)
+        return sign * flat.max(axis=0) + end, 10.0 * end
+
+    kinds = {5: {"tension": SimpleNamespace(largest=largest), "compression": SimpleNamespace(largest=largest)}}
+    gear = SimpleNamespace(
+        fillet_stress=lambda i, j, side, pressed, zeta: (stress + (i - j), None), kind_of=lambda i: ("flank", kinds[i]),
+        root_end=lambda k, side, pressed: np.array([0.25, 0.5]) + k,
+    )  # fmt: skip
+    for side, sign in (("tension", 1.0), ("compression", -1.0)):
+        value, arc = OddSolid.largest_root_stress(gear, 5, 6, side, "pressed", np.zeros(places))
+        end = np.array([0.25, 0.5]) - 1.0
+        np.testing.assert_allclose(value, sign * (stress.max(axis=0) - 1.0) + end)
+        np.testing.assert_allclose(arc, np.broadcast_to(10.0 * end, (places, contacts)))
+
+
+def test_displacements_and_missing_teeth_are_those_of_the_window_where_there_is_one():
+    window = SimpleNamespace(missing=(1,), moved=lambda near, other, side, loads: ("odd", near, other, side, loads))
+    gear = SimpleNamespace(
+        ordinary=SimpleNamespace(moved=lambda k, side, loads: ("ordinary", k, side, loads)),
+        width=4.0,
+        _window=lambda i, j: None if max(i, j) > 5 else (window, i - 3, j - 3),
+    )
+    assert OddSolid.moved(gear, 4, 2, "tension", "loads") == ("odd", 1, -1, "tension", "loads")
+    assert OddSolid.moved(gear, 7, 5, "tension", "loads") == ("ordinary", 2, "tension", "loads")
+    assert [OddSolid.is_missing(gear, tooth) for tooth in (3, 4, 5, 6)] == [False, True, False, False]
+    assert OddSolid._on_face(gear, [-2.0, 2.0]).tolist() == [-2.0, 2.0]
+    for off in (-2.001, 2.001):
+        with pytest.raises(RangeError, match=rf"zeta = {off} modules: is outside the face width, -2 to 2"):
+            OddSolid._on_face(gear, [0.0, off])
+
+
 def test_a_section_that_is_meshed_as_a_whole_is_condensed_as_a_whole(monkeypatch):
     monkeypatch.setattr(dissection, "condense_whole", lambda *given, expandable: (given, expandable))
     section = SimpleNamespace(whole="whole")
