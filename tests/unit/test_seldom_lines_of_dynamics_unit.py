@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.base.errors import ConvergenceError
+from fegear.base.errors import ConvergenceError, InputError, RangeError
 from fegear.dynamics.compound import mesh_phases
 from fegear.dynamics.compound.compound_set import Shaft
 from fegear.dynamics.helical_pair import mode_following
@@ -21,6 +21,7 @@ from fegear.dynamics.planetary.mesh_law import MeshSprings, WidenedSprings
 from fegear.dynamics.planetary.set_motion import SetMotion
 from fegear.dynamics.planetary.set_motion_over_revolution import set_motion_over_revolution
 from fegear.dynamics.planetary.steady_modes import on_common_pieces
+from fegear.dynamics.train import charts
 from fegear.dynamics.train.back_flanks import BackFlanks
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.friction import with_friction
@@ -141,6 +142,29 @@ def test_friction_of_an_internal_pair_has_the_levers_of_its_flanks_and_takes_the
         levers = {small: small * math.tan(angle) + toward_tip, large: large * math.tan(angle) + toward_tip}
         for torque, radius in zip(torques, (one, other), strict=True):
             np.testing.assert_allclose(np.abs(torque(s)), mu * levers[abs(radius)], rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("direction", "start"), [("up", "follow"), ("down", "follow"), ("static", "static"), ("rest", "rest")]
+)
+def test_a_chart_has_its_speeds_rising_whichever_way_they_were_swept(monkeypatch, direction, start):
+    swept = []
+
+    def sweep(model, order, *, start, tolerance):
+        swept.append((order.tolist(), start, tolerance))
+        return tuple(f"at {speed:g}" for speed in order)
+
+    monkeypatch.setattr(charts, "speed_sweep", sweep)
+    monkeypatch.setattr(charts, "SpeedChart", SimpleNamespace(of=lambda *given: given))
+    model = SimpleNamespace(static=np.array([-5.0, 40.0, 0.0]))
+    speed, states, mesh, force = charts.speed_chart(model, [3.0, 1.0, 2.0], mesh=1, direction=direction, tolerance=1e-5)
+    assert (speed.tolist(), states, mesh, force) == ([1.0, 2.0, 3.0], ("at 1", "at 2", "at 3"), 1, 40.0)
+    assert swept == [([3.0, 2.0, 1.0] if direction == "down" else [1.0, 2.0, 3.0], start, 1e-5)]
+    for idle in (0, 2):
+        with pytest.raises(RangeError, match="is the mean force: must be positive"):
+            charts.speed_chart(model, [1.0], mesh=idle, direction=direction)
+    with pytest.raises(InputError, match="direction"):
+        charts.speed_chart(model, [1.0], mesh=1, direction="sideways")
 
 
 # ---- helical pairs ---------------------------------------------------------------------------------------------------
@@ -473,6 +497,44 @@ def test_round_off_of_large_coordinates_does_not_keep_an_orbit_from_being_found(
     assert found.periods == 2
     assert [*found.x, *found.v] == pytest.approx([far, 0.0], abs=1e-7)
     assert next(steps) < 5
+
+
+@pytest.mark.parametrize(
+    ("radius", "far", "periods"),
+    [(0.9, 1.0, 66), (0.5, 1.0, 10), (0.9, 0.0, 0), (1.0, 1.0, None), (1.2, 1.0, None), (0.999999, 1.0, None)],
+)
+def test_a_way_to_an_orbit_is_followed_until_a_thousandth_of_it_is_left(monkeypatch, radius, far, periods):
+    """ln(1000) over the logarithm of the multiplier; as long as any transient where it does not shrink."""
+    asked = []
+
+    def way(packed, x, v, duration, *, tolerance, peaks):
+        asked.append((duration / 0.25, tolerance, peaks))
+        return SimpleNamespace(changes=changes)
+
+    monkeypatch.setattr(steady_state, "propagate", way)
+    monkeypatch.setattr(steady_state, "moving", lambda packed: np.array([True, True, False, True]))
+    x, v = np.array([1.0, 2.0]), np.array([9.0, 4.0])
+    orbit = SimpleNamespace(
+        packed=SimpleNamespace(period=0.25), radius=radius, state=np.array([1.0, 2.0 - far, 4.0 + 0.5 * far])
+    )
+    for changes in (0, 3):
+        kept = steady_state._keeps_contact(orbit, x, v, 1e-6)
+        assert kept == (changes == 0 or periods == 0)
+    expected = steady_state.TRANSIENT if periods is None else periods
+    assert asked == ([(expected, 1e-6, False)] * 2 if expected else [])
+
+
+def test_velocities_stay_in_bounds_or_not_whatever_distances_do():
+    packed = SimpleNamespace(free=np.array([True, True, False]))
+    far, most = 1e3 * steady_state.UNBOUNDED, steady_state.UNBOUNDED
+
+    def bounded(*states):
+        return steady_state._bounded(packed, SimpleNamespace(states=np.array(states)))
+
+    assert bounded([far, -far, most, -most, 0.0], [0.0] * 5)
+    assert not bounded([0.0] * 5, [0.0, 0.0, 0.0, -1.01 * most, 0.0])
+    assert not bounded([0.0, 0.0, 0.0, 0.0, 1.01 * most])
+    assert not bounded([math.nan, 0.0, 0.0, 0.0, 0.0])
 
 
 def test_a_floquet_frame_takes_a_period_apart_or_is_none():
