@@ -12,6 +12,7 @@ import pytest
 from fegear.atlas import refining
 from fegear.atlas.domain import Domain
 from fegear.atlas.family import Family, place_of
+from fegear.atlas.finer import Finer, kept
 from fegear.atlas.polynomials import products
 from fegear.atlas.refining import refined
 from fegear.atlas.shipped import shipped_atlas
@@ -112,3 +113,32 @@ def test_a_region_that_cannot_grow_keeps_what_it_has(monkeypatch, name, value, p
     if not solved:
         np.testing.assert_array_equal(finer.coefficients, 1.1 * TRUE)
         np.testing.assert_array_equal(finer.degrees, DEGREES)
+
+
+def test_a_file_keeps_few_common_rows_and_whole_steps_of_their_parts():
+    """Of two regions whose compliances are sums of three rows, and of others a millionth as large."""
+    chance = np.random.default_rng(3)
+    rows = np.linalg.qr(chance.normal(size=(20, 3)))[0].T * np.array([[900.0], [20.0], [0.5]])
+    regions = [
+        Finer(
+            chance.integers(0, 9, (count, 4)),
+            chance.normal(size=(count, 3)) @ rows + 1e-7 * chance.normal(size=(count, 20)),
+        )
+        for count in (6, 9)
+    ]
+    found = kept(regions)
+    assert found["finer"].shape == (3, 20)
+    assert {one.dtype.name for name, one in found.items() if "degrees" not in name} == {"float32"}
+    largest = max(np.abs(one.coefficients).max() for one in regions)
+    for number, one in enumerate(regions):
+        np.testing.assert_array_equal(found[f"finer_degrees_{number}"], one.degrees)
+        parts = found[f"finer_parts_{number}"].astype(float)
+        off = np.abs(parts @ found["finer"].astype(float) - one.coefficients).max()
+        assert off < 4e-7 * largest
+        steps = np.unique(np.abs(parts))
+        step = 2.0 ** np.floor(np.log2(1e-7 * largest))
+        assert not np.any(steps % step)
+        assert np.any(steps % (2.0 * step))
+    assert kept([]) == {}
+    one = kept([Finer(np.zeros((1, 4), dtype=int), np.full((1, 20), 5.0))])
+    assert one["finer"].shape == (1, 20)
