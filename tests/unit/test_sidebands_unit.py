@@ -2,10 +2,12 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.contact.plane import over_revolution
 from fegear.contact.plane.over_revolution import OverRevolution
 from fegear.contact.plane.sidebands import along_revolution, condition_indicators, revolution_orders
 
@@ -128,3 +130,42 @@ def test_what_softens_all_teeth_alike_leaves_a_part_of_its_error():
     alike = replace(odd_pitch(0.0), others=(odd_pitch(0.0, 0.99),), solved=1)
     assert alike.stiffness_loss_error == pytest.approx(0.0, abs=1e-15)
     assert alike.largest_residual_error == pytest.approx(0.0, abs=1e-21)
+
+
+def test_an_error_of_stiffness_where_a_jump_is_moved_past_a_position_is_that_around_it():
+    """Positions at which a pair bears in one solution and not in the other; in between, straight over the places."""
+    x, loads = np.array([0.0, 1.0, 3.0, 4.0, 5.0]), np.zeros((2, 2, 5))
+    loads[:, 0], loads[0, 1, 2:], loads[1, 1] = 60.0, 40.0, 40.0
+    stiffness = np.full((2, 5), 9.0)
+    one = OverRevolution(x, 5.0, 100.0, 0.03, np.array([0, 1]), stiffness, stiffness, loads, 2, stiffness)
+    assert np.isnan(one.stiffness_error).all()
+    other = replace(one, loads=loads.copy(), stiffness=stiffness + np.array([[0.5, 0.5, 7.0, 2.5, 2.5], [0.25] * 5]))
+    other.loads[0, 1, 2] = 0.0
+    found = replace(one, others=(other, replace(one, stiffness=stiffness - 0.125)), of_changes=2.0).stiffness_error
+    np.testing.assert_allclose(found[0], 2.0 * (np.array([0.5, 0.5, 0.5 + 2.0 * 2.0 / 3.0, 2.5, 2.5]) + 0.125))
+    np.testing.assert_allclose(found[1], 0.75)
+    # where every position is passed there is nothing around it
+    other.loads[0, 1] = np.where(loads[0, 1] > 0.0, 0.0, 40.0)
+    whole = replace(one, others=(other,)).stiffness_error
+    np.testing.assert_allclose(whole[0], [0.5, 0.5, 7.0, 2.5, 2.5])
+
+
+def test_both_sides_of_every_change_of_contact_are_positions(monkeypatch):
+    """Of base pitches that differ, each with its own; of changes in one place one."""
+    changes = {0: [0.3, 1.4], 2: [0.3 + 1e-13, 2.5]}
+    monkeypatch.setattr(over_revolution, "together", lambda teeth: [np.array([0, 1]), np.array([2, 3])])
+    monkeypatch.setattr(over_revolution, "contact_changes", lambda engagement, load, cycle: np.array(changes[cycle]))
+    engagement = SimpleNamespace(
+        pair=SimpleNamespace(base_pitch=3.0), teeth_in=lambda number, cycle: cycle,
+        grid=lambda x: SimpleNamespace(contacts=SimpleNamespace(number=np.array([0, 1]))),
+    )  # fmt: skip
+    x = np.array([0.0, 1.0, 2.0, 3.0])
+    found = over_revolution._with_changes(engagement, 50.0, x, 4)
+    assert np.isin(x, found).all()
+    assert (np.diff(found) > 0.0).all()
+    for change in (0.3, 1.4, 2.5):
+        near = found[np.abs(found - change) < 3.0 * 1.01 * max(over_revolution._BESIDE_CHANGES)]
+        assert (near < change).sum() == (near > change).sum() == len(over_revolution._BESIDE_CHANGES)
+        closest = np.sort(np.abs(near - change))[:2]
+        np.testing.assert_allclose(closest, 3.0 * min(over_revolution._BESIDE_CHANGES), rtol=1e-3)
+    assert found.size == 4 + 3 * 2 * len(over_revolution._BESIDE_CHANGES)
