@@ -18,15 +18,18 @@ def turned(points, angle):
     return np.array([[c, -s], [s, c]]) @ points
 
 
+RIGHT = (outline := tooth_outline(TOOTH))[:, outline[0] >= 0.0]
+RADIUS, HALF = np.hypot(*RIGHT), np.arctan2(*RIGHT)
+UP = np.lexsort((-HALF, RADIUS))
+
+
 def inside(points):
-    """Whether points lie within the outlines of all teeth together: an odd number of pieces lies to their right."""
-    lines = [turned(tooth_outline(TOOTH), 2.0 * math.pi * k / TOOTH.teeth) for k in range(TOOTH.teeth)]
-    a, b = (np.concatenate([line[:, part] for line in lines], axis=1) for part in (slice(None, -1), slice(1, None)))
-    x, y = points[:, :, None]
-    between = (a[1] > y) != (b[1] > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-    return (between & (at > x)).sum(axis=1) % 2 == 1
+    """Whether points lie within the nearest tooth: nearer to its centre line than its flank at their radius is."""
+    radius, pitch = np.hypot(*points), 2.0 * math.pi / TOOTH.teeth
+    angle = np.abs((np.arctan2(*points) + 0.5 * pitch) % pitch - 0.5 * pitch)
+    return (radius < TOOTH.root_radius) | (
+        (radius < TOOTH.tip_radius) & (angle < np.interp(radius, RADIUS[UP], HALF[UP]))
+    )
 
 
 @pytest.mark.parametrize("bore", [3.0, 6.8])
@@ -45,5 +48,8 @@ def test_a_crack_ends_where_walking_straight_on_ends(tip, bore):
         turn = 0.4 * math.sin(5.0 * angle)
         path = np.column_stack([tip - 0.7 * turned(way[:, None], -turn)[:, 0] * s for s in (1.3, 1.0, 0.0)])
         assert _ends_in(TOOTH, bore, path, turn, 2) == expected, math.degrees(angle)
+        sectors = abs(math.atan2(*walk[:, min(first_off, walk.shape[1] - 1)])) / (2.0 * math.pi / TOOTH.teeth)
+        if expected == "rim" or sectors < 1.4:  # teeth next to the patch are looked at, too
+            assert _ends_in(TOOTH, bore, path, turn, 0) == expected
         ends.add(expected)
     assert ends == {"rim", "tooth"}
