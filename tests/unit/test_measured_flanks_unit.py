@@ -61,6 +61,16 @@ def test_the_filter_lets_half_of_its_cut_off_through_and_leaves_lines_alone(wave
     assert np.abs(filtered(x, line, cutoff(length)) - line).max() < 1e-18
 
 
+@pytest.mark.parametrize("phase", [0.0, 1.3])
+def test_the_filter_weighs_lengths_not_points(phase):
+    """Places three times as dense on one half of each wave as on the other: half of it is let through."""
+    t, wavelength = np.linspace(-6.0, 6.0, 1201), 0.5
+    x = wavelength * (t + 0.08 * np.sin(2.0 * math.pi * t))
+    y = np.cos(2.0 * math.pi * x / wavelength + phase)
+    inside = np.abs(t) < 3.0
+    np.testing.assert_allclose(filtered(x, y, wavelength)[inside], 0.5 * y[inside], atol=1e-3)
+
+
 def test_the_cut_off_is_a_thirtieth_of_the_range_and_at_least_25_um():
     assert cutoff(9e-3) == pytest.approx(0.3e-3)
     assert cutoff(0.3e-3) == 25e-6
