@@ -6,7 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.base.errors import RangeError
 from fegear.design.sizing.limits import SizingLimits, broken, masses
+from fegear.formulas.iso6336.part3_pair import ToothLoad
 from fegear.formulas.many.pairs import ManyPairs
 from fegear.formulas.many.ratings import _refused
 from fegear.geometry.many_pairs import ManyGearPairs
@@ -200,3 +202,13 @@ def test_factors_and_sections_that_the_standard_does_not_have_are_refused():
         assert refusals(pairs, factors) == [of_loads]
     assert refusals(pairs, forms=(False, True)) == ["no root section of ISO 6336-3"]
     assert refusals(pairs, forms=(True, False)) == ["notch parameter q_s outside 1 to 8"]
+
+
+@pytest.mark.parametrize(("deep", "most"), [(False, 2.0), (True, 3.0)])
+def test_a_single_contact_point_has_contact_ratios_of_its_own(deep, most):
+    """From 1 to below 2, and to below 3 where the load is applied as Y_DT presumes."""
+    for ratio in (1.0, most - 1e-6):
+        assert ToothLoad(1e5, ratio, deep=deep).contact_ratio == ratio
+    for ratio in (1.0 - 1e-6, most):
+        with pytest.raises(RangeError, match=f"must be between 1 and {most:g} for a single contact point"):
+            ToothLoad(1e5, ratio, deep=deep)

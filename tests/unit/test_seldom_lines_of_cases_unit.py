@@ -1,7 +1,7 @@
 """Keys of a case in combinations that are seldom: which one a refusal names, and what is taken where none is given."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import pytest
@@ -245,14 +245,17 @@ def test_axes_have_room_for_bearings_and_the_wheel_beside_the_shaft(monkeypatch)
 
 
 @pytest.mark.parametrize("kind", [TWO_STAGES, "gearbox"])
+@pytest.mark.parametrize("sized", [True, False])
 @pytest.mark.parametrize(
     ("given", "room", "module"), [(None, 2.5, 2.5), (None, 2.0, 2.0), (None, 99.0, 2.0), (2.0, 99.0, 2.0)]
 )
-def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypatch, kind, given, room, module):
+def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypatch, kind, given, room, module, sized):
     @dataclass(frozen=True)
     class Given:
         kind: str
         suited: dict
+        sized: bool
+        whole: bool = False
 
         def assumed(self, _name):
             return given is None
@@ -267,8 +270,10 @@ def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypa
     monkeypatch.setattr(two_stages, "two_stages", laid[TWO_STAGES] if kind == TWO_STAGES else None)
     monkeypatch.setattr(two_stages, "laid_out", laid["gearbox"] if kind != TWO_STAGES else None)
     monkeypatch.setattr(two_stages, "_apart", lambda one: one.si("module") >= (room - 1e-6) * 1e-3)
-    start = Given(kind, {"module": "2 mm"})
+    monkeypatch.setattr(two_stages, "with_whole_distances", lambda one: replace(one, whole=True))
+    start = Given(kind, {"module": "2 mm"}, sized)
     found = two_stages.with_room(start)
     assert found.si("module") == pytest.approx(module * 1e-3)
-    assert (found is start) == (module == 2.0)
-    assert found is start or found.suited["torque"] == "50 N*m"
+    assert found.whole is (sized and given is None)  # distances are whole where nobody has given a size
+    assert (found.suited is start.suited) == (module == 2.0)
+    assert module == 2.0 or found.suited["torque"] == "50 N*m"
