@@ -18,6 +18,7 @@ from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.shooting import floquet_frame
 from fegear.dynamics.planetary.kinematics import CENTRALS
 from fegear.dynamics.planetary.mesh_law import MeshSprings, WidenedSprings
+from fegear.dynamics.planetary.one_sided import equilibrium
 from fegear.dynamics.planetary.set_motion import SetMotion
 from fegear.dynamics.planetary.set_motion_over_revolution import set_motion_over_revolution
 from fegear.dynamics.planetary.steady_modes import on_common_pieces
@@ -255,6 +256,14 @@ def test_forces_on_common_pieces_are_the_functions_without_their_means_each_behi
             place = start + 0.5 * width * (v[0] + 1.0)
             exact = [one(place - late) - one.mean for one, late in zip(saws, delays, strict=True)]
             np.testing.assert_allclose(found.at(np.array([piece]), v)[:, 0], exact, atol=1e-10)
+
+
+@pytest.mark.parametrize("apart", [3e-6, -2e-6])
+def test_a_direction_that_nothing_loads_stays_where_its_spring_would_begin_to_bear(apart):
+    """One spring on each coordinate, loads on the first: the other is free, next to where all springs bear."""
+    stiffness, separation = np.array([[1e8, 4e7]]), np.array([[1e-6, apart]])
+    found = equilibrium(np.zeros((2, 2)), np.eye(2), stiffness, separation, np.array([50.0, 0.0]))
+    np.testing.assert_allclose(found, [[1e-6 + 50.0 / 1e8, apart]], rtol=1e-5)
 
 
 def test_a_set_at_another_speed_and_with_more_damping_is_the_same_beside():
