@@ -18,7 +18,12 @@ def test_an_export_writes_what_is_kept(name):
 
 
 #: Formats whose files hold what another program makes of them: it reads them back in tests of their own.
-READ_BACK = {"fmu": "other_codes/test_fmu_other_codes.py", "step": "closed_form/test_solid_model_closed_form.py"}
+READ_BACK = {
+    "fmu": "other_codes/test_fmu_other_codes.py",
+    "pdf": "unit/test_drawn_mesh_unit.py",
+    "step": "closed_form/test_solid_model_closed_form.py",
+    "svg": "unit/test_drawn_mesh_unit.py",
+}
 
 
 def test_every_format_is_kept_or_read_back():
