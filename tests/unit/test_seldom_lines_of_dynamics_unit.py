@@ -533,6 +533,43 @@ def test_a_way_to_an_orbit_is_followed_until_a_thousandth_of_it_is_left(monkeypa
     assert asked == ([(expected, 1e-6, False)] * 2 if expected else [])
 
 
+def test_steps_are_a_thousandth_of_the_tolerance_and_no_finer_than_round_off():
+    assert [steady_state.step_for(tolerance) for tolerance in (1e-2, 3e-5)] == pytest.approx([1e-5, 3e-8])
+    assert steady_state.step_for(1.1e-13) == 1e-14
+    for tolerance in (1e-13, 1.01e-2, 0.0, math.nan):
+        with pytest.raises(RangeError, match=r"must be between 1e-13 and 1e-2"):
+            steady_state.step_for(tolerance)
+
+
+@pytest.mark.parametrize(("closes", "periods"), [(1, 1), (2, 2), (3, 3), (4, 6), (6, 6)])
+def test_a_periodic_motion_has_the_fewest_periods_after_which_it_closes(monkeypatch, closes, periods):
+    """Of an orbit of six: its divisors are tried, from one on; numbers are those of the whole motion."""
+
+    def passage(packed, x, v, duration, **how):
+        turns = round(duration / 0.5)
+        off = 0.0 if turns % closes == 0 else 1.0
+        return SimpleNamespace(
+            x=x + off, v=v, largest=np.full(1, 10.0 * turns), smallest=np.full(1, -1.0), tooth_force=np.full(1, 3.0),
+            apart=np.full(1, 0.2), behind=np.full(1, 0.1), changes=turns, tangent=0.8**turns * np.eye(2),
+        )  # fmt: skip
+
+    monkeypatch.setattr(steady_state, "propagate", passage)
+    monkeypatch.setattr(steady_state, "moving", lambda packed: np.array([True, True]))
+    monkeypatch.setattr(steady_state, "Orbit", lambda packed, x, v, divisor, short, miss: made(divisor, miss))
+
+    def made(count, miss):
+        return SimpleNamespace(
+            packed=SimpleNamespace(period=0.5, model="model"), x=np.ones(1), v=np.zeros(1), periods=count, miss=miss,
+            radius=0.8**count, multipliers=np.full(2, 0.8**count),
+        )  # fmt: skip
+
+    found = steady_state.periodic_motion(made(6, 1e-9))
+    assert (found.kind, found.periods) == ("periodic", periods)
+    assert (found.largest[0], found.changes) == (10.0 * periods, periods)
+    numbers = [value for value in vars(found).values() if isinstance(value, float)]
+    assert sum(abs(value - math.log(0.8)) < 1e-9 for value in numbers) == 1  # its growth in a period
+
+
 def test_velocities_stay_in_bounds_or_not_whatever_distances_do():
     packed = SimpleNamespace(free=np.array([True, True, False]))
     far, most = 1e3 * steady_state.UNBOUNDED, steady_state.UNBOUNDED
@@ -544,6 +581,15 @@ def test_velocities_stay_in_bounds_or_not_whatever_distances_do():
     assert not bounded([0.0] * 5, [0.0, 0.0, 0.0, -1.01 * most, 0.0])
     assert not bounded([0.0, 0.0, 0.0, 0.0, 1.01 * most])
     assert not bounded([math.nan, 0.0, 0.0, 0.0, 0.0])
+
+
+def test_a_direction_that_a_period_leaves_where_it_is_is_found_in_any_units():
+    units = np.diag([1.0, 1e7, 1e-6])
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.3, 0.2, 0.5]])
+    for fixed, expected in ((0.5, False), (1.0, True), (1.0 + 1e-7, False), (-1.0, False)):
+        turn[2, 2] = fixed
+        for scale in (np.eye(3), units):
+            assert shooting.has_fixed_direction(scale @ turn @ np.linalg.inv(scale)) == expected
 
 
 def test_a_floquet_frame_takes_a_period_apart_or_is_none():
