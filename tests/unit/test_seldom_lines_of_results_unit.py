@@ -6,6 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.case.odd_tooth import ENDS
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.results import forecasts
+from fegear.results.gear import crack_shown
 from fegear.results.gear.crosscheck_answer import said_of_helical, said_of_single_contact, said_of_stiffness
 from fegear.results.gear.crosscheck_iso import IsoPair
 from fegear.results.pair import mesh_stiffness_revolution
@@ -267,3 +274,50 @@ def test_fewer_rows_than_teeth_are_explained(listed, said):
     assert len(notes) == said
     assert not said or "gear a is listed for 7 of its 20 identical teeth: the meshing repeats after 7" in notes[0]
     assert said < 2 or "gear b is listed for 5 of its 31" in notes[1]
+
+
+# ---- cracks as they are shown, trains without damping ----------------------------------------------------------------
+@pytest.mark.parametrize("member", ["driver", "driven"])
+@pytest.mark.parametrize("load", [2000.0, 0.0])
+def test_a_crack_is_shown_under_the_whole_load_at_the_outer_end_of_single_contact(monkeypatch, member, load):
+    """Where the pair's own curvature radius says it is; without a load 100 N/mm in the middle of the involute."""
+    one, other = (
+        Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25), x), 3e-3, 5e-3, face_width=20e-3) for z, x in ((20, 0.2), (41, 0.0))
+    )
+    pair = GearPair(one, other)
+    gear = pair.gear(member)
+    monkeypatch.setattr(crack_shown, "odd_teeth_of", lambda _scene, name: SimpleNamespace(name=name, member=member))
+    cracks = [SimpleNamespace(crack=None), SimpleNamespace(crack=SimpleNamespace(**dict.fromkeys(ENDS), used=1))]
+    setattr(cracks[1].crack, ENDS[1], 0.5e-3)
+    part = SimpleNamespace(driver="driver", driven="driven", normal_load=lambda meshed: load if meshed is pair else 1.0)
+    scene = SimpleNamespace(
+        case=SimpleNamespace(gear={member: SimpleNamespace(odd_tooth=cracks)}, pair={"I": part}),
+        gears={member: gear}, plane_pairs=["I"], pairs={"I": pair},
+    )  # fmt: skip
+    found = crack_shown._inputs(scene, member)
+    assert (found.places, found.ends) == ((1,), (ENDS[1],))
+    if not load:
+        assert found.radius == pytest.approx(0.5 * sum(gear.involute_radii))
+        assert (found.load, found.pair) == (1e5, "")
+        return
+    ends = pair.x_start + pair.base_pitch, pair.x_end - pair.base_pitch
+    radii = [float(np.hypot(gear.base_radius, pair.flank_curvature_radius(np.array([x]), member)[0])) for x in ends]
+    assert found.radius == pytest.approx(max(radii))  # the outer one of both ends of single contact
+    assert (found.load, found.pair) == (2000.0 / 20e-3, "I")
+
+
+@pytest.mark.parametrize(("shaft", "mesh", "undamped"), [
+    ({"damping": 1.0}, {"damping_ratio": 0.1}, False), ({"damping_ratio": 0.1}, {"damping": 1.0}, False),
+    ({"rigid": True}, {"damping": 1.0}, False), ({}, {"damping": 1.0}, True), ({"damping": 1.0}, {}, True),
+    ({}, {}, True),
+])  # fmt: skip
+def test_a_train_without_damping_anywhere_is_known(shaft, mesh, undamped):
+    def part(given):
+        return SimpleNamespace(**{"rigid": False, "damping": None, "damping_ratio": None} | given)
+
+    damped = part({"damping": 1.0})
+    train = SimpleNamespace(shaft={"a": damped, "b": part(shaft)}, mesh={"m": damped, "n": part(mesh)})
+    assert forecasts.has_undamped(SimpleNamespace(case=SimpleNamespace(train=train))) is undamped
+    assert forecasts.has_undamped(SimpleNamespace(case=SimpleNamespace(train=None))) is False
+    sizes = forecasts.sizes(SimpleNamespace(case=SimpleNamespace(train=SimpleNamespace(mesh="ab", body="abc"))))
+    assert sizes == (2, 3)
