@@ -121,7 +121,8 @@ const fegearGears = (() => {
       let i = table.x.findIndex((one) => one > x);
       if (i < 0) i = table.x.length - 1;
       const h = table.x[i] - table.x[i - 1];
-      return h > 0 ? table.load[i - 1] + (table.load[i] - table.load[i - 1]) * (x - table.x[i - 1]) / h : table.load[i];
+      // Both sides of a jump are a hair apart; point A is in between for the pair at D: it has the load after the jump.
+      return h > 1e-6 * kept.data.base_pitch ? table.load[i - 1] + (table.load[i] - table.load[i - 1]) * (x - table.x[i - 1]) / h : table.load[i];
     }
     function draw() {
       const d = kept.data;

@@ -26,6 +26,8 @@ const fegearGlance = (() => {
       "Over what share of the path of contact do two tooth pairs carry the load?",
       "Which gear has the higher root stress, and at which position in the mesh is it highest?",
       "Is a gear undercut, and which profile shift avoids it?",
+      "How large is the contact ratio?",
+      "Where on the path of contact do the flanks not slide, and where do they slide most?",
     ],
     wide: [
       "At which end of the face is the load larger, and how large is K_Hβ?",
@@ -56,7 +58,24 @@ const fegearGlance = (() => {
     if (!(most > 0)) return "";
     const several = loads.filter((one) => one < 0.999 * most).length / loads.length, ratio = pairs[pair]?.mesh?.ratios?.transverse;
     if (!(ratio < 2)) return "With a contact ratio of 2 or more at least two tooth pairs carry the load everywhere.";
-    return `Over ${share(several)} of the path of contact (contact ratio ${ratio.toFixed(2)}) more than one tooth pair carries the load; over the other ${share(1 - several)} a single one carries all of it.`;
+    if (ratio < 1) return `Over none of it: the contact ratio is ${ratio.toFixed(3)}, below 1, and rigid gears are out of contact between two tooth pairs.`;
+    const rigid = 2 * (ratio - 1) / ratio, of = `Rigid gears: over 2 (ε − 1)/ε = ${share(rigid)} of the path of contact (contact ratio ε = ${ratio.toFixed(3)})`;
+    const single = `over the other ${share(1 - several)} a single one carries all of it`;
+    if (Math.abs(several - rigid) < 0.01) return `${of}; ${single}.`;
+    const why = several > rigid ? "tip edges of deflected teeth are in contact outside the path of contact, too" : "gaps from reliefs or deviations keep teeth out of contact";
+    return `${of}. Under this load: over ${share(several)} (${why}); ${single}.`;
+  }
+  function ofRatio() {
+    const { data } = fegearGears.inside(pair);
+    if (!data) return "";
+    const long = data.end - data.start, ratio = long / data.base_pitch, mm = (one) => `${Number((one * 1e3).toPrecision(4))} mm`;
+    return `Path of contact over base pitch: ${mm(long)} / ${mm(data.base_pitch)} = ${ratio.toFixed(3)}.${ratio < 1 ? " Below 1 motion is not transmitted continuously." : ""}`;
+  }
+  function ofSliding() {
+    const { data } = fegearGears.inside(pair);
+    if (!data) return "";
+    const mm = (one) => Number((Math.abs(one) * 1e3).toPrecision(3)), most = Math.abs(data.start) > data.end ? "A" : "E";
+    return `Not at C, the pitch point; the sliding velocity increases with the distance from it and is largest at ${most} (A: ${mm(data.start)} mm, E: ${mm(data.end)} mm from C).`;
   }
   function ofRoots() {
     const both = ["driver", "driven"].map((gear) => [gear, numbers.get(`${pair}.${gear}.largest_root_tension`)]);
@@ -66,7 +85,9 @@ const fegearGlance = (() => {
     let where = "";
     if (curve) {
       const y = numbersOf(curve.y), at = y.reduce((best, one, i) => (one > y[best] || !(y[best] === y[best]) ? i : best), 0), axis = plain(spec.layout.xaxis?.title?.text ?? "");
-      where = ` at ${Number(numbersOf(curve.x)[at].toPrecision(3))}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
+      const x = numbersOf(curve.x)[at], { data } = fegearGears.inside(pair);
+      const [letter] = (data?.points ?? []).find(([, one]) => Math.abs(one * 1e3 - x) < 0.01 * data.base_pitch * 1e3) ?? [];
+      where = ` at ${letter ? `${letter}, ` : ""}${Number(x.toPrecision(3))}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
     }
     return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
   }
@@ -75,11 +96,32 @@ const fegearGlance = (() => {
     if (!cut) return "";
     return cut.length ? cut.map(({ member, lost, enough }) => `The ${member} gear is undercut: ${Number(lost.toPrecision(2))} mm of its involute are cut away; profile_shift = ${enough.toFixed(4)} and more avoid it.`).join(" ") : "Neither gear is undercut.";
   }
-  const ANSWERS = { plane: [ofError, ofSharing, ofRoots, ofUndercut], wide: [() => "", ofError, ofRoots], set: [() => "", () => ""] };
+  function ofPhases() { // harmonic h of N equal mesh forces with delays d adds up to |sum of exp(2 pi i h d)|
+    const delay = fegearSets.of(pair)?.data?.meshes.sun.delay.map((one) => ((one % 1) + 1) % 1);
+    if (!delay) return "";
+    const sum = (harmonic) => Math.hypot(...[Math.cos, Math.sin].map((part) => delay.reduce((all, one) => all + part(2 * Math.PI * harmonic * one), 0))) / delay.length;
+    const early = (one) => (one > 1 - 1e-6 ? 0 : one), order = delay.map((one, n) => [early(one), n + 1]).sort(([one], [other]) => one - other);
+    const phases = `phases ${order.map(([one]) => Number(one.toFixed(3))).join(", ")} base pitches`;
+    if (order.at(-1)[0] < 1e-6) return `All planets mesh with the sun at the same time (${phases}): all harmonics of their mesh forces add up in the torque.`;
+    const first = sum(1), all = Array.from({ length: 12 }, (_, i) => i + 1), whole = all.filter((one) => sum(one) > 0.999);
+    const how = first < 1e-3 ? "cancels" : `adds up to ${share(first)} of the sum of amplitudes`;
+    return `Planets ${order.map(([, n]) => n).join(", ")} mesh with the sun in this order (${phases}): the first harmonic of their mesh forces ${how} in the torque${whole.length ? `; harmonics ${whole.slice(0, 3).join(", ")}${whole.length > 3 ? ", ..." : ""} add up in full` : ""}.`;
+  }
+  function ofPlanet() { // the planet whose load changes most; its load is the mean of its two meshes, as in the drawing
+    const loads = fegearSets.of(pair)?.loads;
+    if (!loads) return "";
+    const { shape: [, planets, count], data, step } = loads.force, force = (mesh, n, i) => step * data[(mesh * planets + n) * count + i];
+    const all = Array.from({ length: planets }, (_, n) => Array.from({ length: count }, (_, i) => 0.5 * (force(0, n, i) + force(1, n, i))));
+    const [n, least, most] = all.map((one, i) => [i + 1, Math.min(...one), Math.max(...one)]).sort(([, a, b], [, c, d]) => (d - c) - (b - a))[0];
+    const newtons = (value) => `${Number(value.toPrecision(4))} N`;
+    if (most - least < 1e-3 * most) return `It does not change: planet ${n} carries ${newtons(most)} all the time.`;
+    return `That of planet ${n} changes most: between ${newtons(least)} and ${newtons(most)}, by ${Number((200 * (most - least) / (most + least)).toPrecision(2))} % of its mean.`;
+  }
+  const ANSWERS = { plane: [ofError, ofSharing, ofRoots, ofUndercut, ofRatio, ofSliding], wide: [() => "", ofError, ofRoots], set: [ofPhases, ofPlanet] };
   let hiding = false;
   /** The button by which a lecturer writes another question in the place of the one that is asked; an empty one is none. */
   function ownQuestion(asked) {
-    const own = Object.assign(made("button", "button", "Own question"), { type: "button" });
+    const own = Object.assign(made("button", "button own", "Own question"), { type: "button" });
     own.onclick = () => {
       const words = asked.querySelector("p");
       words.contentEditable = "plaintext-only";
@@ -112,7 +154,7 @@ const fegearGlance = (() => {
       answer.setAttribute("aria-label", "Your answer");
       answer.addEventListener("keydown", (event) => event.stopPropagation());
       const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
-      next.onclick = () => { keep({ question: (view.question ?? 0) + 1, words: "" }); ask(); };
+      next.onclick = () => { keep({ question: (view.question ?? 0) + 1, words: "", revealed: false }); apply(); };
       asked.append(made("p"), answer, next, ownQuestion(asked), made("output"));
     }
     const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")];
@@ -138,6 +180,7 @@ const fegearGlance = (() => {
     document.body.classList.toggle("exercise", !!view.exercise);
     document.body.classList.toggle("revealed", !!view.revealed);
     ask();
+    fegearSets.soon();
     const hidden = !view.revealed;
     for (const [id, on, words] of [
       ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
@@ -345,6 +388,7 @@ const fegearGlance = (() => {
       apply();
     },
     view: () => view,
+    hides: () => !!view.exercise && !view.revealed, // loads and results, of an exercise
     exercise(content) { Object.assign(view, content); apply(); },
     keep,
     found(content) {

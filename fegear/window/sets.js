@@ -97,7 +97,7 @@ const fegearSets = (() => {
       for (const [x, y] of centres) { context.moveTo(0, 0); context.lineTo(x, y); }
       context.stroke();
       gear(sun, kept.paths.sun, 0, 0, 0, body, colour("--driver"));
-      const { loads } = kept, shades = fegearLayers.shades("pressure"), words = [];
+      const loads = fegearGlance.hides() ? null : kept.loads, shades = fegearLayers.shades("pressure"), words = [];
       centres.forEach(([x, y], n) => {
         const force = loads ? [0, 1].map((mesh) => forceAt(loads, mesh, n, q)) : null;
         gear(planet, kept.paths.planet, n, x, y, force ? fegearLayers.shade(shades, 0.5 * (force[0] + force[1]) / loads.limit) : body, colour("--driven"));
@@ -214,6 +214,7 @@ const fegearSets = (() => {
       const kept = shown.get(name);
       if (kept) { kept.loads = loads; kept.soon(); }
     },
-    of: (name) => shown.get(name), // for tests
+    of: (name) => shown.get(name),
+    soon() { for (const kept of shown.values()) kept.soon(); }, // loads are shown or hidden
   };
 })();

@@ -201,6 +201,27 @@ def asked_and_answered(browser) -> None:
         assert browser.run("document.querySelector('#question p').textContent").endswith("?")
         computed = browser.run("document.querySelector('#asked output').textContent")
         assert computed.startswith("The peak-to-peak transmission error is ") == (press_first == "to-answers")
+    # Point A, where the slider is at first, is a jump for the pair one base pitch ahead: loads add up there, too.
+    loads = "fegearField.loaded(data, $PLACE, loadAt).reduce((all, [, , one]) => all + one, 0)"
+    inside = f"(({{ data, loadAt }}) => {loads})(fegearGears.inside('I'))"
+    for at in ("0", "0.37", "0.999", "1"):
+        assert browser.run(inside.replace("$PLACE", at)) == pytest.approx(6000.0, rel=2e-3)
+    # the next question is asked without its answer; every one has an answer in numbers
+    words, asked_next = "document.querySelector('#question p').textContent", button("Next question")
+    answer = "document.querySelector('#asked output').textContent"
+    answers = []
+    for _ in range(6):
+        before = browser.run(words)
+        browser.run(f"{asked_next}.click()")
+        browser.until(f"{words} !== {json.dumps(before)} && !({shown})", 5.0)
+        assert browser.run(answer) == ""
+        browser.run("document.getElementById('to-answers').click()")
+        browser.until(f"{answer} !== ''", 5.0)
+        answers.append(browser.run(answer))
+    ratio = browser.run("(({ data }) => (data.end - data.start) / data.base_pitch)(fegearGears.inside('I'))")
+    assert f"= {ratio:.3f}" in answers[3]
+    assert f"2 (ε − 1)/ε = {100 * 2 * (ratio - 1) / ratio:.0f} %" in answers[0]
+    assert answers[5].startswith("The peak-to-peak transmission error is ")
     # the gears as they are shown, as a file that holds by itself
     svg = "fegearSaved.text(document.querySelector('.mesh-stage'))"
     drawing = f"new DOMParser().parseFromString({svg}, 'image/svg+xml')"
@@ -763,6 +784,20 @@ def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(bro
     assert max(unequal) > 1.05
     browser.click("[...document.querySelectorAll('[data-set=P] button')].find(one => one.textContent === 'Nearer')")
     assert browser.run("fegearSets.of('P').focus") == 0
+    # An exercise shows the set without its loads, and answers in a sentence.
+    with_loads = browser.run(f"{canvas}.toDataURL()")
+    browser.run("document.getElementById('to-exercise').click()")
+    browser.until("document.body.classList.contains('exercise')")
+    assert browser.run(f"getComputedStyle({canvas}).visibility") == "visible"
+    browser.until(f"{canvas}.toDataURL() !== {json.dumps(with_loads)}")
+    answer = "document.querySelector('#asked output').textContent"
+    for words in ("mesh with the sun", "planet "):
+        browser.run("document.getElementById('to-answers').click()")
+        browser.until(f"{answer}.includes('{words}')", 5.0)
+        browser.run(f"{button('Next question')}.click()")
+        browser.until(f"{answer} === ''", 5.0)
+    browser.run("document.getElementById('to-exercise').click()")
+    browser.until("!document.body.classList.contains('exercise')")
 
     # The gearbox: bent, by a factor that is said and can be changed; a mesh that is pressed opens its pair.
     browser.run(
