@@ -322,10 +322,11 @@ const fegearGlance = (() => {
     const host = $("strip");
     if (!host || !told) return;
     const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
-    const ratios = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
+    const known = kind === "set" ? [] : Object.entries(pairs[pair]?.mesh?.ratios ?? {}), interrupted = known.reduce((sum, [, value]) => sum + value, 0) < 1;
+    const ratios = known.map(([name, value]) => ({ name, label: `${RATIOS[name]}${interrupted && name === "transverse" ? ", below 1" : ""}`, told: interrupted ? "Below 1: motion is not transmitted continuously." : "", text: value.toFixed(3), value, unit: "", error: "" }));
     const several = kind === "set" || Object.keys(pairs).length > 1; // then it is said whose numbers and pictures these are
     const undercuts = kind === "set" ? [] : (pairs[pair]?.mesh?.undercut ?? []).map(({ member, lost, shift, enough }) => ({ name: `undercut ${member}`, label: `undercut, ${member}`, text: String(Number(lost.toPrecision(2))), value: lost, unit: "mm", error: "", told: `The tool cuts away ${Number(lost.toPrecision(3))} mm of the involute above the base circle at profile_shift = ${Number(shift.toPrecision(4))}; nothing from ${enough.toFixed(4)} on.` }));
-    const all = [...wanted, ...ratios, ...undercuts], [preview] = previews.values(), laid = JSON.stringify([kind, pair, several, preview, all.map((one) => one.name)]);
+    const all = [...wanted, ...ratios, ...undercuts], [preview] = previews.values(), laid = JSON.stringify([kind, pair, several, preview, all.map((one) => [one.name, one.label])]);
     if (host.dataset.laid !== laid) {
       host.dataset.laid = laid;
       cells.clear();

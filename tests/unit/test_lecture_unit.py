@@ -15,9 +15,9 @@ from fegear.window.on_gears import gears_in_mesh
 from fegear.window.order import HarrisMaps
 
 
-def scene_of(*, shift=0.0, torque="400 N*m", results=("geometry",)):
+def scene_of(*, teeth=14, shift=0.0, torque="400 N*m", results=("geometry",)):
     gear = {"module": "5 mm", "face_width": "50 mm"}
-    gears = {name: {"teeth": z, "profile_shift": x, **gear} for name, z, x in (("p", 14, shift), ("w", 37, -shift))}
+    gears = {name: {"teeth": z, "profile_shift": x, **gear} for name, z, x in (("p", teeth, shift), ("w", 37, -shift))}
     pair = {"driver": "p", "driven": "w", "torque": torque, "compliance": {"source": "weber-banaschek"}}
     document = {"title": "a lecture", "results": list(results), "gear": gears, "pair": {"I": pair}}
     return build_scene({**document, "effects": {"hertz": "load-dependent"}}, "lecture", Path())
@@ -57,3 +57,11 @@ def test_an_exercise_has_the_transmission_error_at_half_the_torque():
         expected = next(value for value in one.values if value.name == "I.te_peak_to_peak")
         assert found[key] == pytest.approx(expected.value, rel=5e-3)
     assert found["half"] < 0.9 * found["full"]
+
+
+@pytest.mark.parametrize(("teeth", "interrupted"), [(8, True), (14, False)])
+def test_a_contact_ratio_below_one_is_said_in_the_answer(teeth, interrupted):
+    scene = scene_of(teeth=teeth)
+    (said,) = run(scene).outcomes[Task("geometry", "")].answer.sentences
+    assert ("below 1: motion is not transmitted continuously" in said) == interrupted
+    assert (scene.pairs["I"].contact_ratio < 1.0) == interrupted

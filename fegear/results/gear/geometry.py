@@ -380,6 +380,8 @@ def _in_mesh(seen: Seen) -> Iterator[str]:
         ratio = f"contact ratio {figures(pair.contact_ratio)}"
         if pair.driver.helix_angle != 0.0:
             ratio += f", overlap ratio {figures(pair.overlap_ratio)}"
+        if pair.total_contact_ratio < 1.0:
+            ratio += " (below 1: motion is not transmitted continuously)"
         backlash = pair.normal_backlash if abs(pair.normal_backlash) >= _LEAST_BACKLASH else 0.0
         yield (
             f"Pair {name}: {z}, {ratio}, centre distance {figures(pair.centre_distance * 1e3, 6)} mm, normal backlash "
