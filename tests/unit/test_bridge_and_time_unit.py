@@ -9,7 +9,7 @@ import pytest
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.units import to_si, unit_size
-from fegear.case.built.angle_of_time import steady_turning
+from fegear.case.built.angle_of_time import _between, steady_turning
 from fegear.case.built.gauges import check_gauge, gauge_of
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
@@ -199,3 +199,12 @@ def test_a_speed_that_is_not_constant_is_said_and_noise_has_no_period():
     for signal in (noise, pulse(1.08 * turns)):  # nothing, and a speed that is too far from the stated one
         found = steady_turning(time, signal, 1000.0 * RPM)
         assert (found.speed, found.found) == (1000.0 * RPM, False)
+
+
+@pytest.mark.parametrize("vertex", [-0.4, 0.0, 0.3])
+def test_a_minimum_between_steps_is_that_of_the_parabola_through_three(vertex):
+    steps = np.arange(-3.0, 4.0)
+    values = 2.0 + 5.0 * (steps - vertex) ** 2
+    assert _between(values, 3) == pytest.approx(vertex, abs=1e-12)
+    assert _between(values, 0) == _between(values, 6) == 0.0  # at an end there is none
+    assert _between(-values, 3) == 0.0
