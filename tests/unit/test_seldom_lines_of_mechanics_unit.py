@@ -21,6 +21,7 @@ from fegear.contact.measured_error import _one_way, measured_error
 from fegear.contact.plane.fe_compliance import FiniteElementCompliance
 from fegear.contact.plane.tooth_table import RootTable
 from fegear.contact.rack import over_stroke
+from fegear.contact.rack.rack_teeth import RackTeeth
 from fegear.contact.unloaded.separation import Helix
 from fegear.contact.wide import over_revolution, spots, tip_edges
 from fegear.contact.wide.loaded_pair import LoadedWidePair
@@ -156,6 +157,21 @@ def test_a_stroke_that_is_off_the_path_shares_nothing():
     one = over_stroke.base_pitch(None, Found(), 100.0, 4, x)
     assert one.x.size == 0
     assert [np.shape(part) for part in vars(one).values() if isinstance(part, np.ndarray)][1] == (3, 0)
+
+
+def test_compliance_of_a_rack_s_tooth_is_that_in_modules_over_young_s_modulus():
+    asked = []
+
+    def compliance(height, patch, half_width):
+        asked.append((height.tolist(), patch, float(half_width)))
+        return 3.0 + height
+
+    tooth = SimpleNamespace(self_compliance=compliance, log_slope=0.6)
+    rack = SimpleNamespace(module=2e-3, material=SimpleNamespace(young_modulus=2e11))
+    teeth = SimpleNamespace(rack=rack, patch=0.1, solved=SimpleNamespace(loaded=lambda i: tooth))
+    assert RackTeeth.self_compliance(teeth, 4, [1e-3, -2e-3], 4e-5) == pytest.approx([3.5 / 2e11, 2.0 / 2e11])
+    assert asked == [([0.5, -1.0], 0.1, pytest.approx(0.02))]
+    assert RackTeeth.log_slope.fget(teeth) == pytest.approx(0.6 / 2e11)
 
 
 def test_helices_are_chosen_by_a_mask():
