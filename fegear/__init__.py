@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from fegear.workbench.fillet import fillet_design
     from fegear.workbench.gear import Gear
     from fegear.workbench.measured import gauge, measured_transmission_error
+    from fegear.workbench.moving import dynamic_factor, vibration_revolution
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import (
-        dynamic_factor,
         flank_design,
         load_sharing,
         mesh_stiffness_revolution,
@@ -39,6 +39,7 @@ __all__ = [
     "FegearError", "Gear", "InputError", "Pair", "Rack", "Results", "__version__", "compute", "crosscheck",
     "dynamic_factor", "fillet_design", "flank_design", "gauge", "load_sharing", "measured_transmission_error",
     "mesh_stiffness_revolution", "rating", "relief", "root_stress", "run", "stiffness_table", "transmission_error",
+    "vibration_revolution",
 ]  # fmt: skip
 
 #: Modules of the names above, besides the version.
@@ -51,7 +52,7 @@ _HOMES = {
     "Results": "workbench.results",
     "compute": "workbench.any_result",
     "crosscheck": "workbench.any_result",
-    "dynamic_factor": "workbench.questions",
+    "dynamic_factor": "workbench.moving",
     "fillet_design": "workbench.fillet",
     "flank_design": "workbench.questions",
     "gauge": "workbench.measured",
@@ -64,6 +65,7 @@ _HOMES = {
     "run": "workbench.run",
     "stiffness_table": "workbench.questions",
     "transmission_error": "workbench.questions",
+    "vibration_revolution": "workbench.moving",
 }
 
 #: Old names of the top: the name of now, and the release since which it is that. An old name works, and warns, for at

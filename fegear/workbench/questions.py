@@ -15,12 +15,10 @@ from fegear.case.reading import Scene, build_scene
 from fegear.workbench.gear import Gear
 from fegear.workbench.given import cache_of, table, taken, working_folder
 from fegear.workbench.pair import Pair
-from fegear.workbench.quantities import Force, Length, Speed, Torque, brief, in_si, listed
+from fegear.workbench.quantities import Force, Length, Torque, brief, in_si, listed
 from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
 
-#: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
-DAMPING_RATIO = 0.1
 #: Torques of a range "150 to 300 N m": both ends and the middle.
 _IN_RANGE = 3
 
@@ -39,6 +37,7 @@ _TITLES = {
     "fillet-design": "Fillet",
     "flank-design": "Flanks",
     "dynamic-factor": "Dynamic factor",
+    "vibration-revolution": "Vibration over a revolution",
     "rating": "Rating",
 }
 
@@ -432,62 +431,3 @@ def flank_design(
     loads = {"loads": document["pair"][pair.name]["loads"]} if "loads" in document["pair"][pair.name] else {}
     document["flank_design"] = {"pair": pair.name, **loads, **table(design, "design")}
     return ask_of_pair("flank-design", pair, document, effects, tolerance, progress, cache, neglected=False)
-
-
-def dynamic_factor(
-    pair: Pair,
-    *,
-    torque: Torque,
-    speeds: Speed | Iterable[Speed] | Mapping[str, Any],
-    damping_ratio: float | None = None,
-    train: Mapping[str, Any] | None = None,
-    dynamics: Mapping[str, Any] | None = None,
-    effects: Mapping[str, Any] | None = None,
-    tolerance: float | None = None,
-    neglected: bool = False,
-    progress: bool | None = None,
-    cache: SolutionCache | None = None,
-) -> Results:
-    """Largest force on a tooth pair over the mean mesh force, at each speed; teeth may part.
-
-    Parameters
-    ----------
-    pair : Pair
-    torque : torque
-        On the driver.
-    speeds : speed, iterable of speeds, or mapping
-        Of the driver; a mapping as in a case file, ``{"start": "2000 rpm", "stop": "16000 rpm", "count": 57}``.
-    damping_ratio : float, optional
-        Of the mesh. The default, which a remark reports, is that of NASA TM-89901; measure or compare before you
-        promise anything.
-    train : mapping, optional
-        ``[train]`` of a case file. By default the two gears turn, with the inertia of their
-        teeth and bodies, between steady torques, without shafts.
-    dynamics : mapping, optional
-        More keys of ``[dynamics]``: ``direction``, ``tolerance``, ...
-    effects, tolerance, neglected, progress, cache
-        As in `transmission_error`; stiffness varies over the mesh cycle and teeth may part.
-
-    Returns
-    -------
-    Results
-        Table ``dynamic_factor_<pair>``, values ``<pair>.largest_dynamic_factor``, ``<pair>.speed_of_largest``.
-    """
-    document = loaded_document(pair, torque, None)
-    driver, driven = pair.names
-    ratio = DAMPING_RATIO if damping_ratio is None else damping_ratio
-    document["train"] = table(train, "train") if train is not None else {
-        "body": {"driver": {"gears": [driver]}, "driven": {"gears": [driven]}},
-        "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": ratio}},
-        "torque": {"driver": torque}, "balance": "driven",
-    }  # fmt: skip
-    several = speeds if isinstance(speeds, Mapping) else listed(speeds, "speeds") or [speeds]
-    whose = {"speed_of": "driver"} if train is None else {}
-    document["dynamics"] = {"speeds": several, **whose, **table(dynamics, "dynamics")}
-    found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache, neglected=neglected)
-    if train is not None:
-        return found
-    said = "Train not specified: gears with their own inertia under constant torques, without shafts."
-    if damping_ratio is None:
-        said += f" Damping ratio of the mesh not specified, {ratio:g} assumed."
-    return replace(found, plan=replace(found.plan, remarks=(*found.plan.remarks, said)))

@@ -18,7 +18,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.table import Column as TableColumn
 from fegear.engine.table import Table as RunTable
 from fegear.results.catalogue import STAGES
-from fegear.workbench import questions
+from fegear.workbench import moving, questions
 from fegear.workbench.pair import Pair
 from fegear.workbench.results import Results
 
@@ -164,7 +164,7 @@ def test_two_gears_turn_between_steady_torques_where_no_train_is_given(pair, mon
         plan: Plan = field(default_factory=Plan)
 
     documents = []
-    monkeypatch.setattr(questions, "ask_of_pair", lambda *given, **how: documents.append(given[2]) or Found())
+    monkeypatch.setattr(moving, "ask_of_pair", lambda *given, **how: documents.append(given[2]) or Found())
     found = fegear.dynamic_factor(pair, torque="90 N*m", speeds="9000 rpm")
     (document,) = documents
     assert document["train"] == {
@@ -182,6 +182,13 @@ def test_two_gears_turn_between_steady_torques_where_no_train_is_given(pair, mon
     assert told.plan.remarks[1].endswith("without shafts.")
     own = fegear.dynamic_factor(pair, torque="90 N*m", speeds={"start": "1 rpm"}, train={"balance": "x"})
     assert (documents[2]["train"], documents[2]["dynamics"]) == ({"balance": "x"}, {"speeds": {"start": "1 rpm"}})
+    assert own.plan.remarks == ("first",)
+    turned = fegear.vibration_revolution(pair, torque="90 N*m", speed="9000 rpm", dynamics={"tolerance": 1e-3})
+    assert documents[3]["train"] == document["train"]
+    assert documents[3]["dynamics"] == {"speed_of": "driver", "speed": "9000 rpm", "tolerance": 1e-3}
+    assert turned.plan.remarks == found.plan.remarks
+    own = fegear.vibration_revolution(pair, torque="90 N*m", speed="1 rpm", train={"balance": "x"})
+    assert (documents[4]["train"], documents[4]["dynamics"]) == ({"balance": "x"}, {"speed": "1 rpm"})
     assert own.plan.remarks == ("first",)
 
 

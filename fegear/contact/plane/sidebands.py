@@ -46,7 +46,7 @@ class ConditionIndicators:
 
     residual_rms: float = shown("um", "RMS of the residual (transmission error without mesh harmonics)")
     residual_kurtosis: float = shown("", "kurtosis of the residual (3 for a normal distribution)")
-    fm0: float = shown("", "FM0: peak-to-peak of the transmission error by the sum of its mesh harmonics")
+    fm0: float = shown("", "FM0: peak-to-peak of the transmission error by the sum of its first eight mesh harmonics")
     fm4: float = shown("", "FM4: kurtosis of the difference signal (without mesh harmonics and first sidebands)")
     m6a: float = shown("", "M6A: sixth moment of the difference signal by the cube of its variance")
     energy_ratio: float = shown("", "energy ratio: RMS of the difference signal by that of the regular signal")
