@@ -16,6 +16,8 @@ _MOST = 10
 _ROUGH = 0.5
 #: Above this one `rounded` keeps a single digit, fewer than a single value has that is printed with its error.
 _SAID = 0.1
+#: Shares below this are zero but for rounding.
+_ROUNDING = 1e-12
 #: Counts that sentences write out.
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 
@@ -39,6 +41,8 @@ def percent(share: float, signed: bool = False, whole: bool = False) -> str:
     size = abs(share)
     if not math.isfinite(share):
         return f"{share} %"
+    if size < _ROUNDING:
+        share = size = 0.0
     if whole or size >= 0.1 or size == 0.0:
         decimals = 0
     elif size >= 0.01:

@@ -174,8 +174,8 @@ def test_a_staircase_without_a_column_of_the_torque_is_recognised(history, tmp_p
         (tmp_path / f"{name}.csv").write_text(text)
     steps, steady = (ran(case({"file": f"{name}.csv", "fit": FIT}), tmp_path) for name in ("steps", "steady"))
     (said,) = (one for one in steps.remarks if "from turn to turn" in one)
-    assert said.endswith("the torque was not steady; add its column (torque_column), or give one file per torque.")
-    assert any("the torque was not steady from turn to turn" in one for one in steps.answer.sentences)
+    assert said.endswith("file per torque), or bond or leads of the gauge came loose.")
+    assert any("torque or gauge were not steady from turn to turn" in one for one in steps.answer.sentences)
     assert not any("from turn to turn" in one for one in steady.remarks)
 
 

@@ -467,3 +467,17 @@ def test_what_tip_edges_change_of_a_helical_gauge_is_what_a_run_with_them_has():
 def test_the_remedy_of_a_rough_strain_is_that_of_its_model(width, remedy):
     scene = build_scene(changed(pair__p={**CASE["pair"]["p"], **width}), "case", Path())
     assert GAUGE.inputs(scene, "g").sharper == remedy
+
+
+def test_a_half_bridge_that_was_read_as_one_gauge_is_named(plain, tmp_path):
+    """Its ratio to the gauge is that over the whole curve: before and after the contact both fillets have one sign."""
+    history = plain.history
+    degrees, difference = np.degrees(history.angle), (history.strain - history.strain_opposite)[:, 0] * 1e6
+    table = np.column_stack([degrees, difference])
+    for arms, words in ((1.0, "a quarter bridge (set bridge)"), (2.0, "two equal and opposite strains (set bridge)")):
+        np.savetxt(
+            tmp_path / "half.csv", table / [1.0, arms], delimiter=",", header="angle [deg],strain [um/m]", comments=""
+        )
+        measured = {"file": "half.csv", "fit": ["offset", "scale"]}
+        data = ran(changed({"measured": measured, "placement_tolerance": "0.01 mm"}), tmp_path).data
+        assert f"likeliest cause: a half bridge with the other fillet, evaluated as {words}" in data.judged

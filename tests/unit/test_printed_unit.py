@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from fegear.base.printed import figures, with_its_error, with_rough_error
+from fegear.base.printed import figures, percent, with_its_error, with_rough_error
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,8 @@ def test_a_rough_number_has_its_error_where_one_digit_would_stay(error, text):
 def test_a_value_and_its_error_end_at_the_same_digit(value, error, text):
     """Above errors of 100 the value kept its units: "1852 +- 317 MPa"."""
     assert with_its_error(value, error) == text
+
+
+def test_rounding_is_no_share():
+    assert percent(5.6e-16) == percent(-3e-15) == percent(0.0)
+    assert percent(1e-9) == "0.00000010 %"

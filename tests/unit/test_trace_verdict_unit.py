@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fegear.base.notes import NoteClass
 from fegear.contact.fitted_curve import fit_curve
 from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
+from fegear.contact.once_per_turn import OncePerTurn
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
-from fegear.results.pair.trace_named import drawn_as, left_out, thinned
+from fegear.results.pair.trace_named import drawn_as, left_out, runout_named, thinned
 from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, verdict
 
 ANGLE = np.linspace(-0.4, 0.5, 300)
@@ -256,3 +258,30 @@ def test_the_limit_of_encoders_is_the_scatter_between_teeth():
     assert other.gain_scatter == pytest.approx(one.gain_scatter, rel=0.1)
     few = replace(measured, by_teeth=measured.by_teeth[:2])
     assert beside_computed(few, X, HEAVY, 8e-3, ("offset", "scale")).gain_scatter > 0.0
+
+
+@pytest.mark.parametrize("gains", [(1.0, 1.0, 0.7, 0.7), (0.7, 1.0, 0.7, 1.0)])
+def test_a_trace_that_is_not_steady_does_not_agree_by_its_own_scatter(gains):
+    four = np.arange(0.0, 8.0 * math.pi, 0.01) - 2.0  # turns begin outside the mesh
+    turn = np.minimum((four + 2.0) / (2.0 * math.pi), 3.99).astype(int)
+    place = np.mod(four + math.pi, 2.0 * math.pi) - math.pi
+    measured = np.array(gains)[turn] * np.interp(place, ANGLE, STRAIN, left=0.0, right=0.0)
+    measured += np.random.default_rng(8).normal(0.0, 4e-6, four.size)
+    found = fit_curve(four, measured, ANGLE, STRAIN, ("offset", "scale"))
+    said = verdict(found, PEAK)
+    assert "15 % below the computed one; this cannot be judged: measured / computed strain is 0.70 to 1.00 from" in said
+    assert said.kind is NoteClass.BEYOND_TOLERANCE
+    assert said.word == "cannot be judged: 15 % below, not steady"
+    steady = fit_curve(four, measured / np.array(gains)[turn], ANGLE, STRAIN, ("offset", "scale"))
+    assert verdict(steady, PEAK).word.startswith("agrees: ")
+    assert "not steady" not in verdict(steady, PEAK).word
+
+
+def test_what_a_wrong_description_leaves_is_no_runout():
+    often = np.tile(strain()[::4], 4)[: TURNS.size]
+    found = fit_curve(TURNS, often, ANGLE, STRAIN, ("offset", "scale"))
+    waving = replace(found, wave=OncePerTurn(3e-5, 1e-7, 0.2))
+    assert waving.likeness < 0.6
+    assert runout_named(waving) == ""
+    told = replace(fit_curve(TURNS, strain(), ANGLE, STRAIN, ("offset", "scale")), wave=waving.wave)
+    assert runout_named(told).startswith("once per turn the measured strain has 30 µm/m")

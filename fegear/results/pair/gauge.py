@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.base.notes import about
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
@@ -152,13 +154,33 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         gauge.load_tolerance, asked.speed, found,
         Otherwise(
             better, gauge.side, history.pair.gear(gauge.member).teeth, torques, gauge.second,
-            0.0 if bridge else abs(float(history.peak_opposite[at] / history.strain[history.peak_position(at), at])),
+            0.0 if bridge else _other_fillet(history, at, free=found is not None and "offset" in found.fit),
         ),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
         levels, {effect: one.change for effect, one in neglected.items()},
         including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
         followed.more if asked.in_bridge else {},
     )  # fmt: skip
+
+
+def _other_fillet(history: GaugeHistory, at: int, *, free: bool) -> float:
+    """Strain of an equal gauge in the other fillet over that of the gauge, in size, by least squares over the curve.
+
+    Peaks have another ratio: the strain before and after the contact of the tooth has one sign in both fillets.
+
+    Parameters
+    ----------
+    history : GaugeHistory
+    at : int
+        Number of the load.
+    free : bool
+        Whether an offset is fitted.
+    """
+    rotation = np.linspace(history.angle[0], history.angle[-1], 2 * history.angle.size)  # samples are uniform in it
+    own, other = (np.interp(rotation, history.angle, of[:, at]) for of in (history.strain, history.strain_opposite))
+    if free:
+        own, other = own - own.mean(), other - other.mean()
+    return abs(float(own @ other / (own @ own)))
 
 
 def _gains(gauge: Gauge, found: FittedCurve | None, more: dict[str, StrainWith]) -> dict[str, float]:

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 #: Times the placement tolerance up to which the change with the place goes on as at its ends.
 _BEYOND = 2.5
-#: Relative difference from the ratio of a half bridge over both fillets within which that is named.
-_OF_BRIDGE = 0.02
+#: Relative difference from the ratio of a half bridge over both fillets within which that is named, by the number of
+#: arms that it was divided by: of two the ratio is near one, where a grid or a torque may be the reason as well.
+_OF_BRIDGE = {2.0: 0.02, 1.0: 0.05}
 #: Measured below computed strain by less than this may be resistance of leads.
 _LEADS = 0.1
 
@@ -73,7 +74,7 @@ def likely_causes(
     displacement, gains : ndarray, shape (G,)
         Of grids within the placement tolerance [m], and measured / computed strain that each would give.
     fillet_ratio : float
-        Peak of an equal gauge in the other fillet over that of the gauge, in size; zero where it is not known.
+        Strain of an equal gauge in the other fillet over that of the gauge, in size; zero where it is not known.
     leads : bool
         Whether it may be a quarter bridge, whose leads count.
     """
@@ -107,6 +108,6 @@ def _of_bridge(ratio: float, fillet_ratio: float) -> str:
     if not fillet_ratio:
         return ""
     for arms, said in ((2.0, "two equal and opposite strains"), (1.0, "a quarter bridge")):
-        if abs(ratio / ((1.0 + fillet_ratio) / arms) - 1.0) <= _OF_BRIDGE:
+        if abs(ratio / ((1.0 + fillet_ratio) / arms) - 1.0) <= _OF_BRIDGE[arms]:
             return f"a half bridge with the other fillet, evaluated as {said} (set bridge)"
     return ""

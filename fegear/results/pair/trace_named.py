@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 _DRAWN = 2000
 #: Difference of the gains of turns from which on the torque was not steady: of the gain, and in noise of a single one.
 _STEPPED, _OF_NOISE = 0.15, 8.0
+#: Correlation of the shapes below which the rest of a trace is no runout, and smallest part of the largest gain of its
+#: turns that is still a torque: where the curve is not found in a turn at all the angle is wrong.
+_OF_ITS_CURVE, _FOUND = 0.6, 0.05
 
 
 def drawn_as(found: FittedCurve | None) -> str:
@@ -64,6 +67,8 @@ def runout_named(found: FittedCurve | None) -> str:
     """What a trace has once per turn, a sentence without a subject; empty where that is little."""
     if found is None or (wave := found.wave) is None or not (found.wave_less or found.unfitted_runout):
         return ""
+    if not found.wave_less and found.likeness < _OF_ITS_CURVE:
+        return ""
     size = with_rough_error(wave.amplitude * 1e6, wave.error * 1e6)
     measured, place = (
         math.degrees(one or 0.0) for one in (found.runout_measured_angle, found.runout_angle)
@@ -83,11 +88,11 @@ def unsteady_named(found: FittedCurve | None) -> str:
         return ""
     low, high = float(gains.min()), float(gains.max())
     one = found.gain_noise * math.sqrt(gains.size)
-    if found.gain <= 0.0 or high - low <= max(_STEPPED * abs(found.gain), _OF_NOISE * one):
+    if found.gain <= 0.0 or low < _FOUND * high or high - low <= max(_STEPPED * abs(found.gain), _OF_NOISE * one):
         return ""
     return (
-        f"measured / computed strain is {low:.2f} to {high:.2f} from turn to turn: the torque was not steady; add its "
-        "column (torque_column), or give one file per torque"
+        f"measured / computed strain is {low:.2f} to {high:.2f} from turn to turn: the torque was not steady (add its "
+        "column, torque_column, or give one file per torque), or bond or leads of the gauge came loose"
     )
 
 

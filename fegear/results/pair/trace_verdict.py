@@ -158,7 +158,8 @@ class Otherwise(BetterDescribed):
     second : str
         Other gauge of the half bridge that measured; empty for none.
     fillet_ratio : float
-        Peak of an equal gauge in the other fillet over that of the gauge, in size; zero where it is not known.
+        Strain of an equal gauge in the other fillet over that of the gauge, in size and as traces are compared, over
+        the whole curve; zero where it is not known.
     """
 
     side: str = ""
@@ -272,7 +273,7 @@ class BesideTrace:
     @property
     def runout(self) -> str:
         """What the measured strain has once per turn; empty where that is little."""
-        return runout_named(self.compared)
+        return "" if self.otherwise.better else runout_named(self.compared)
 
     @property
     def unsteady(self) -> str:
@@ -341,9 +342,17 @@ def verdict(
             NoteClass.BEYOND_TOLERANCE, word=f"cannot be judged: {by}",
         )  # fmt: skip
     limit = f"limit {percent(together)}" + ("" if brief else f": {limits.parts(off)}")
+    unsteady = unsteady_named(found)
+    by_scatter = bool(unsteady) and within and abs(off) > replace(limits, scatter=0.0).together(off)
     effects = " and ".join(peak.neglected)
     kind, word = NoteClass.FAILS, f"does not agree: {by} (limit {percent(together)})"
-    if found.likeness < _ALIKE:  # a gain of another shape proves nothing
+    if by_scatter:  # the less steady a trace is, the more it would agree
+        kind, word = NoteClass.BEYOND_TOLERANCE, f"cannot be judged: {by}, not steady"
+        judged = (
+            f"measured strain is {by} the computed one; this cannot be judged: measured / computed strain is "
+            f"{found.turn_gains.min():.2f} to {found.turn_gains.max():.2f} from turn to turn ({limit})"
+        )
+    elif found.likeness < _ALIKE:  # a gain of another shape proves nothing
         word = f"differs in shape: correlation {found.likeness:.3f}"
         or_fit = "" if "shift" in found.fit else ", or fit shift"
         judged = (
@@ -361,6 +370,7 @@ def verdict(
         )
     elif within:
         kind, word = NoteClass.INFORMATION, f"agrees: {by} (limit {percent(together)})"
+        word += ", not steady" if unsteady else ""
         judged = f"measured strain agrees with the computed one: {by} it ({limit}){_explained(peak, limits, off)}"
     else:
         also = f", {_by(with_them)} it with {effects}" if missing else ""
@@ -375,7 +385,7 @@ def verdict(
         drift = found.unfitted_drift
         judged += f"; {saturated}" if (saturated := saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
-        steps = "; the torque was not steady from turn to turn" if unsteady_named(found) else ""
+        steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
         return Judged(judged + drifts + steps, kind, word=word)
     if not found.fits:
         return Judged(judged, kind, word=word)
