@@ -6,9 +6,10 @@ import csv
 
 import numpy as np
 import pytest
+from scipy.io import loadmat
 
 from fegear.engine.table import Column, Table
-from fegear.output.tables import table_text
+from fegear.output.tables import table_text, write_table
 
 
 @pytest.mark.parametrize(
@@ -35,3 +36,13 @@ def test_numbers_stay_numbers_and_what_is_none_is_blank():
     found = np.array([[float(cell or "nan") for cell in line.split(",")] for line in text.splitlines()[1:]])
     np.testing.assert_allclose(found[:, 0], np.where(np.isfinite(values), values, np.nan), rtol=1e-11)
     assert found[:, 1].tolist() == [-1, 2, -3, 4, 5]
+
+
+def test_columns_of_texts_of_any_length_are_read_back_from_mat(tmp_path):
+    """As those of a dynamic factor over speed: the kind of each motion beside its numbers."""
+    kinds = ["periodic", "not periodic", "growing"]
+    columns = (Column("dynamic_factor", np.array([1.0, 2.0, np.inf])), Column("motion", np.array(kinds)))
+    write_table(tmp_path, Table("dynamic_factor_I", columns, "Dynamic factor", matlab=True))
+    read = loadmat(tmp_path / "dynamic_factor_I.mat", simplify_cells=True)
+    assert [kind.strip() for kind in read["motion"]] == kinds  # a matrix of characters, as MATLAB has them
+    assert read["dynamic_factor"].tolist() == [1.0, 2.0, np.inf]

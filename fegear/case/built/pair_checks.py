@@ -105,7 +105,8 @@ def check_odd_teeth(scene: Scene, name: str) -> None:
     if source != "fe" and (scene.case.gear[part.driver].odd_tooth or scene.case.gear[part.driven].odd_tooth):
         raise InputError(
             key, "true", f'is not available with pair.{name}.compliance.source = "{source}"',
-            f'set pair.{name}.compliance.source = "fe", or switch the effect off',
+            f'set pair.{name}.compliance.source = "fe", or switch the effect off; formula of a cracked tooth: '
+            "fegear.formulas.potential_energy_simplified in Python",
         )  # fmt: skip
 
 

@@ -354,7 +354,7 @@ _SHEET = Sheet(
         ),
         Rows(
             "mesh_stiffness_orders_{name}", "Orders of transmission error and mesh stiffness of {name}",
-            (Every("orders"),), of="orders",
+            (Every("orders"),), of="orders", matlab=True,
         ),
     ),
     values=(

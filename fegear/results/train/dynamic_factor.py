@@ -348,7 +348,7 @@ _SHEET = Sheet(
                 Cell("multiplier", "multiplier"), Cell("repetitions", "averaged.repetitions"),
                 Cell("difference", "averaged.difference"), Off("dynamic_factor", "errors"),
             ),
-            of="chart",
+            of="chart", matlab=True,
         ),
     ),
     values=(

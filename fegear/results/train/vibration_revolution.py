@@ -79,7 +79,10 @@ _SHEET = Sheet(
             "vibration_revolution_{name}", "Vibration of mesh {name} over {d.cycles} base pitches",
             (Every("revolution"),), matlab=True,
         ),
-        Rows("vibration_orders_{name}", "Orders of the vibration of mesh {name}", (Every("orders"),), of="orders"),
+        Rows(
+            "vibration_orders_{name}", "Orders of the vibration of mesh {name}", (Every("orders"),), of="orders",
+            matlab=True,
+        ),
     ),
     values=(
         "mesh_force_max", "dynamic_te_residual_max",
