@@ -102,11 +102,15 @@ class Undercut(NamedTuple):
     profile_shift : float
     enough : float
         Profile shift from which on nothing is cut away, rounded up to four digits.
+    straight : float or None
+        Depth h of the rack's straight flank below its reference line [modules], where x_min = h - z sin(alpha)^2 / 2:
+        spur gears whose thickness is that of their profile shift.
     """
 
     lost: float
     profile_shift: float
     enough: float
+    straight: float | None = None
 
 
 def undercut_of(gear: Gear) -> Undercut | None:
@@ -117,7 +121,10 @@ def undercut_of(gear: Gear) -> Undercut | None:
     least, lost = tooth.least_profile_shift, 0.0
     if tooth.profile_shift < least - ROUNDED_SHIFTS:
         lost = (tooth.form_radius - tooth.base_radius) * gear.module
-    return Undercut(lost, tooth.profile_shift, math.ceil(least * 1e4) * 1e-4)
+    straight = tooth.rack.tip_centre_depth + tooth.rack.tip_radius * math.sin(tooth.rack.pressure_angle)
+    by_rule = straight - 0.5 * tooth.teeth * math.sin(tooth.rack.pressure_angle) ** 2
+    holds = gear.helix_angle == 0.0 and abs(by_rule - least) < ROUNDED_SHIFTS
+    return Undercut(lost, tooth.profile_shift, math.ceil(least * 1e4) * 1e-4, straight if holds else None)
 
 
 def _undercut(name: str, found: Undercut) -> Check:

@@ -92,9 +92,11 @@ const fegearGlance = (() => {
     return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
   }
   function ofUndercut() {
-    const cut = pairs[pair]?.mesh?.undercut;
+    const cut = pairs[pair]?.mesh?.undercut, enough = Object.entries(pairs[pair]?.mesh?.enough ?? {});
     if (!cut) return "";
-    return cut.length ? cut.map(({ member, lost, enough }) => `The ${member} gear is undercut: ${Number(lost.toPrecision(2))} mm of its involute are cut away; profile_shift = ${enough.toFixed(4)} and more avoid it.`).join(" ") : "Neither gear is undercut.";
+    if (!cut.length) return `Neither gear is undercut${enough.length ? `; undercut begins below profile_shift = ${enough.map(([member, one]) => `${one.toFixed(4)} (${member})`).join(", ")}` : ""}.`;
+    const why = (straight) => (straight ? ` (x_min = h − z sin²α/2, with h = ${straight.toFixed(3)}: this rack's flank is straight down to h modules below its reference line)` : "");
+    return cut.map(({ member, lost, enough: least, straight }) => `The ${member} gear is undercut: ${Number(lost.toPrecision(2))} mm of its involute above the base circle are cut away; profile_shift = ${least.toFixed(4)} and more avoid it${why(straight)}.`).join(" ");
   }
   function ofPhases() { // harmonic h of N equal mesh forces with delays d adds up to |sum of exp(2 pi i h d)|
     const delay = fegearSets.of(pair)?.data?.meshes.sun.delay.map((one) => ((one % 1) + 1) % 1);

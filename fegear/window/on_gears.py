@@ -16,7 +16,7 @@ from fegear.base.errors import FegearError
 from fegear.engine.plan import make_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.results.gear.drawing import moving_pair, tool_envelope, undercut_in_mesh
+from fegear.results.gear.drawing import moving_pair, tool_envelope, undercut_in_mesh, undercut_limits
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -259,9 +259,16 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
         "rows": rows,
         "ratios": ratios,
         "undercut": [
-            {"member": member, "lost": one.lost * 1e3, "shift": one.profile_shift, "enough": one.enough}
+            {
+                "member": member,
+                "lost": one.lost * 1e3,
+                "shift": one.profile_shift,
+                "enough": one.enough,
+                "straight": one.straight,
+            }
             for member, one in undercut_in_mesh(pair).items()
         ],
+        "enough": undercut_limits(pair),
         "wide": name in scene.wide_pairs,
         "refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)},
     }

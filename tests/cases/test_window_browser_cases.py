@@ -236,6 +236,8 @@ def asked_and_answered(browser) -> None:
         answers.append(browser.run(answer))
     ratio = browser.run("(({ data }) => (data.end - data.start) / data.base_pitch)(fegearGears.inside('I'))")
     assert f"= {ratio:.3f}" in answers[3]
+    limit = browser.run("fegearGears.inside('I').data.enough.driver")
+    assert f"{limit:.4f} (driver)" in answers[2]
     assert f"2 (ε − 1)/ε = {100 * 2 * (ratio - 1) / ratio:.0f} %" in answers[0]
     assert answers[5].startswith("The peak-to-peak transmission error is ")
     # the gears as they are shown, as a file that holds by itself

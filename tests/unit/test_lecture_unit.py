@@ -34,6 +34,7 @@ def test_undercut_is_said_before_anything_is_solved():
     # with its rounding of 0.25 modules the straight part of the rack's tip reaches 1.25 - 0.25 (1 - sin 20 deg) deep
     sine = np.sin(np.radians(20.0))
     assert found["enough"] == pytest.approx(1.25 - 0.25 * (1.0 - sine) - 14 * sine**2 / 2, abs=1e-4)
+    assert found["straight"] == pytest.approx(1.25 - 0.25 * (1.0 - sine), rel=1e-12)
     assert found["member"] == "driver"
     assert found["lost"] == pytest.approx(5.0 * (tooth.form_radius - tooth.base_radius), rel=1e-9)
     (said,) = run(scene).outcomes[Task("geometry", "")].answer.sentences
