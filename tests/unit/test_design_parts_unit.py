@@ -83,11 +83,12 @@ def test_every_candidate_is_held_against_the_same_loads_and_errors(own, given, o
     part = SimpleNamespace(given=given, load_factors="factors", spacing_errors="spacing", relief_errors="errors")
     upstream = {Task(name, "I"): found for name, found in (("loaded-pair", None), ("relief", designed))}
     data = _compute_robustness(
-        RobustnessInputs(part, "metric", own, "I"), upstream, SimpleNamespace(progress=told.append)
+        RobustnessInputs(part, "metric", own, 0.03, "I"), upstream, SimpleNamespace(progress=told.append)
     )
     names = ["designed", "linear tip relief", "parabolic tip relief", *(["relief of the case"] if own else []),
              "no relief"]  # fmt: skip
     assert data.recommended == "parabolic tip relief"
+    assert data.torque == pytest.approx(2.1)  # 70 N at 30 mm
     assert list(data.candidates) == names
     assert list(data.candidates.values()) == [f"of {k + 1}" for k in range(len(names))]
     assert [one[0] for one in asked[:3]] == [Engaged(), ("linear", Engaged()), ("parabolic", Engaged())]
@@ -107,7 +108,7 @@ def held(nominal, *values):
 
 
 def test_the_answer_is_about_the_relief_to_grind_beside_no_relief():
-    """It was about the relief with the smallest maximum, whatever the design says to grind."""
+    """It was about the relief with the smallest maximum, whatever the design says to grind; loads were factors."""
     none = held(3.0, 1.5, 5.0, 3.0, 8.0)
     every = {
         "linear tip relief": held(0.9, 1.2, 4.0, 0.9, 6.0), "parabolic tip relief": held(0.8, 1.6, 4.0, 0.8, 7.0),
@@ -115,17 +116,17 @@ def test_the_answer_is_about_the_relief_to_grind_beside_no_relief():
     }  # fmt: skip
 
     def said(label):
-        return list(_worst_in_words(SimpleNamespace(name="I", data=RobustnessData(every, label))))
+        return list(_worst_in_words(SimpleNamespace(name="I", data=RobustnessData(every, label, 260.0))))
 
     first, *rest = said("parabolic tip relief")
     assert first == (
-        "Pair I, parabolic tip relief: 0.8 µm at the design load, at most 7 µm (load factor 1, pitch deviation 4 µm, "
+        "Pair I, parabolic tip relief: 0.8 µm at 260 N m, at most 7 µm (260 N m, pitch deviation 4 µm, "
         "relief +0 %); without relief 3 µm and at most 8 µm."
     )
     assert rest == [
         (
-            "Pair I, parabolic tip relief: more than without relief in 1 of 4 combinations, e.g. 1.6, not 1.5 µm (load "
-            "factor 0.5, pitch deviation 0 µm, relief +0 %)."
+            "Pair I, parabolic tip relief: more than without relief in 1 of 4 combinations, e.g. 1.6, not 1.5 µm "
+            "(130 N m, pitch deviation 0 µm, relief +0 %)."
         ),
         "Pair I: linear tip relief gives the smallest maximum, 6 µm.",
     ]

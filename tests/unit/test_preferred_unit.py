@@ -6,6 +6,7 @@ import pytest
 from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
 from fegear.design.preferred import classes_finer, preferred
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.formulas.iso1328 import flank_tolerances
 
 DRAWN = {"a": 2.4, "b": 2.5, "c": 3.0}
 
@@ -53,3 +54,23 @@ def test_a_finer_class_has_finer_amounts_of_all_that_is_ground():
     assert both.finest == 5
     np.testing.assert_allclose(both.finer(2).amounts, 0.5 * both.amounts)
     assert FlankTolerance((tip, tip)).finer(1).lead is None
+
+
+def test_a_finer_class_is_rounded_from_its_own_tolerance_not_from_the_rounded_one_of_a_coarser_class():
+    """22 teeth of 2.25 mm: class 3 of 4.9495 um is 2.4747, rounded 2.5 um; 4.9 um halved is 2.45."""
+    allowed = flank_tolerances(5, 49.5e-3, 2.25e-3, 27e-3)
+    tip = TipTolerance(allowed.rounded.profile_slope, None, 6e-6, "f_Hα of class 5", 5, allowed.profile_slope)
+    assert tip.amount == pytest.approx(4.9e-6)
+    lead = LeadTolerance(
+        allowed.rounded.helix_slope, 4e-6, tip.amount, (allowed.helix_slope, None, allowed.profile_slope)
+    )
+    both = FlankTolerance((tip, tip), lead)
+    for classes in range(5):
+        own = flank_tolerances(5 - classes, 49.5e-3, 2.25e-3, 27e-3).rounded
+        finer = both.finer(classes)
+        assert finer.tips[0].amount == pytest.approx(own.profile_slope, rel=1e-12)
+        assert finer.lead.slope == pytest.approx(own.helix_slope, rel=1e-12)
+        assert finer.lead.twist == finer.tips[0].amount
+        assert finer.lead.crowning == pytest.approx(4e-6 * 0.5 ** (0.5 * classes))  # as the case gives it
+    assert both.finer(1).finer(1) == both.finer(2)
+    assert tip.finer(2).amount == pytest.approx(2.5e-6)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.gear_deviations import gear_deviations, own_deviation
+from fegear.case.built.gear_deviations import own_deviation
 from fegear.case.built.members import gear_name
 from fegear.case.design import TipTolerancePart
 from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance
@@ -42,21 +42,19 @@ def flank_tolerance(scene: Scene, name: str) -> FlankTolerance:
     """Tolerances of all that is ground on a pair of teeth with a width; lead is that of the gear that bears it."""
     asked, pair = _asked(scene), scene.pairs[name]
     bearer = lead_bearer(pair)
-    gear, part = pair.gear(bearer), scene.case.gear[gear_name(scene, name, bearer)]
-    grade = _class_of(part)
-    tips = tip_tolerances(scene, name)
-    try:
-        allowed = tolerances_of(gear, grade).rounded
-        slope = gear_deviations(part, gear, grade, ["helix_slope"], rounded=True)["helix_slope"]
-    except RangeError:
-        allowed = _inside_the_standard(gear, grade)
-        slope = allowed.helix_slope
-    lead = LeadTolerance(
-        slope if asked.helix_slope is None else asked.helix_slope,
-        allowed.helix_form if asked.crowning is None else asked.crowning,
-        tips[MEMBERS.index(bearer)].amount,
+    part = scene.case.gear[gear_name(scene, name, bearer)]
+    by_class = _by_class(part, pair.gear(bearer))
+    tip = tip_tolerances(scene, name)
+    twist = tip[MEMBERS.index(bearer)]
+    slope = asked.helix_slope if asked.helix_slope is not None else own_deviation(part, "helix_slope")
+    exact = (
+        by_class.helix_slope if slope is None else None,
+        by_class.helix_form if asked.crowning is None else None,
+        twist.unrounded,
     )
-    return FlankTolerance(tips, lead)
+    slope = by_class.rounded.helix_slope if slope is None else slope
+    crowning = by_class.rounded.helix_form if asked.crowning is None else asked.crowning
+    return FlankTolerance(tip, LeadTolerance(slope, crowning, twist.amount, exact))
 
 
 def _asked(scene: Scene) -> TipTolerancePart:
@@ -67,24 +65,28 @@ def _class_of(part: GearPart) -> int:
     return USUAL_CLASS if part.tolerance_class is None else part.tolerance_class
 
 
-def _inside_the_standard(gear: Gear, grade: int) -> FlankTolerances:
-    """Tolerances of the nearest gear that the standard has."""
-    diameter, module = np.clip(2.0 * gear.pitch_radius, *_DIAMETER), np.clip(gear.module, *_MODULE)
-    return flank_tolerances(grade, float(diameter), float(module), _FACE).rounded
+def _by_class(part: GearPart, gear: Gear) -> FlankTolerances:
+    """Unrounded tolerances of a gear's class; beyond the standard's sizes those of the nearest gear that it has."""
+    grade = _class_of(part)
+    try:
+        return tolerances_of(gear, grade)
+    except RangeError:
+        diameter, module = np.clip(2.0 * gear.pitch_radius, *_DIAMETER), np.clip(gear.module, *_MODULE)
+        return flank_tolerances(grade, float(diameter), float(module), _FACE)
 
 
 def _tolerance(part: GearPart, gear: Gear, asked: TipTolerancePart) -> TipTolerance:
-    grade = _class_of(part)
-    try:
-        found = gear_deviations(part, gear, grade, ("profile_slope", "profile_form"), rounded=True)
-        slope, form = found["profile_slope"], found["profile_form"]
-    except RangeError:
-        usual = _inside_the_standard(gear, grade)
-        slope, form = usual.profile_slope, usual.profile_form
+    by_class = _by_class(part, gear)
+    slope, form = own_deviation(part, "profile_slope"), own_deviation(part, "profile_form")
+    form = by_class.rounded.profile_form if form is None else form
     if asked.amount is not None:
         return TipTolerance(asked.amount, asked.length, form)
-    by_class = None if own_deviation(part, "profile_slope") is not None else grade
-    return TipTolerance(slope, asked.length, form, _origin_of_slope(part), by_class)
+    if slope is not None:
+        return TipTolerance(slope, asked.length, form, _origin_of_slope(part))
+    return TipTolerance(
+        by_class.rounded.profile_slope, asked.length, form, _origin_of_slope(part), _class_of(part),
+        by_class.profile_slope,
+    )  # fmt: skip
 
 
 def _origin_of_slope(part: GearPart) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.design.flanks.forms import NUMBERS, lead_bearer
 from fegear.design.flanks.trials import FlankTrials
-from fegear.design.preferred import CLASS_STEP
 from fegear.design.tip_relief.tip_tolerance import (
     HALVED,
     TIP_NUMBERS,
@@ -19,6 +18,7 @@ from fegear.design.tip_relief.tip_tolerance import (
     LeadNumber,
     TipNumber,
     TipTolerance,
+    finer_tolerance,
 )
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import EndRelief
@@ -44,11 +44,22 @@ class LeadTolerance:
         Of crowning and end relief at the ends of the face.
     twist : float
         Of the flank twist.
+    unrounded : tuple of float or None
+        The same three by class before they are rounded; None where one does not follow a class.
     """
 
     slope: float
     crowning: float
     twist: float
+    unrounded: tuple[float | None, float | None, float | None] = (None, None, None)
+
+    def finer(self, classes: int) -> LeadTolerance:
+        """The same so many classes finer."""
+        sizes = self.slope, self.crowning, self.twist
+        (slope, a), (crowning, b), (twist, c) = (
+            finer_tolerance(size, by_class, classes) for size, by_class in zip(sizes, self.unrounded, strict=True)
+        )
+        return LeadTolerance(slope, crowning, twist, (a, b, c))
 
 
 @dataclass(frozen=True)
@@ -73,11 +84,8 @@ class FlankTolerance:
 
     def finer(self, classes: int) -> FlankTolerance:
         """The same so many classes finer, lengths of tip reliefs as they are."""
-        tips, lead = (self.tips[0].finer(classes), self.tips[1].finer(classes)), self.lead
-        if lead is not None:
-            part = CLASS_STEP**-classes
-            lead = LeadTolerance(lead.slope * part, lead.crowning * part, lead.twist * part)
-        return FlankTolerance(tips, lead)
+        tips = self.tips[0].finer(classes), self.tips[1].finer(classes)
+        return FlankTolerance(tips, None if self.lead is None else self.lead.finer(classes))
 
     @property
     def amounts(self) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from fegear.base.arrays import Array
 from fegear.design.preferred import CLASS_STEP, FINEST
+from fegear.formulas.iso1328 import rounded
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import Member
 from fegear.geometry.relief import EndRelief
@@ -30,6 +31,23 @@ LeadNumber = Literal["crowning", "slope", "twist"]
 TIP_NUMBERS: tuple[TipNumber, ...] = ("amount", "length")
 
 
+def finer_tolerance(size: float, unrounded: float | None, classes: int) -> tuple[float, float | None]:
+    """A tolerance so many classes finer, and the same unrounded [m].
+
+    Each class of ISO 1328-1 is rounded from its own unrounded tolerance (5.2.3): half of a rounded one may differ.
+
+    Parameters
+    ----------
+    size : float
+        As a drawing has it [m].
+    unrounded : float or None
+        By its class [m]; None where it does not follow one, and is not rounded.
+    classes : int
+    """
+    step = CLASS_STEP**-classes
+    return (size * step, None) if unrounded is None else (rounded(unrounded * step), unrounded * step)
+
+
 @dataclass(frozen=True)
 class TipTolerance:
     """By how much the tip relief of a gear may be off, to either side.
@@ -46,6 +64,8 @@ class TipTolerance:
         Where the amount's tolerance comes from, for sentences: "f_Hα of class 5"; empty where the case gives it.
     grade : int or None
         Class of ISO 1328 that the amount's tolerance follows; None where it does not follow one.
+    unrounded : float or None
+        Tolerance of the amount by that class before it is rounded [m]; None where it does not follow one.
     """
 
     amount: float
@@ -53,6 +73,7 @@ class TipTolerance:
     form: float
     origin: str = field(default="", compare=False)
     grade: int | None = None
+    unrounded: float | None = None
 
     @property
     def finest(self) -> int:
@@ -63,7 +84,8 @@ class TipTolerance:
         """The same with an amount that is so many classes finer; the length has no class."""
         grade = None if self.grade is None else self.grade - classes
         origin = "" if grade is None else f"f_Hα of class {grade}"
-        return replace(self, amount=self.amount / CLASS_STEP**classes, origin=origin, grade=grade)
+        amount, unrounded = finer_tolerance(self.amount, self.unrounded, classes)
+        return replace(self, amount=amount, origin=origin, grade=grade, unrounded=unrounded)
 
     def halved(self, number: TipNumber, gear: Gear, tip: EndRelief) -> TipTolerance:
         """The same with half the tolerance of one number of a tip relief."""

@@ -167,7 +167,7 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
         candidates[label] = tip_robustness(more, removal, factors, asked.spacing_errors, asked.relief_errors)
         work.progress((number + 1) / len(removals))
     shapes = [f"{shape} tip relief" for shape in designed.design.shapes]
-    return RobustnessData(candidates, recommended(shapes, candidates))
+    return RobustnessData(candidates, recommended(shapes, candidates), task.load * inputs.base_radius)
 
 
 def _robustness_pairs(scene: Scene) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Task, Upstream, Work
-from fegear.results.relief.answer_numbers import microns, told_apart
+from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.relief import design_pairs, design_part, relief_stage
 from fegear.results.relief.relief_chart import CITES
 
@@ -40,10 +40,14 @@ NO_RELIEF, OWN_RELIEF = "no relief", "relief of the case"
 
 @dataclass(frozen=True)
 class RobustnessData:
-    """How each candidate holds up, by its name; `recommended` is the one that the design says to grind."""
+    """How each candidate holds up, by its name; `recommended` is the one that the design says to grind.
+
+    `torque` is that of the driver at the design load [N m].
+    """
 
     candidates: Mapping[str, Robustness]
     recommended: str
+    torque: float
     candidate: str = shown("", "relief", default="")
 
 
@@ -57,6 +61,8 @@ class RobustnessInputs:
     metric : str
     own_relief : bool
         Whether the relief of the case is a candidate too.
+    base_radius : float
+        Of the driver [m].
     name : str
         Of the pair.
     """
@@ -64,13 +70,15 @@ class RobustnessInputs:
     part: RobustnessPart
     metric: Metric
     own_relief: bool
+    base_radius: float
     name: str = field(compare=False)
 
 
 def robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
     """Collect what a case says of the robustness of a pair's reliefs."""
     part = design_part(scene)
-    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, name)
+    radius = scene.pairs[name].driver.base_radius
+    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, radius, name)
 
 
 def load_factors(asked: RobustnessPart, over: LoadRange | None, load: float) -> list[float]:
@@ -101,7 +109,8 @@ def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work
             inputs.metric,
         )
         work.progress(len(found) / len(states))
-    return RobustnessData(found, recommended([f"{shape} tip relief" for shape in design.shapes], states))
+    shapes = [f"{shape} tip relief" for shape in design.shapes]
+    return RobustnessData(found, recommended(shapes, states), design.task.load * inputs.base_radius)
 
 
 def as_designed(found: Robustness, te: TransmissionError | None, metric: Metric) -> Robustness:
@@ -132,32 +141,34 @@ def _over_load(extreme: Callable[..., Array], width: float) -> Line:
 _EXCITATION = {"peak_to_peak": "peak-to-peak", "effective_error": "effective"}
 
 
-def _combination(found: Robustness, at: tuple[np.intp, ...]) -> str:
-    """Load, pitch deviation and depth of one combination."""
+def _combination(found: Robustness, at: tuple[np.intp, ...], design_torque: float) -> str:
+    """Torque, pitch deviation and depth of one combination."""
     factor, spacing, depth = (
         float(of[i]) for of, i in zip((found.load_factors, found.spacing_errors, found.relief_errors), at, strict=True)
     )
-    return f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} µm, relief {percent(depth, signed=True)}"
+    torque = torque_words(factor * design_torque)
+    return f"{torque}, pitch deviation {spacing * 1e6:g} µm, relief {percent(depth, signed=True)}"
 
 
 def _worst_in_words(seen: Seen) -> Iterator[str]:
     """What the relief to grind gives at most, beside no relief; which other one gives clearly less at most."""
-    label, every = seen.data.recommended, seen.data.candidates
+    label, every, torque = seen.data.recommended, seen.data.candidates, seen.data.torque
     found, none = every[label], every[NO_RELIEF]
     at = np.unravel_index(int(found.values.argmax()), found.values.shape)
     nominal, worst = microns(found.nominal), microns(max(found.worst, found.nominal))
     yield (
-        f"Pair {seen.name}, {label}: {nominal} µm at the design load, at most {worst} µm ({_combination(found, at)}); "
-        f"without relief {microns(none.nominal)} µm and at most {microns(none.worst)} µm."
+        f"Pair {seen.name}, {label}: {nominal} µm at {torque_words(torque)}, at most {worst} µm "
+        f"({_combination(found, at, torque)}); without relief {microns(none.nominal)} µm and at most "
+        f"{microns(none.worst)} µm."
     )
     if label != NO_RELIEF:
-        yield f"Pair {seen.name}, {label}: {_beside_none(found, none)}."
+        yield f"Pair {seen.name}, {label}: {_beside_none(found, none, torque)}."
     least = min(every, key=lambda key: every[key].worst)
     if every[least].worst < CLEARLY * found.worst:
         yield f"Pair {seen.name}: {least} gives the smallest maximum, {microns(every[least].worst)} µm."
 
 
-def _beside_none(found: Robustness, none: Robustness) -> str:
+def _beside_none(found: Robustness, none: Robustness, torque: float) -> str:
     """In how many combinations a relief gives more than none, and in which most of all."""
     worse = int((found.values > none.values).sum())
     if not worse:
@@ -166,7 +177,7 @@ def _beside_none(found: Robustness, none: Robustness) -> str:
     more, less = told_apart(float(found.values[at]), float(none.values[at]))
     return (
         f"more than without relief in {worse} of {found.values.size} combinations, e.g. {more}, not {less} µm "
-        f"({_combination(found, at)})"
+        f"({_combination(found, at, torque)})"
     )
 
 
