@@ -107,7 +107,7 @@ def alternatives(
         except NothingToCompareError:
             continue
         likely.append(Alternative(changes, name, again))
-    good = [one for one in likely if _clearly_better(one.fitted, found)]
+    good = [one for one in likely if clearly_better(one.fitted, found)]
     if not good:
         return ()
     best = min((one.fitted for one in good), key=_left)
@@ -131,7 +131,8 @@ def _descriptions(
             yield changes, name, sign, sense, ("shift",) if shifted else ()
 
 
-def _clearly_better(one: FittedCurve, than: FittedCurve) -> bool:
+def clearly_better(one: FittedCurve, than: FittedCurve) -> bool:
+    """Whether a fit leaves so much less unexplained that noise cannot be the reason."""
     of, left = unexplained(one), unexplained(than)
     times = _LESS_OF_ALIKE if left < 1.0 - _ALIKE**2 else _LESS
     chi_squared = one.samples * (_left(than) - _left(one)) / max(_left(one), 1e-12)

@@ -13,6 +13,7 @@ from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
 from fegear.case.effects import EffectsPart
+from fegear.contact.trace_low_pass import low_pass
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -48,9 +49,12 @@ from fegear.results.pair.trace_verdict import Otherwise
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.gauge_strain import GaugeHistory, StrainWith
+    from fegear.contact.trace_alternatives import Alternative
+    from fegear.contact.trace_low_pass import LowPass
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
 
@@ -155,12 +159,22 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         Otherwise(
             better, gauge.side, history.pair.gear(gauge.member).teeth, torques, gauge.second,
             0.0 if bridge else _other_fillet(history, at, free=found is not None and "offset" in found.fit),
+            _behind(gauge, found, better, history.angle, strain), asked.speed,
         ),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
         levels, {effect: one.change for effect, one in neglected.items()},
         including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
         followed.more if asked.in_bridge else {},
     )  # fmt: skip
+
+
+def _behind(
+    gauge: Gauge, found: FittedCurve | None, better: Sequence[Alternative], angle: Array, strain: Array
+) -> LowPass | None:
+    """The low pass that explains a trace which no other description does."""
+    if gauge.measured is None or found is None or better:
+        return None
+    return low_pass(found, gauge.measured.angle, gauge.measured.strain, angle, strain, gauge.measured.fit)
 
 
 def _other_fillet(history: GaugeHistory, at: int, *, free: bool) -> float:

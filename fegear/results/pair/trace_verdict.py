@@ -15,6 +15,7 @@ from fegear.base.printed import figures, percent
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
+from fegear.contact.trace_low_pass import LowPass
 from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
 from fegear.results.pair.likely_cause import likely_causes, place_of_gain
 from fegear.results.pair.trace_named import (
@@ -160,6 +161,10 @@ class Otherwise(BetterDescribed):
     fillet_ratio : float
         Strain of an equal gauge in the other fillet over that of the gauge, in size and as traces are compared, over
         the whole curve; zero where it is not known.
+    low_pass : LowPass or None
+        With which the trace fits clearly better.
+    speed : float or None
+        Of its gear [rad/s].
     """
 
     side: str = ""
@@ -167,6 +172,31 @@ class Otherwise(BetterDescribed):
     torques: Mapping[str, float] = field(default_factory=dict)
     second: str = ""
     fillet_ratio: float = 0.0
+    low_pass: LowPass | None = None
+    speed: float | None = None
+
+    def of_low_pass(self, found: FittedCurve, size: float) -> str:
+        """That the trace fits behind a low pass, a clause; empty for none.
+
+        Parameters
+        ----------
+        found : FittedCurve
+            The trace as it is described.
+        size : float
+            Computed peak.
+        """
+        if self.low_pass is None:
+            return ""
+        lag, through = self.low_pass.lag, self.low_pass.fitted
+        limit = f"{figures(math.degrees(lag), 2)}° of rotation"
+        if self.speed:
+            cutoff = figures(self.speed / (2.0 * math.pi * lag), 2)
+            limit += f", a limiting frequency of {cutoff} Hz at {figures(self.speed * 30.0 / math.pi)} rpm"
+        return (
+            f"the trace fits behind a low pass with a time constant of {limit}: RMS of the residual "
+            f"{percent(through.rms / size)} of the peak instead of {percent(found.rms / size)}, measured / computed "
+            f"{figures(through.gain)}; check filter and bandwidth of the amplifier"
+        )
 
     def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
         """How each change is said, and what to check."""
@@ -297,7 +327,7 @@ class BesideTrace:
 
 def alike(found: FittedCurve, otherwise: Otherwise) -> bool:
     """Whether only the ratio may be wrong: shapes agree, and no other description fits the trace better."""
-    return found.gain > 0.0 and found.likeness >= _ALIKE and not otherwise.better
+    return found.gain > 0.0 and found.likeness >= _ALIKE and not otherwise.better and otherwise.low_pass is None
 
 
 def verdict(
@@ -320,14 +350,8 @@ def verdict(
     size, otherwise = abs(peak.strain), otherwise or Otherwise()
     limits, off = peak.limits_of(found), found.gain - 1.0
     differ = f"the curves differ in shape (correlation {found.likeness:.3f}, limit {_ALIKE:g})"
-    if better := otherwise.said(found, size):
-        as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"
-        return Judged(better + as_given, NoteClass.FAILS, word=better.partition(":")[0].removeprefix("the trace "))
-    if found.gain <= 0.0:
-        return Judged(
-            "measured and computed strain have opposite signs; check fillet, sign and shift of the trace",
-            NoteClass.FAILS, word="opposite sign",
-        )  # fmt: skip
+    if instead := _in_place_of_verdict(found, size, otherwise, differ, brief=brief):
+        return instead
     with_them = found.gain * (1.0 + peak.missing) - 1.0
     known = replace(limits, neglected=0.0)
     if missing := limits.neglected > _COUNTS * known.together(off):  # too much to be an uncertainty: judged either way
@@ -391,6 +415,23 @@ def verdict(
         return Judged(judged, kind, word=word)
     residual = f"RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
     return Judged(f"{judged}; {residual}", kind, word=word)
+
+
+def _in_place_of_verdict(
+    found: FittedCurve, size: float, otherwise: Otherwise, differ: str, *, brief: bool
+) -> Judged | None:
+    """What explains a trace that is not as it is described; None where it has to be judged."""
+    if better := otherwise.said(found, size):
+        as_given = "" if brief or found.likeness >= _ALIKE or found.gain <= 0.0 else f"; as described {differ}"
+        return Judged(better + as_given, NoteClass.FAILS, word=better.partition(":")[0].removeprefix("the trace "))
+    if behind := otherwise.of_low_pass(found, size):
+        return Judged(behind, NoteClass.FAILS, word="fits behind a low pass (amplifier)")
+    if found.gain <= 0.0:
+        return Judged(
+            "measured and computed strain have opposite signs; check fillet, sign and shift of the trace",
+            NoteClass.FAILS, word="opposite sign",
+        )  # fmt: skip
+    return None
 
 
 def _by(off: float) -> str:

@@ -1,0 +1,64 @@
+"""A trace behind a low pass: the time constant is found, and no other trace is said to have one."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.base.notes import NoteClass
+from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.trace_low_pass import filtered, low_pass
+from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, alike, verdict
+
+ANGLE = np.linspace(-0.45, 0.5, 400)
+STRAIN = 9e-4 * np.interp(
+    ANGLE, [-0.2, -0.18, -0.03, 0.0, 0.06, 0.1, 0.22, 0.25], [0.0, 0.3, 0.5, 0.9, 1, 0.6, 0.65, 0]
+)
+TURNS = np.arange(0.0, 6.0 * math.pi, 5e-3)
+FIT = ("offset", "scale", "shift")
+
+
+def trace(lag, noise=5e-6):
+    """Filtered sample by sample along the time, as an amplifier does."""
+    place = np.mod(TURNS - 1.0 + math.pi, 2.0 * math.pi) - math.pi
+    strain = np.interp(place, ANGLE, STRAIN)
+    behind = strain.copy()
+    for i in range(1, strain.size):
+        behind[i] = behind[i - 1] + (strain[i] - behind[i - 1]) * (1.0 - math.exp(-5e-3 / lag)) if lag else strain[i]
+    return 0.98 * behind + 3e-5 + np.random.default_rng(3).normal(0.0, noise, TURNS.size)
+
+
+def test_a_step_and_a_ramp_behind_a_low_pass_have_their_closed_forms():
+    angle = np.array([0.0, 1e-9, 1.0])
+    at, step = filtered(angle, np.array([0.0, 1.0, 1.0]), 0.2)
+    assert step == pytest.approx(1.0 - np.exp(-at / 0.2), abs=2e-3)
+    at, ramp = filtered(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 0.2)
+    assert ramp == pytest.approx(at - 0.2 * (1.0 - np.exp(-at / 0.2)), abs=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.02, 0.08])
+def test_the_low_pass_is_named_in_place_of_a_verdict(lag):
+    measured = trace(lag)
+    found = fit_curve(TURNS, measured, ANGLE, STRAIN, FIT)
+    behind = low_pass(found, TURNS, measured, ANGLE, STRAIN, FIT)
+    assert behind.lag == pytest.approx(lag, rel=0.15)
+    assert behind.fitted.gain == pytest.approx(0.98, abs=0.01)
+    otherwise = Otherwise(low_pass=behind, speed=100.0)
+    said = verdict(found, ComputedPeak(9e-4), otherwise)
+    assert said.kind is NoteClass.FAILS
+    assert said.startswith("the trace fits behind a low pass with a time constant of ")
+    assert " Hz at 955 rpm: RMS" in said
+    assert said.endswith("check filter and bandwidth of the amplifier")
+    assert not alike(found, otherwise)
+
+
+def test_what_is_no_low_pass_has_none():
+    steady = trace(0.0)
+    other = steady + 6e-5 * np.sin(TURNS * 9.7)  # hum
+    taller = trace(0.0) * (1.0 + 0.4 * (np.mod(TURNS - 1.0 + math.pi, 2.0 * math.pi) - math.pi))
+    often = np.concatenate([steady[::2], steady[::2]])[: TURNS.size]  # an encoder that counts half
+    for measured in (steady, other, taller, often):
+        found = fit_curve(TURNS, measured, ANGLE, STRAIN, FIT)
+        assert low_pass(found, TURNS, measured, ANGLE, STRAIN, FIT) is None
+    backwards = fit_curve(-TURNS, trace(0.08), ANGLE, STRAIN, FIT)
+    assert low_pass(backwards, -TURNS, trace(0.08), ANGLE, STRAIN, FIT) is None
