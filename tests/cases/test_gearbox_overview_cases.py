@@ -95,6 +95,13 @@ def test_causes_add_up_and_the_table_is_in_order(usual):
     assert np.all(np.diff(meshes["load_margin"]) >= 0.0)
 
 
+def test_beside_the_safety_factors_stands_the_face_load_factor_that_they_contain(usual):
+    (meshes,) = (table for table in usual[1].tables if table.name == "gearbox_meshes")
+    names = [column.name for column in meshes.columns]
+    assert names.index("K_Hbeta_rated") == names.index("S_F_min") + 1
+    np.testing.assert_array_equal(meshes["K_Hbeta_rated"], [OPERATION["face_load_factor"]] * 2)
+
+
 def test_an_overload_names_all_that_fails_and_begins_with_the_verdict():
     run, outcome = overview(6.0)
     data = outcome.data

@@ -165,6 +165,7 @@ def test_stages_of_a_power_have_their_own_module_and_face_whole_centre_distances
     gears = list(case["gear"].values())
     assert [one["normal_module"] for one in gears] == ["2.5 mm", "2.5 mm", "4 mm", "4 mm"]
     assert [one["face_width"] for one in gears] == ["42 mm", "42 mm", "75 mm", "75 mm"]
+    assert case["title"] == "case: 21/95/21/65 teeth, module 2.5 mm and 4 mm"
     scene = build_scene(case, "case", Path())
     for name, pinion, wheel in (("I", *gears[:2]), ("II", *gears[2:])):
         pair = case["pair"][name]

@@ -308,6 +308,12 @@ def test_a_sentence_has_them_too():
     assert text == "<p>helix slope C<sub>Hβ</sub> and crowning C<sub>β</sub> of gear a_1: S<sub>H</sub></p>"
 
 
+def test_the_arrow_of_a_change_does_not_break_over_two_lines():
+    block = "{% from 'blocks.html' import Paragraph %}{{ Paragraph(block) }}"
+    text = templates().result().from_string(block).render(block=Paragraph("K_Hβ 1.26 -> 1.13, x->y"))
+    assert text == "<p>K<sub>Hβ</sub> 1.26\N{NO-BREAK SPACE}→ 1.13, x-&gt;y</p>"
+
+
 def test_a_stress_intensity_has_the_root_of_a_metre():
     assert pretty_unit("MPa.m^(1/2)") == unit_said("MPa.m^(1/2)") == "MPa·√m"
     assert unit_said("N.m") == "N m"

@@ -217,7 +217,10 @@ def test_dimensions_or_a_type_of_another_bearing_than_the_designation_has_are_ke
         "catalogue_designation": "6" + known.designation[1:-2] + "99",
         "bearing_type": "radial_roller_bearing",
     }[changed]
-    again = build_scene(tomllib.loads(case_of(model_of(ET.tostring(model, "unicode"), HERE))), "case", Path())
+    case = case_of(model_of(ET.tostring(model, "unicode"), HERE))
+    assert case.count("no dynamic load rating: that of the designation") == len(scene.case.bearing) - 1
+    assert case.count("no dynamic load rating: estimated from the dimensions") == 1
+    again = build_scene(tomllib.loads(case), "case", Path())
     found = again.case.bearing[name]
     assert found.designation is None
     assert same(found.printed.bore, known.printed.bore)

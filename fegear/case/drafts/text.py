@@ -167,14 +167,16 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         answers = with_room(answers)
     file = f"{stem}.toml"
     teeth = "/".join(answers.numbers("teeth"))
+    stages = two_stages(answers) if answers.kind == TWO_STAGES else None
+    modules = [answers["module"]] if stages is None else [one["module"] for one in stages.stages]
+    module = " and ".join(dict.fromkeys(modules))
     head = _HEAD.format(
         about=kind.about[0].upper() + kind.about[1:],
         file=file,
         stem=stem,
         pad=" " * len(file),
-        title=toml_string(f"{stem}: {teeth} teeth, module {answers['module']}"),
+        title=toml_string(f"{stem}: {teeth} teeth, module {module}"),
     )
-    stages = two_stages(answers) if answers.kind == TWO_STAGES else None
     values = {
         "head": head,
         "first": kind.gears[0],

@@ -235,7 +235,9 @@ def bearing_tables(said: Said, held: Held, *, fixed: bool) -> list[Table]:
     keys = _elements(said, held, fixed=fixed) if held.rows else _stiffness(said, one, fixed=fixed)
     life = _life(said, one, len(held.rows.ways) if held.rows else 1)
     if not life and held.rows and held.rows.printed:
-        life = [Key("life", "{}", "no dynamic load rating: estimated from the dimensions")]
+        known = any(key.name == "designation" for key in keys)
+        rating = "that of the designation" if known else "estimated from the dimensions"
+        life = [Key("life", "{}", f"no dynamic load rating: {rating}")]
     designation = said.word(one, "catalogue_designation", "name") or ""
     maker = said.word(one, "manufacturer") or ""
     about = " ".join(part for part in (one.said, one.name, designation, maker) if part)

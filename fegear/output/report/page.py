@@ -165,8 +165,11 @@ def _symbols(text: str) -> list[tuple[str, str]]:
 
 
 def _known_symbols(text: str) -> list[tuple[str, str]]:
-    """The same of sentences and heads, for symbols of the trade only: S_H, K_Hβ, C_β; names of gears stay."""
-    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*|yield)", text)
+    """The same of sentences and heads, for symbols of the trade only: S_H, K_Hβ, C_β; names of gears stay.
+
+    The arrow of a change (1.26 -> 1.13) is one letter: a line may not end within it, nor before it.
+    """
+    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*|yield)", text.replace(" -> ", "\N{NO-BREAK SPACE}→ "))
     return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
 
 

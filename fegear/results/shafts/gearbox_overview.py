@@ -276,7 +276,8 @@ def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: in
     margin = none if safety is None else min(safety.margins)
     return MeshAtGlance(
         safety, factor_error, swing_error, peak, pair, every, tuple(by_cause), factor, contact, required[0], bending,
-        required[1], swing, margin, remaining=remaining, present=inputs.leads[n],
+        required[1], swing, margin, rated=none if safety is None else safety.face_load_factor, remaining=remaining,
+        present=inputs.leads[n],
     )  # fmt: skip
 
 
@@ -362,7 +363,8 @@ _SHEET = Sheet(
         Rows(
             "gearbox_meshes", "Meshes of the gearbox, the weakest first",
             (
-                "pair", *map(_known, ("margin", "contact", "contact_required", "bending", "bending_required")),
+                "pair",
+                *map(_known, ("margin", "contact", "contact_required", "bending", "bending_required", "rated")),
                 _with_error("face_load_factor", "face_load_factor_error"), "over_face",
                 *(_by_cause(n, cause) for n, cause in enumerate(CAUSES)), _with_error("te_peak_to_peak", "te_error"),
             ),
