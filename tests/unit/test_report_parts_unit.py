@@ -309,8 +309,7 @@ def test_a_sentence_has_them_too():
 
 
 def test_the_arrow_of_a_change_does_not_break_over_two_lines():
-    block = "{% from 'blocks.html' import Paragraph %}{{ Paragraph(block) }}"
-    text = templates().result().from_string(block).render(block=Paragraph("K_Hβ 1.26 -> 1.13, x->y"))
+    text = "".join(fragment([Paragraph("K_Hβ 1.26 -> 1.13, x->y")]).split("\n"))
     assert text == "<p>K<sub>Hβ</sub> 1.26\N{NO-BREAK SPACE}→ 1.13, x-&gt;y</p>"
 
 

@@ -69,7 +69,7 @@ class MeshAtGlance:
     bending_required: float = shown("", "its minimum", name="S_F_min")
     te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
     margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
-    rated: float = shown("", "K_Hbeta of the rating, contained in S_H and S_F (ISO 6336-1, with manufacturing deviations)",
+    rated: float = shown("", "K_Hbeta in S_H and S_F, with manufacturing deviations (ISO 6336-1)",
                          name="K_Hbeta_rated", default=math.nan)  # fmt: skip
     lead: LevelLead | None = None
     levelled: Safety | None = None
