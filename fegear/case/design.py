@@ -154,9 +154,9 @@ class DesignPart(Part):
     load: PositiveForce | None = Field(default=None, description="Design load. Default: nominal load of the pair.")
     over: Literal["torques", "spectrum", "load"] | None = Field(
         default=None,
-        description="What grindable tip relief is designed for: `torques` (all torques or loads of the pair, with "
-        "their weights), `spectrum` (torques of `operation.spectrum`, weighted by their time shares) or `load` (the "
-        "design load only). Default: `torques` if the pair has them, otherwise `spectrum` if it has one.",
+        description="What tip relief is designed for: `torques` (all of the pair, with their weights), `spectrum` "
+        "(torques of `operation.spectrum`, weighted by time shares) or `load` (design load only). Default: the first "
+        "that the pair has.",
     )
     length: ZoneLength = None
     contact_ratio: ZoneRatio = None

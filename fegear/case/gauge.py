@@ -49,9 +49,9 @@ class MeasuredStrainPart(Part):
     )
     bridge: str | None = Field(
         default=None,
-        description="Second gauge of a half bridge (adjacent arm), e.g. that in the other fillet of the tooth: the "
-        "strain computed is that of this gauge less that of the second. A strain column has this difference, or with "
-        "`active_arms = 2` half of it; a bridge output has 2 active arms, or 4 if set.",
+        description="Second gauge of a half bridge (adjacent arm), e.g. in the other fillet of the tooth. The strain "
+        "computed is that of this gauge less that of the second; a strain column has it, or half of it with "
+        "`active_arms = 2`.",
     )
     excitation: PositiveVoltage | None = Field(
         default=None, description="Excitation voltage U_0 of the bridge, if the strain column is a voltage."

@@ -35,7 +35,7 @@ def test_sizes_of_what_is_neglected_are_found_for_a_verdict_and_speeds_are_those
     monkeypatch.setattr(gauge, "sharper_strain", lambda scene, pair: "sharper")
     monkeypatch.setattr(gauge, "GaugeInputs", lambda *parts: parts)
     case = SimpleNamespace(
-        pair={"I": SimpleNamespace(speed=100.0, halves=1)}, effects="effects",
+        pair={"I": SimpleNamespace(speed=100.0, halves=1)}, effects="effects", gauge={},
         accuracy=SimpleNamespace(tolerance=0.1), load_distribution=SimpleNamespace(positions=5),
     )  # fmt: skip
     scene = SimpleNamespace(
@@ -43,7 +43,7 @@ def test_sizes_of_what_is_neglected_are_found_for_a_verdict_and_speeds_are_those
         estimates=estimates, sizes_neglected=neglected,
     )  # fmt: skip
     found = gauge._inputs(scene, "gauge")
-    assert found[-1] == (neglected or (estimates and measured is not None))
+    assert found[10] == (neglected or (estimates and measured is not None))
     assert found[1] == (100.0 if member == "driver" else 40.0)
     assert found[6] == "increase load_distribution.positions (5)"
     scene.width_of = lambda pair: "slices"

@@ -90,7 +90,7 @@ def test_every_way_to_write_a_table_is_known(validator, key, value):
         ("gear.a.rack", "ISO 53 E"),
         ("gear.a.teeth", 20.5),
         ("effects.frction", True),
-        ("effects.hertz", True),
+        ("effects.hertz", 2),
         ("results", ["stifness"]),
         ("results", []),
         ("accuracy.order", 7),

@@ -140,7 +140,9 @@ def test_a_slider_s_map_stays_until_the_load_is_beyond_twice_or_below_a_fiftieth
     maps = HarrisMaps()
 
     def at_rest(load):
-        teeth = SimpleNamespace(nominal=load)
+        teeth = SimpleNamespace(
+            nominal=load, error_under=lambda loads, positions: (None, None, np.zeros((positions, len(loads))))
+        )
         results = SimpleNamespace(scene=SimpleNamespace(case=SimpleNamespace(pair={}, gauge={}, encoders={})),
                                   outcomes={Task("loaded-pair", "I"): SimpleNamespace(data=teeth),
                                             Task("geometry", ""): SimpleNamespace(data=None)})  # fmt: skip
