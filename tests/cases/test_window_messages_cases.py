@@ -157,7 +157,8 @@ def test_others_are_refused_everywhere(served):
             assert window_page.status(served.bare + place, **own, Origin="http://evil.example") == 403
             assert window_page.status(served.bare + place, **own, Origin=f"http://127.0.0.1:{port + 1}") == 403
             assert window_page.status(served.bare + place, Cookie=f"fegear-{port}=guessed") == 403
-        assert window_page.status(served.address) == 403  # its key has been used
+        told = Path("/proc/net/tcp").exists()  # by whom a connection is: this account may come again by its key
+        assert window_page.status(served.address) == (200 if told else 403)
         assert window_page.status(served.bare, **own) == 200
         for line in Path(f"/proc/{served.process.pid}/task").glob("*/children"):
             for child in line.read_text().split():
@@ -165,8 +166,7 @@ def test_others_are_refused_everywhere(served):
         readable = [one for one in (served.folder / "scratch").iterdir() if one.stat().st_mode & 0o077]
         assert readable == []
         if os.getuid() == 0 and shutil.which("bash"):
-            new = served.process.stdout.readline() + served.process.stdout.readline()
-            for place in (*places, f"?key={new.rpartition('key=')[2].strip()}"):
+            for place in (*places, f"?key={served.address.rpartition('key=')[2]}"):
                 for head in ("", UPGRADE, "X-Forwarded-For: 10.0.0.1\r\n"):
                     own_heads = f"Host: 127.0.0.1:{port}\r\nCookie: {page.cookie}\r\n{head}"
                     request = f"GET /{place} HTTP/1.1\r\n{own_heads}\r\n"

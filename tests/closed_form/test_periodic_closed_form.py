@@ -56,6 +56,20 @@ def test_longer_periods():
     assert steps.breaks_over(8).tolist() == [0, 2, 4, 6, 8]
 
 
+@pytest.mark.parametrize("apart", [9e-10, 3e-10, 2e-11])
+def test_a_jump_between_break_points_that_all_but_coincide_is_taken_as_it_can_be_known(apart):
+    """As of teeth that come to bear within 1e-8 of a pitch, over 17 of them: places are known to 1e-7 of such a piece."""
+    low, pitches = 0.8703727054422479, 17
+
+    def compliance(s):
+        within = np.clip((s * pitches - low * pitches) / (apart * pitches), 0.0, 1.0)
+        return 7e-9 * (1.0 + 0.3 * np.sin(2.5 * within))
+
+    found = Periodic.fit(compliance, [low, low + apart], tolerance=1e-12, pitches=pitches)
+    s = np.array([0.1, low - 1e-6, low + 0.5 * apart, low + apart + 1e-6, 0.99])
+    assert found(s * pitches) == pytest.approx(compliance(s), rel=1e-4)
+
+
 def test_undeclared_jump_is_said():
     with pytest.raises(ConvergenceError, match=r"near s = 0\.3"):
         Periodic.fit(lambda s: np.where(s < 0.3, 0.0, 1.0))

@@ -186,11 +186,11 @@ def test_every_relief_is_tried_under_all_loads_and_at_last_under_that_of_the_des
     upstream = {Task("relief-chart-over-face", "I"): "a chart",
                 Task("relief-over-face", "I"): SimpleNamespace(design=design)}  # fmt: skip
     part = SimpleNamespace(load_factors=[0.5, 1.0, 2.0], spacing_errors=[0.0, 3e-6], relief_errors=[-0.3], given=())
-    inputs = SimpleNamespace(name="I", part=part, own_relief=own)
+    inputs = SimpleNamespace(name="I", part=part, own_relief=own, base_radius=0.02)
     found = charted._compute_robustness(inputs, upstream, work(bench))
     labels = ["linear tip relief", "parabolic tip relief", *["relief of the case"] * own, "no relief"]
     assert dict(found.candidates) == {label: number for number, label in enumerate(labels, start=1)}
-    assert found.recommended == "parabolic tip relief"
+    assert (found.recommended, found.torque) == ("parabolic tip relief", 200.0 * 0.02)
     assert bench.asked == [("I", dict), (True, "known", True, 200.0)]
     for trials, _, factors, spacing, depth in tried:
         assert trials.loads.tolist() == [100.0, 200.0, 400.0, 200.0]

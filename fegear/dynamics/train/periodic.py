@@ -123,8 +123,10 @@ class Periodic:
             for (a, b), values in zip(pieces, found, strict=True):
                 row, h = to_power @ values[: degree + 1], b - a
                 error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
-                # Between break points that all but coincide a place is known to 1e-7 of the piece only.
-                narrow = h < 1e-9 and error <= 1e-8 * scale
+                # Between break points that all but coincide a place is known to 1e-7 of the piece or less: what the
+                # function changes there is known no better. A jump that was not declared errs by much of itself.
+                unknown = 4.0 * np.finfo(float).eps / h * np.ptp(values)
+                narrow = h < 1e-9 and error <= max(1e-8 * scale, unknown)
                 if not error > tolerance * scale or h <= shortest or narrow:
                     rows[a] = row
                     continue
