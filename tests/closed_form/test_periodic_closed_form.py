@@ -58,7 +58,7 @@ def test_longer_periods():
 
 @pytest.mark.parametrize("apart", [9e-10, 3e-10, 2e-11])
 def test_a_jump_between_break_points_that_all_but_coincide_is_taken_as_it_can_be_known(apart):
-    """As of teeth that come to bear within 1e-8 of a pitch, over 17 of them: places are known to 1e-7 of such a piece."""
+    """As of teeth that come to bear within 1e-8 of a pitch, over 17: places are known to 1e-7 of such a piece."""
     low, pitches = 0.8703727054422479, 17
 
     def compliance(s):
