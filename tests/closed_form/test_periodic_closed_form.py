@@ -70,6 +70,19 @@ def test_a_jump_between_break_points_that_all_but_coincide_is_taken_as_it_can_be
     assert found(s * pitches) == pytest.approx(compliance(s), rel=1e-4)
 
 
+def test_what_is_made_of_a_piece_shorter_than_jumps_are_looked_for_is_halved_on():
+    """As 1/k of a stiffness that rose within 1e-8 of a pitch, and of which each piece is a polynomial of its own."""
+    apart, low = 8e-10, 0.3
+    cuts = [low, low + apart]
+    rising = Periodic.fit(lambda s: np.where(s < low, 1.0, 1.0 + np.clip((s - low) / apart, 0.0, 1.0)), cuts)
+    found = combine((rising,), lambda k: 1.0 / k**9)
+    s = low + apart * np.linspace(0.01, 0.99, 99)
+    assert found(s) == pytest.approx(1.0 / rising(s) ** 9, rel=1e-5)
+    assert found(np.array([0.1, 0.9])) == pytest.approx([1.0, 2.0**-9], rel=1e-12)
+    with pytest.raises(ConvergenceError, match=r"near s = 0\.3"):
+        Periodic.fit(lambda s: np.where(s < low + 0.37 * apart, 0.0, 1.0), cuts)
+
+
 def test_undeclared_jump_is_said():
     with pytest.raises(ConvergenceError, match=r"near s = 0\.3"):
         Periodic.fit(lambda s: np.where(s < 0.3, 0.0, 1.0))

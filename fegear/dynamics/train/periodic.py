@@ -16,6 +16,8 @@ from fegear.base.errors import ConvergenceError, InputError
 
 #: Most pieces whose values are asked for at once.
 _AT_ONCE = 64
+#: Length of a piece below which a jump is looked for no longer [periods].
+_JUMP = 1e-9
 #: Jumps that a coarser function keeps, over its tolerance, and changes of slope, over its size in a period.
 _SEEN, _BENT = 0.01, 1e-3
 
@@ -101,7 +103,8 @@ class Periodic:
         Raises
         ------
         ConvergenceError
-            If the pieces get shorter than 1e-9 periods (an undeclared jump).
+            If the pieces get shorter than 1e-9 periods, or a thousandth of what is between two break points that are
+            nearer to each other than that: a jump that is not declared.
         """
         nodes, to_power = _chebyshev(degree)
         probe = np.array([-0.9726, -0.746, -0.218, 0.2346, 0.684, 0.9822])
@@ -111,32 +114,33 @@ class Periodic:
         if len(cuts) > 2 and cuts[-1] - cuts[-2] <= 1e-12:
             del cuts[-2]
         places = np.concatenate([nodes, probe])
-        waiting = list(pairwise(cuts))
+        # between break points that are nearer to each other than a jump is looked for there is still what can be halved
+        waiting = [(a, b, min(_JUMP, (b - a) / 1024.0)) for a, b in pairwise(cuts)]
         rows: dict[float, Array] = {}
         while waiting:  # the halves made last come first: what is rough everywhere is refused before there are many
             pieces, waiting = waiting[-_AT_ONCE:], waiting[:-_AT_ONCE]
-            at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b in pieces]
+            at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b, _ in pieces]
             if ahead is not None:
                 ahead(at)
             found = [np.asarray(function(s), dtype=float) for s in at]
             scale = max(scale, *(float(np.max(np.abs(values))) for values in found))
-            for (a, b), values in zip(pieces, found, strict=True):
+            for (a, b, least), values in zip(pieces, found, strict=True):
                 row, h = to_power @ values[: degree + 1], b - a
                 error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
                 # Between break points that all but coincide a place is known to 1e-7 of the piece or less: what the
                 # function changes there is known no better. A jump that was not declared errs by much of itself.
                 unknown = 4.0 * np.finfo(float).eps / h * np.ptp(values)
-                narrow = h < 1e-9 and error <= max(1e-8 * scale, unknown)
+                narrow = h < _JUMP and error <= max(1e-8 * scale, unknown)
                 if not error > tolerance * scale or h <= shortest or narrow:
                     rows[a] = row
                     continue
-                if h < 1e-9:
+                if h < least:
                     raise ConvergenceError(
                         f"A periodic function cannot be fitted near s = {a:.9g}: error {error:.3g} of {scale:.3g}. "
                         "Name its jump among the break points."
                     )
                 middle = 0.5 * (a + b)
-                waiting += [(a, middle), (middle, b)]
+                waiting += [(a, middle, least), (middle, b, least)]
         starts = sorted(rows)
         return cls(np.array([*starts, 1.0]), np.array([rows[a] for a in starts]), pitches)
 
