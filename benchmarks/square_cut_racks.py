@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 from fegear.geometry.curves import Line
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.rack_tooth import RackTooth

@@ -48,7 +48,7 @@ LAYERS = {
 
 #: Where each heavy library may be imported.
 DOORS = {
-    "gmsh": ["fegear.fem.plane.tooth_meshing"],
+    "gmsh": ["fegear.fem.plane.gmsh_session"],
     "skfem": [
         "fegear.fem.forms",
         "fegear.fem.plane.curved_map",

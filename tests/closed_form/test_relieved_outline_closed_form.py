@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.outline import relieved_outline

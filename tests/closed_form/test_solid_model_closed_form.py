@@ -11,7 +11,7 @@ import pytest
 
 from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 from fegear.fem.solid.step_model import write_step
 from fegear.geometry.curves import smooth_pieces
 from fegear.geometry.external_tooth import Tooth

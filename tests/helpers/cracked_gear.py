@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 
 #: Teeth whose edges are short, and on whose right flanks there are nodes to load.
 NEAR = (-1, 0, 1)

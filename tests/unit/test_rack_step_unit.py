@@ -53,7 +53,7 @@ def test_an_export_writes_it_in_millimetres(tmp_path):
     assert made.files == ("r_rack.step",)
     import gmsh
 
-    from fegear.fem.plane.tooth_meshing import gmsh_session
+    from fegear.fem.plane.gmsh_session import gmsh_session
 
     with gmsh_session("read"):
         gmsh.model.occ.importShapes(str(tmp_path / "r_rack.step"))

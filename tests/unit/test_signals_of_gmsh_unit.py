@@ -3,7 +3,7 @@
 import ctypes
 import signal
 
-from fegear.fem.plane import tooth_meshing
+from fegear.fem.plane import gmsh_session
 
 
 def test_a_stop_that_comes_while_gmsh_starts_finds_its_handler(monkeypatch):
@@ -23,7 +23,7 @@ def test_a_stop_that_comes_while_gmsh_starts_finds_its_handler(monkeypatch):
             assert not interruptible
 
     try:
-        tooth_meshing._initialize(Gmsh)
+        gmsh_session._initialize(Gmsh)
         assert heard == [signal.SIGTERM]
     finally:
         signal.signal(signal.SIGTERM, before)

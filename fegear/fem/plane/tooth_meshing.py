@@ -1,16 +1,10 @@
-"""Mesh one tooth sector with gmsh (its only door): the boundary's nodes are given, gmsh fills the inside."""
+"""Mesh one tooth sector with gmsh: the boundary's nodes are given, gmsh fills the inside."""
 
 from __future__ import annotations
 
-import ctypes
 import math
-import signal
-import sys
-import threading
 import time
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -19,17 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fegear.base.arrays import Array, Index
-from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
-from fegear.base.interrupts import deaf
+from fegear.base.errors import FegearError, InputError
 from fegear.fem.plane.boundary import Chain, sector_boundary
 from fegear.fem.plane.drawing_grid import GRID, line_on_a_grid, on_a_grid, rounded
 from fegear.fem.plane.elements import check_cubic_edges
+from fegear.fem.plane.gmsh_session import gmsh_session, heard_below
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.involute_side import InvoluteSide
-
-#: What gmsh's wheel needs from the system, for the error message.
-SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
 
 #: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
 _STRAIGHT = 1e-12
@@ -37,28 +28,6 @@ _STRAIGHT = 1e-12
 _FAR_FROM_ARC = 0.125
 #: How fast edges inside grow with the distance from the boundary where no one says: level 0's `side_growth`.
 _GROWTH = 0.4
-#: What a mesh depends on. Algorithm 5 is Delaunay's: the frontal one (6) leaves triangles of quality .05 at sharp
-#: fillets. Sizes come from a function of the place alone.
-_OPTIONS = {
-    "General.Terminal": 0,
-    "General.NumThreads": 1,
-    "Geometry.Tolerance": 1e-8,
-    "Mesh.Algorithm": 5,
-    "Mesh.AlgorithmSwitchOnFailure": 1,
-    "Mesh.ElementOrder": 1,
-    "Mesh.MeshSizeExtendFromBoundary": 0,
-    "Mesh.MeshSizeFactor": 1,
-    "Mesh.MeshSizeFromCurvature": 0,
-    "Mesh.MeshSizeFromPoints": 0,
-    "Mesh.MeshSizeMax": 1e22,
-    "Mesh.MeshSizeMin": 0,
-    "Mesh.Optimize": 1,
-    "Mesh.RandomFactor": 1e-9,
-    "Mesh.RandomSeed": 1,
-    "Mesh.RecombineAll": 0,
-    "Mesh.Smoothing": 1,
-}
-_ONE_AT_A_TIME = threading.RLock()
 #: Gmsh's frontal algorithm, whose triangles are the most even where they are few.
 _FRONTAL = 6
 #: Size of what is still drawn after a request to stop [modules]: large, so that little is.
@@ -69,68 +38,6 @@ _FLATTEST = 0.12
 _UNEVEN = 5.0
 #: How often, and by which factor, edges are shortened when elements turn inside out.
 _MOST_REFINEMENTS, _FINER = 4, 0.6
-
-
-def load_gmsh() -> Any:
-    """Import gmsh, or say which system packages it misses.
-
-    Raises
-    ------
-    MissingLibraryError
-        If gmsh or one of its shared libraries is not there.
-    MemoryError
-        If there is too little memory to load it.
-    """
-    try:
-        import gmsh
-    except (ImportError, OSError) as problem:
-        if lacks_memory(problem):
-            raise MemoryError(f"gmsh cannot be loaded ({problem})") from problem
-        raise MissingLibraryError(
-            f"gmsh cannot be loaded ({problem}); on Debian or Ubuntu run: apt-get install {SYSTEM_PACKAGES}"
-        ) from problem
-    return gmsh
-
-
-@contextmanager
-def gmsh_session(name: str) -> Iterator[Any]:
-    """Gmsh with an empty model of this name, which is gone afterwards; started and ended unless it runs already.
-
-    Whatever was drawn or set before, the same input gives the same mesh; who had gmsh running finds its options and
-    its model again. One thread at a time: gmsh has one state for all of them.
-    """
-    gmsh = load_gmsh()
-    with _ONE_AT_A_TIME:
-        own = not gmsh.isInitialized()
-        if own:
-            _initialize(gmsh)
-        current = gmsh.model.getCurrent()
-        kept = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
-        try:
-            for option, value in _OPTIONS.items():
-                gmsh.option.setNumber(option, value)
-            _forget_the_last_model(gmsh)
-            gmsh.model.add(name)
-            try:
-                yield gmsh
-            finally:
-                gmsh.model.remove()
-        finally:
-            if own:
-                gmsh.finalize()
-            else:
-                for option, value in kept.items():
-                    gmsh.option.setNumber(option, value)
-                gmsh.model.setCurrent(current)
-
-
-def _forget_the_last_model(gmsh: Any) -> None:
-    """Draw a model of size one: gmsh takes its tolerances from the size of the model that it drew last."""
-    gmsh.model.add("of size one")
-    for x in (0.0, 1.0):
-        gmsh.model.geo.addPoint(x, x, 0.0)
-    gmsh.model.geo.synchronize()
-    gmsh.model.remove()
 
 
 def mesh_sector(
@@ -293,43 +200,6 @@ def _bends(chain: Chain) -> NDArray[np.float64]:
     return np.where(np.hypot(*sag) > _STRAIGHT * np.hypot(*chord), bends, 0.0)
 
 
-def _initialize(gmsh: Any) -> None:
-    """Start gmsh, from any thread; signals stay with whoever has them.
-
-    gmsh.initialize gives them back to the system: a request to stop would end the process before it has cleared away
-    what is unfinished, and writing to a pipe that the other side has closed would end it without a word.
-    """
-    names = ("SIGPIPE", "SIGTERM", "SIGHUP")
-    handlers = ctypes.pythonapi
-    handlers.PyOS_getsig.restype = ctypes.c_void_p
-    held = {int(n): handlers.PyOS_getsig(int(n)) for n in (getattr(signal, name, None) for name in names) if n}
-    with deaf(held):
-        gmsh.initialize(interruptible=False)
-        for number, handler in held.items():
-            handlers.PyOS_setsig(number, ctypes.c_void_p(handler))
-
-
-@contextmanager
-def _heard_below(stopped: list[BaseException]) -> Iterator[None]:
-    """Keep what is raised in a function that a library calls: a request to stop, which ctypes would print and lose.
-
-    The library reads a size of zero for it, so that what it draws from there on is worth nothing.
-    """
-    before = sys.unraisablehook
-
-    def hear(said: sys.UnraisableHookArgs) -> None:
-        if "ctypes callback" in (said.err_msg or "") and said.exc_value is not None:
-            stopped.append(said.exc_value)
-        else:
-            before(said)
-
-    sys.unraisablehook = hear
-    try:
-        yield
-    finally:
-        sys.unraisablehook = before
-
-
 @dataclass(frozen=True)
 class Slit:
     """A line inside a polygon that edges of triangles follow, from one of the polygon's corners, and single vertices.
@@ -403,7 +273,7 @@ def fill(
             return _UNWANTED
         return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
 
-    with gmsh_session("fegear sector") as gmsh, _heard_below(stopped):
+    with gmsh_session("fegear sector") as gmsh, heard_below(stopped):
         try:
             along = _draw(gmsh, drawn, inner, None if slit is None else slit.corner, line, around)
             if growth is None:

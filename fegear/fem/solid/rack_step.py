@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fegear.base.errors import FegearError
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 from fegear.fem.solid.step_model import TOLERANCE, SolidModel, silence
 from fegear.geometry.curves import Drawn, smooth_pieces
 from fegear.geometry.spline import DEGREE, Spline, enclosed_area, spline_of

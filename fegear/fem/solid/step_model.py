@@ -20,7 +20,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import FegearError
-from fegear.fem.plane.tooth_meshing import gmsh_session
+from fegear.fem.plane.gmsh_session import gmsh_session
 from fegear.geometry.curves import Drawn, smooth_pieces
 from fegear.geometry.gear import Gear
 from fegear.geometry.spline import DEGREE, Spline, enclosed_area, fitted, spline_of
