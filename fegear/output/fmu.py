@@ -241,7 +241,7 @@ def _array(kind: str, name: str, values: Iterable[float]) -> str:
 
 def _on_one_grid(k: Periodic, e: Periodic) -> tuple[Array, Array, int]:
     """Starts of the pieces of a spring in its period, their coefficients (pieces, 2, powers), and the period."""
-    from fegear.dynamics.motion.motion_model import on_breaks
+    from fegear.dynamics.motion.packed_model import on_breaks
 
     pitches = math.lcm(k.pitches, e.pitches)
     cuts = np.unique(np.concatenate([k.breaks_over(pitches), e.breaks_over(pitches)])) / pitches

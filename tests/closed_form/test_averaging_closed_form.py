@@ -8,7 +8,8 @@ from scipy.linalg import expm
 
 from fegear.dynamics.motion.averaging import averaged_motion
 from fegear.dynamics.motion.motion import propagate
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.shooting import close
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.excitation import MeshExcitation

@@ -10,7 +10,8 @@ import pytest
 
 from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train.back_flanks import BackFlanks, back_flanks, leverage
 from fegear.dynamics.train.periodic import Periodic

@@ -11,7 +11,8 @@ import fegear
 from fegear.base.errors import InputError, RangeError
 from fegear.dynamics.motion.kernel.polynomials import largest_force
 from fegear.dynamics.motion.motion import propagate, simulate, starting_state, static_state
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
 from fegear.dynamics.train.charts import FourInertia, speed_chart
 from fegear.dynamics.train.excitation import MeshExcitation

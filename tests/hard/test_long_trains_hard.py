@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from fegear.base.errors import RangeError
 from fegear.dynamics.motion import motion_model as packing
 from fegear.dynamics.motion.motion import simulate
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.shooting import has_fixed_direction
 from fegear.dynamics.motion.steady_state import steady_state
 from fegear.dynamics.train import branches, increments

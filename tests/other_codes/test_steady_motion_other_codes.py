@@ -15,7 +15,8 @@ import pytest
 from fegear.dynamics.motion import kernel
 from fegear.dynamics.motion.coexisting import follow
 from fegear.dynamics.motion.motion import propagate, starting_state
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
 from fegear.dynamics.train.charts import FourInertia, speed_chart
 from fegear.dynamics.train.excitation import MeshExcitation

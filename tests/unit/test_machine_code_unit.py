@@ -17,7 +17,8 @@ import pytest
 from fegear.contact.machine_code import machine_code
 from fegear.dynamics.motion import kernel
 from fegear.dynamics.motion.motion import propagate, static_state
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.prepare import prepare
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic

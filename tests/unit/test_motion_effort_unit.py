@@ -8,8 +8,9 @@ import pytest
 
 from fegear.dynamics.motion import effort, steady_state
 from fegear.dynamics.motion.effort import EFFORT, ENDLESS_EFFORT, Effort, effort_for, least_decay, of_one
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.moving_train import steady_motion
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Mesh, Shaft, Torque, Train, mesh_damping

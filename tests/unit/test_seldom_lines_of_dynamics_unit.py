@@ -14,7 +14,8 @@ from fegear.dynamics.helical_pair import mode_following
 from fegear.dynamics.helical_pair.mode_following import _nearest_approach, _State
 from fegear.dynamics.motion import coexisting, motion, motion_over_revolution, shooting, steady_state
 from fegear.dynamics.motion.motion import Trajectory, propagate
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.motion.shooting import floquet_frame
 from fegear.dynamics.planetary.kinematics import CENTRALS
 from fegear.dynamics.planetary.mesh_law import MeshSprings, WidenedSprings

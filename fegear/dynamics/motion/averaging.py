@@ -22,7 +22,8 @@ import numpy as np
 from fegear.base.arrays import Array
 from fegear.base.tally import tallied
 from fegear.dynamics.motion.motion import Passage, propagate, starting_state
-from fegear.dynamics.motion.motion_model import Moving, Packed, pack
+from fegear.dynamics.motion.motion_model import Moving
+from fegear.dynamics.motion.packed_model import Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, moving
 from fegear.dynamics.motion.steady_state import UNBOUNDED, SteadyState, growing_motion, periodic_motion, step_for
 

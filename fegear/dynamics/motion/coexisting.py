@@ -21,7 +21,8 @@ from fegear.base.arrays import Array
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.dynamics.motion.effort import Effort
 from fegear.dynamics.motion.motion import Passage, propagate, starting_state
-from fegear.dynamics.motion.motion_model import Moving, Packed, pack
+from fegear.dynamics.motion.motion_model import Moving
+from fegear.dynamics.motion.packed_model import Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, moving
 
 #: Shares of more damping from which motions are continued, and how much of it is taken away at a time.

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fegear.dynamics.motion.motion_model import Packed
+from fegear.dynamics.motion.packed_model import Packed
 
 #: Work of one speed: some 45,000 periods of a train of four bodies. (One with a damping ratio of 0.005 of its shafts
 #: looks settled for 25,000 periods and ends at twice the force.)

@@ -18,7 +18,8 @@ from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.interrupts import OF_SCRIPTS, REQUESTS_TO_STOP, deaf
 from fegear.base.tally import note, tallied
 from fegear.dynamics.motion import kernel
-from fegear.dynamics.motion.motion_model import Moving, Packed, pack
+from fegear.dynamics.motion.motion_model import Moving
+from fegear.dynamics.motion.packed_model import Packed, pack
 from fegear.dynamics.motion.radau import radau
 
 #: Order of the Taylor series; high, because a longer step costs less than a second one.

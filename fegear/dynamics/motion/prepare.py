@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from fegear.dynamics.motion.motion import propagate, static_state
-from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.packed_model import pack
 from fegear.dynamics.train.excitation import MeshExcitation
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Mesh, Torque, Train

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fegear.base.arrays import Array, Complex
 from fegear.base.errors import ConvergenceError, RangeError
 from fegear.dynamics.motion.motion import Passage, propagate
-from fegear.dynamics.motion.motion_model import Packed
+from fegear.dynamics.motion.packed_model import Packed
 
 #: How far a multiplier may exceed one before the motion counts as unstable.
 UNSTABLE = 1e-6

@@ -32,7 +32,8 @@ from fegear.dynamics.motion.coexisting import (
 )
 from fegear.dynamics.motion.effort import Effort, effort_for
 from fegear.dynamics.motion.motion import Trajectory, propagate, starting_state
-from fegear.dynamics.motion.motion_model import Moving, Packed, pack
+from fegear.dynamics.motion.motion_model import Moving
+from fegear.dynamics.motion.packed_model import Packed, pack
 from fegear.dynamics.motion.shooting import Orbit, close, leads_to, leap, moving
 
 #: Most periods of excitation that one period of the motion may take.

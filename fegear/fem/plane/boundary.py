@@ -8,21 +8,29 @@ right flank is the loaded one. A ring gear is held at its outer circle, which is
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.fem.plane.bore import check_bore
+from fegear.fem.plane.edge_sizes import (
+    SHORT_FILLET,
+    Law,
+    back_sizes,
+    fewest_edges,
+    fillet_size,
+    front_sizes,
+    graded,
+    land_size,
+    length_of,
+)
 from fegear.fem.plane.settings import MeshSettings
 from fegear.geometry.curves import Curve, arc_length
 from fegear.geometry.involute_side import InvoluteSide
 from fegear.geometry.outline import turned
 from fegear.geometry.tooth_side import ToothSide
-
-Law = Callable[[Array], Array]
-
 
 #: Edges of a bore beside a crack are not halved for distances below this [modules].
 SHORTEST_BORE_EDGE = 1e-3
@@ -30,13 +38,6 @@ SHORTEST_BORE_EDGE = 1e-3
 #: full), are dropped: the fillets meet on the sector's side. Fillet and root circle are tangent there, so the outline
 #: moves by the square of it; the sides' edges would start as short as the land.
 _SHORTEST_LAND, _LEAST_LAND = 2e-4, 0.04
-#: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
-_FEWEST_FILLET_EDGES = 4
-#: Shorter fillets [modules] are all curvature: so many edges at the default fraction of its radius, and in proportion
-#: to the root of that fraction at others, so that no two levels have the same few edges and err alike.
-_SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
-#: Edges where flank and a short fillet meet go with its length, down to this share of the usual ones.
-_SHORTEST_JOINT = 0.03
 #: Widest angle of an edge on the bore [rad].
 _WIDEST_BORE_EDGE = 0.15
 #: A bore that is longer over a sector than this share of the body's depth has two edges at least: what a thin rim does
@@ -46,15 +47,6 @@ _LONG_BORE = 0.45
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
 #: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
 _SHARPEST_TURN = 0.26
-#: Edges on a rounding are made to turn by no more than this where those of the flank are as short, for their whole
-#: number may lengthen them.
-_TURN = 0.22
-#: The shortest edges on a sharp fillet, as a share of the usual ones: what keeps edges above nothing where a sharp rack
-#: tip all but reaches the flank. Short edges cost little: a fillet that turns by 70 degrees takes as many of them
-#: however small its radius. With a tenth, two levels missed root tension alike (a radius of .005 modules: 3 %).
-_SHARPEST = 1e-3
-#: Edges below a pressure that the mesh is to resolve, as a share of its half-width.
-_RESOLVED = 0.35
 
 
 @dataclass(frozen=True)
@@ -79,33 +71,12 @@ class Chain:
     tangents: Array
 
 
-def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None) -> Array:
-    """Arc lengths of nodes whose spacing follows `size`, from 0 to `length`, shape (n + 1,).
-
-    Parameters
-    ----------
-    length : float
-    size : callable
-    fewest : int
-        Least number of edges.
-    at : ndarray, optional
-        Where to sample `size`, from 0 to `length`; by default evenly, which is not enough for one that nearly vanishes.
-    """
-    s = np.linspace(0.0, length, 513) if at is None else at
-    density = 1.0 / size(s)
-    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
-    edges = max(fewest, round(float(count[-1])))
-    nodes = np.interp(np.linspace(0.0, count[-1], edges + 1), count, s)
-    nodes[0], nodes[-1] = 0.0, length
-    return nodes
-
-
 def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: bool = False, side: int = 1) -> Chain:
     """Edges along a curve; where `dense`, the law is sampled more and more densely toward the start.
 
     The material lies on the left of an external tooth's curves (side 1), on the right of an internal one's (-1).
     """
-    end = _length(curve)
+    end = length_of(curve)
     at = np.union1d(np.linspace(0.0, end, 513), np.geomspace(1e-6 * end, end, 257)) if dense else None
     return _at_nodes(name, curve, graded(end, size, fewest=fewest, at=at), side)
 
@@ -144,7 +115,7 @@ def fillet_chain(tooth: InvoluteSide, name: str, size: Law, through: float) -> t
     """
     side, back = tooth.side, name == "back_fillet"
     fillet = (tooth.back if back else tooth).fillet
-    end = _length(fillet)
+    end = length_of(fillet)
     lower, upper = graded(through, size), through + graded(end - through, lambda s: size(s + through))
     nodes, vertex = np.concatenate([lower, upper[1:]]), lower.size - 1
     chain = _at_nodes(name, fillet, nodes, side)
@@ -232,16 +203,16 @@ def tooth_chains(
 ) -> tuple[list[Chain], list[Chain]]:
     """Edges from the middle of the right tooth space up to the middle of the tip land, and down to the left space."""
     pieces, side = tooth.outline, tooth.side
-    beside = max(float(_fillet_size(one, settings)(np.zeros(1))[0]) for one in (tooth, tooth.back))
+    beside = max(float(fillet_size(one, settings)(np.zeros(1))[0]) for one in (tooth, tooth.back))
     short = tooth.root_land_length < max(_SHORTEST_LAND, _LEAST_LAND * beside)
     land = (
         []
         if tooth.root_land is None or short
-        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings), side=side)]
+        else [_on_curve("root_land", tooth.root_land, land_size(tooth, settings), side=side)]
     )
     front_laws = front_sizes(tooth, settings, contacts)
-    fewest = _fewest_edges(tooth, settings)
-    short_fillet = _length(tooth.fillet) < _SHORT_FILLET
+    fewest = fewest_edges(tooth, settings)
+    short_fillet = length_of(tooth.fillet) < SHORT_FILLET
     front = [
         _on_curve(
             _boundary(piece, tooth),
@@ -261,7 +232,7 @@ def tooth_chains(
 
 def _back(tooth: ToothSide, settings: MeshSettings, *, short: bool) -> list[Chain]:
     """The other side of the sector from the middle of the tip land to that of the tooth space, whose land is short."""
-    back, laws = tooth.back, _back_sizes(tooth, settings)
+    back, laws = tooth.back, back_sizes(tooth, settings)
     pieces, side = back.outline, tooth.side
     tip = [
         _mirrored(_on_curve(_boundary(piece, back), pieces[piece], law, side=side), "tip")
@@ -269,12 +240,12 @@ def _back(tooth: ToothSide, settings: MeshSettings, *, short: bool) -> list[Chai
         if piece in pieces and piece != "flank"
     ]
     flank = _mirrored(_on_curve("flank", back.involute, laws["flank"], side=side), "back_flank")
-    fewest = _fewest_edges(back, settings)
-    fillet = _on_curve("fillet", back.fillet, _fillet_size(back, settings), fewest, side=side)
+    fewest = fewest_edges(back, settings)
+    fillet = _on_curve("fillet", back.fillet, fillet_size(back, settings), fewest, side=side)
     fillet = _mirrored(_from_the_side(fillet, back) if short else fillet, "back_fillet")
     if short or back.root_land is None:
         return [*tip, flank, fillet]
-    land = _on_curve("root_land", back.root_land, _land_size(back, settings), side=side)
+    land = _on_curve("root_land", back.root_land, land_size(back, settings), side=side)
     return [*tip, flank, fillet, _mirrored(land, "root_land")]
 
 
@@ -294,112 +265,6 @@ def _boundary(piece: str, tooth: ToothSide) -> str:
     if piece == "tip_edge" and tooth.tip_rounding > 0.0:
         return "tip_rounding"
     return "tip" if piece.startswith("tip") else piece
-
-
-def _length(curve: Curve) -> float:
-    return float(arc_length(curve)[1][-1])
-
-
-def _land_size(tooth: ToothSide, settings: MeshSettings) -> Law:
-    """Edges on the root land grow away from the fillet."""
-    length = tooth.root_land_length
-    first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
-    return lambda s: first + settings.growth * (length - s)
-
-
-def _fewest_edges(tooth: ToothSide, settings: MeshSettings) -> int:
-    """Least number of edges along a fillet."""
-    if _length(tooth.fillet) >= _SHORT_FILLET:
-        return _FEWEST_FILLET_EDGES
-    graded_by_level = _SHORT_FILLET_EDGES * math.sqrt(_USUAL_FRACTION / settings.root_fraction)
-    return max(_FEWEST_FILLET_EDGES, round(graded_by_level))
-
-
-def fillet_edges(tooth: InvoluteSide, settings: MeshSettings) -> float:
-    """How many edges a fillet would have if all were as long as along most of it: those graded to its ends count less.
-
-    Errors of root stress go with them; they are known before anything is meshed.
-    """
-    length = _length(tooth.fillet)
-    nodes = graded(length, front_sizes(tooth, settings)["fillet"], fewest=_fewest_edges(tooth, settings))
-    edges = np.diff(nodes)
-    return float(edges.sum() ** 2 / (edges**2).sum())
-
-
-def _fillet_size(tooth: ToothSide, settings: MeshSettings) -> Law:
-    """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
-    parameter, length = arc_length(tooth.fillet)
-    radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
-    finest = _SHARPEST * settings.root_edge_length
-    sizes = np.clip(settings.root_fraction * radius, finest, settings.root_edge_length)
-    # No faster than edges may grow, from the sharpest place on to either side.
-    grown = settings.growth * length
-    upward = np.minimum.accumulate(sizes - grown) + grown
-    downward = np.minimum.accumulate((sizes + grown)[::-1])[::-1] - grown
-    sizes = np.minimum(upward, downward)
-    return lambda s: np.interp(s, length, sizes)
-
-
-def _back_sizes(tooth: ToothSide, settings: MeshSettings) -> dict[str, Law]:
-    """Edge lengths along the other side from its fillet to the middle of the tip land.
-
-    Nothing is loaded there: edges grow away from the fillet, from that middle, where they are as long as the loaded
-    side's, and from a rounded tip, which they must follow.
-    """
-    grow, longest, back = settings.growth, settings.back_edge_length, tooth.back
-    flank, land = _length(back.involute), _length(back.outline["tip_land"])
-    edge = _length(back.tip_edge) if back.tip_edge else 0.0
-    last = float(_fillet_size(back, settings)(np.array([_length(back.fillet)]))[0])
-    middle = float(front_sizes(tooth, settings)["tip_land"](np.array([_length(tooth.outline["tip_land"])]))[0])
-    # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
-    round_ = _longest_on_rounding(tooth, settings, longest)
-
-    def size(s: Array) -> Array:
-        """By the distance from the start of the flank."""
-        by_ends = np.minimum(last + grow * s, middle + grow * np.abs(flank + edge + land - s))
-        off_tip = np.maximum(np.maximum(flank - s, s - flank - edge), 0.0)
-        return np.minimum(np.minimum(by_ends, round_ + grow * off_tip), longest)
-
-    return {
-        "flank": size,
-        "tip_edge": lambda s: size(s + flank),
-        "tip_land": lambda s: size(s + flank + edge),
-    }
-
-
-def front_sizes(
-    tooth: ToothSide, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
-) -> dict[str, Law]:
-    """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
-    grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
-    fillet, flank = _length(tooth.fillet), _length(tooth.involute)
-    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
-    # Root tension is looked for down from half of a short fillet: as near to a contact at the flank's start as that.
-    joint = settings.junction_edge_length * min(max(fillet / _SHORT_FILLET, _SHORTEST_JOINT), 1.0)
-    joint = min(joint, float(root(np.array([fillet]))[0]))
-    # All orders would have a rounding of straight edges in common beside a contact at the end of the flank.
-    on_edge = _longest_on_rounding(tooth, settings, 0.5 * settings.flank_edge_length)
-
-    def flank_size(s: Array) -> Array:
-        by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))
-        for place, half_width in contacts:
-            off = np.maximum(np.abs(s - place) - 1.2 * half_width, 0.0)
-            by_ends = np.minimum(by_ends, _RESOLVED * half_width + grow * off)
-        return np.minimum(settings.flank_edge_length, by_ends)
-
-    return {
-        "fillet": lambda s: np.minimum(root(s), joint + grow * (fillet - s)),
-        "flank": flank_size,
-        "tip_edge": lambda s: np.minimum(corner + grow * s, on_edge),
-        "tip_land": lambda s: np.minimum(corner + grow * (s + edge), settings.back_edge_length),
-    }
-
-
-def _longest_on_rounding(tooth: ToothSide, settings: MeshSettings, longest: float) -> float:
-    """Longest edge on a tip's edge [modules]: one that follows a rounding, if edges beside it are as short."""
-    if tooth.tip_rounding == 0.0:
-        return longest
-    return min(max(_TURN * tooth.tip_rounding, settings.tip_edge_length), longest)
 
 
 def _side(top: Array, bore_radius: float, size: Law, first: float, last: float = 0.0) -> Chain:

@@ -16,7 +16,7 @@ from fegear.base.errors import InputError
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.bore import check_bore
-from fegear.fem.plane.boundary import fillet_edges
+from fegear.fem.plane.edge_sizes import fillet_edges
 from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence, Round
 from fegear.fem.plane.influence import Influence

@@ -20,7 +20,8 @@ from scipy.sparse.csgraph import connected_components
 from fegear.base.arrays import Array, Index
 from fegear.base.errors import FegearError, InputError
 from fegear.base.printed import percent
-from fegear.fem.plane.boundary import Chain, fillet_chain, finer_bore, front_sizes, sector_boundary
+from fegear.fem.plane.boundary import Chain, fillet_chain, finer_bore, sector_boundary
+from fegear.fem.plane.edge_sizes import front_sizes
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
 from fegear.fem.plane.odd.crack import SHORTEST, Crack, fillet_length

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError
-from fegear.fem.plane.boundary import Chain, graded, sector_boundary
+from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.edge_sizes import graded
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.odd.crack_over_sectors import joined_sectors
 from fegear.fem.plane.tooth_meshing import mesh_inside

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.plane.boundary import Chain, front_sizes, graded, sector_boundary
+from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.edge_sizes import front_sizes, graded
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.supported_section import bore_end, section_on, supported_sector
 from fegear.fem.plane.tooth_meshing import mesh_inside

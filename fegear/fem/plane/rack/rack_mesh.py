@@ -9,7 +9,8 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.base.errors import InputError
-from fegear.fem.plane.boundary import Chain, graded, tooth_chains
+from fegear.fem.plane.boundary import Chain, tooth_chains
+from fegear.fem.plane.edge_sizes import graded
 from fegear.fem.plane.elements import check_cubic_edges
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.settings import MeshSettings
