@@ -96,8 +96,8 @@ def crosscheck(
     Parameters
     ----------
     of : Gear, iterable of Gear, or Pair
-        Of a pair also the mesh stiffness over the mesh cycle, c' and c_gamma_alpha of ISO 6336-1 and the root stress of
-        ISO 6336-3; of helical pairs only what ISO 6336 gives.
+        Of a pair also the mesh stiffness over the mesh cycle, and while each cracked or pitted tooth passes; c' and
+        c_gamma_alpha of ISO 6336-1 and the root stress of ISO 6336-3; of helical pairs only what ISO 6336 gives.
     torque, load : torque or force, optional
         Of a pair, on the driver or along the line of action; 100 N/mm by default.
     positions : int, optional
@@ -109,8 +109,8 @@ def crosscheck(
     -------
     Results
         Tables ``crosscheck_root_stress_<gear>``, ``crosscheck_compliance_<gear>``, ``crosscheck_compliance_<pair>``,
-        ``crosscheck_mesh_stiffness_<pair>``, ``crosscheck_iso_6336_<pair>``; values
-        ``<gear>.root_stress.<formula>.highest_ratio``, ...
+        ``crosscheck_mesh_stiffness_<pair>``, ``crosscheck_odd_tooth_<pair>_<gear>_<tooth>``,
+        ``crosscheck_iso_6336_<pair>``; values ``<gear>.root_stress.<formula>.highest_ratio``, ...
     """
     if not isinstance(of, Pair):
         for key, given in (("torque", torque), ("load", load)):

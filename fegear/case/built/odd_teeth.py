@@ -62,6 +62,15 @@ class OddTeeth:
         """Cracked and missing teeth by the tooth's own number: those of which a 3D gear's body differs."""
         return {number: one for number, one in self.by_number(teeth).items() if isinstance(one, Crack | Missing)}
 
+    def crack_tips(self, teeth: int) -> dict[int, tuple[float, float]]:
+        """Tips of its cracks by the tooth's own number, as formulas take them: begun in the fillet at x > 0 [modules].
+
+        A beam loses the same whichever fillet a crack begins in.
+        """
+        tips = {tooth: (-crack.corners[-1][0] if crack.back else crack.corners[-1][0], crack.corners[-1][1])
+                for tooth, crack in self.cracks}  # fmt: skip
+        return {meshing_order(tooth, teeth, self.member): tip for tooth, tip in tips.items()}
+
     def on_other_flank(self) -> OddTeeth:
         """The same teeth as the gear that they drive loads them, on the flank that is not said to be loaded.
 

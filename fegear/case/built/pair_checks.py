@@ -18,6 +18,9 @@ from fegear.geometry.pair import MEMBERS
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
 
+#: Formulas of compliance that have cracked and pitted teeth.
+WITH_ODD_TEETH = ("potential-energy", "potential-energy-simplified")
+
 
 def _bare(scene: Scene, name: str, *, over_face: bool = False) -> PairSpec:
     """A pair and its loads, before any file is read; `over_face` as in `pair_spec`."""
@@ -102,12 +105,24 @@ def check_odd_teeth(scene: Scene, name: str) -> None:
             key, "true", "has no effect: no gear of this case has odd_tooth",
             f"describe [[gear.{part.driver}.odd_tooth]], or switch the effect off",
         )  # fmt: skip
-    if source != "fe" and (scene.case.gear[part.driver].odd_tooth or scene.case.gear[part.driven].odd_tooth):
+    odd = [(gear, n, tooth) for gear in dict.fromkeys((part.driver, part.driven))
+           for n, tooth in enumerate(scene.case.gear[gear].odd_tooth)]  # fmt: skip
+    if source == "fe" or not odd:
+        return
+    if source not in WITH_ODD_TEETH:
+        among = ", ".join(f'"{one}"' for one in WITH_ODD_TEETH)
         raise InputError(
             key, "true", f'is not available with pair.{name}.compliance.source = "{source}"',
-            f'set pair.{name}.compliance.source = "fe", or switch the effect off; formula of a cracked tooth: '
-            "fegear.formulas.potential_energy_simplified in Python",
+            f'set pair.{name}.compliance.source = "fe" or one of {among}, or switch the effect off',
         )  # fmt: skip
+    for gear, n, tooth in odd:
+        for other in ("hole", "keyway"):
+            if getattr(tooth, other) is not None:
+                raise InputError(
+                    f"gear.{gear}.odd_tooth[{n}].{other}", "(given)",
+                    f'is not available with pair.{name}.compliance.source = "{source}", which has no such gear body',
+                    f'set pair.{name}.compliance.source = "fe", or remove it',
+                )  # fmt: skip
 
 
 def check_relief(scene: Scene, name: str) -> None:

@@ -34,6 +34,8 @@ class ClosedFormCompliance(OneTooth):
         Reference half-width [m].
     log_slope, power : float
         Of the contact formula: Hertz-like or Palmgren-like.
+    linear_contact : float
+        Part of `own` that is the contact's, of a formula that is linear in the load; else zero [m^2/N].
     """
 
     gear: Gear
@@ -42,6 +44,7 @@ class ClosedFormCompliance(OneTooth):
     half_width: float
     log_slope: float
     power: float
+    linear_contact: float = 0.0
 
     reach = 0
     kinks = ()
@@ -110,11 +113,12 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
     here = formula.contact(gear, radii, w, b)
     exponent = math.log2(float(formula.contact(gear, radii[:1], 2.0 * w, b)[0] / here[0]))
     slope = float((here[0] - formula.contact(gear, radii[:1], w, 1.001 * b)[0]) / w / math.log(1.001))
-    power = 0.0
+    power = linear = 0.0
     if abs(exponent - 1.0) < 1e-9:
         own += here / w
+        linear = float(here[0] / w)
     elif abs(exponent - EXPONENT) < 1e-9:
         power = float(here[0] / w**EXPONENT)
     else:
         raise InputError("compliance.source", f'"{name}"', f"has a contact deformation of exponent {exponent:.4f}")
-    return ClosedFormCompliance(gear, formula, spline(lengths, own), b, max(slope, 0.0), power)
+    return ClosedFormCompliance(gear, formula, spline(lengths, own), b, max(slope, 0.0), power, linear)

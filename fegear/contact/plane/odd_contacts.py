@@ -7,6 +7,9 @@ along the normal (Weber and Banaschek); of each tooth this becomes, with the hal
 
     kappa w / (1 - s) (ln(2 h / b(w / (1 - s))) - nu / (2 - 2 nu)).
 
+A formula whose contact is linear in the load divides its part by 1 - s: the Hertzian stiffness of the literature on
+pitting, pi E (L - Delta L) / (4 (1 - nu^2)), with what is left of the contact line's length L.
+
 The floor of such a pit carries no load. One over the whole face leaves its depth as a gap.
 """
 
@@ -203,7 +206,15 @@ def on_less_face(matrices: PairMatrices, share: Array, at: Contacts, compliance:
     """Compliances of pairs whose contact lines are shorter, at shares of the face, shape (n, P)."""
     from fegear.formulas.weber_banaschek import contact_approach  # late: few teeth are odd
 
-    if compliance.hertz == "none" or (share >= 1.0).all():
+    if (share >= 1.0).all():
+        return matrices
+    # formulas only: contact as a spring, whatever its load
+    spring = sum(getattr(source, "linear_contact", 0.0) for source in compliance.both) / compliance.face_width
+    if spring > 0.0:
+        c, each = matrices.compliance.copy(), np.arange(share.shape[0])
+        c[each, each] += np.where(at.present, spring * (1.0 / share - 1.0), 0.0)
+        return replace(matrices, compliance=c)
+    if compliance.hertz == "none":
         return matrices
     load, face = compliance.contact_load, compliance.face_width
     c, each = matrices.compliance.copy(), np.arange(share.shape[0])

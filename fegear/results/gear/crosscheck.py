@@ -5,7 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from fegear.base.effects import ODD_TEETH
 from fegear.base.notes import assuming
+from fegear.case.built.odd_gears import odd_gears_of, reshaped_gears
+from fegear.case.built.odd_teeth import odd_teeth_in
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
@@ -14,6 +17,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Every, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 from fegear.results.gear.crosscheck_answer import (
@@ -47,6 +51,13 @@ from fegear.results.gear.crosscheck_iso import (
     on_iso,
     section_figure,
 )
+from fegear.results.gear.crosscheck_odd import (
+    ODD_CHART,
+    ODD_TABLE,
+    passage_values,
+    said_of_passage,
+    silent_on_odd_teeth,
+)
 from fegear.results.gear.crosscheck_rows import (
     GEAR_COMPLIANCE_COLUMNS,
     PAIR_COMPLIANCE_COLUMNS,
@@ -57,12 +68,14 @@ from fegear.results.gear.crosscheck_rows import (
     extremes,
 )
 from fegear.results.gear.load_positions import chosen_gears
+from fegear.results.gear.odd_gear import ODD_SOLUTIONS, needs_odd_solution_in
 from fegear.results.gear.solved_gear import needs_solution, solution_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.case.reading import Scene
+    from fegear.contact.compared.odd_cycle import OddPassage, OddTeethOfPair
     from fegear.contact.compared.rated_gears import RatedPair
     from fegear.engine.sheet.seen import Seen, Text
     from fegear.fem.plane.table import StiffnessTable
@@ -71,6 +84,9 @@ if TYPE_CHECKING:
 #: Line load of the pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3
 
+
+#: Odd teeth of a pair that are followed through the mesh at most.
+MOST_ODD_TEETH = 4
 
 #: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
 _WHOLE = ""
@@ -137,12 +153,43 @@ def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
     gears = {name: scene.gears[name] for name in chosen_gears(scene)}
     pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
     iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *_helical(scene))}
-    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
+    odd = {name: odd_teeth_of_pair(scene, name) for name in pairs if odd_gears_of(scene, name)}
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso, odd)
+
+
+def odd_teeth_of_pair(scene: Scene, name: str) -> OddTeethOfPair:
+    """Cracked and pitted teeth of a plane pair, as its mesh stiffness by formulas takes them."""
+    from fegear.contact.compared.odd_cycle import OddTeethOfPair, OddTooth
+
+    part, pair = scene.case.pair[name], scene.pairs[name]
+    known = {m: odd_teeth_in(scene, name, gear) for m, gear in zip(MEMBERS, (part.driver, part.driven), strict=True)
+             if gear in odd_gears_of(scene, name)}  # fmt: skip
+    teeth = [
+        OddTooth(member, one.name, tooth, what)
+        for member, one in known.items()
+        for what, numbers in (
+            ("cracked", [tooth for tooth, _ in one.cracks]),
+            ("pitted", [tooth for tooth, flank in one.flanks if flank.pits]),
+        )
+        for tooth in numbers
+    ]
+    return OddTeethOfPair(
+        tuple(teeth[:MOST_ODD_TEETH]),
+        {member: one.crack_tips(pair.gear(member).teeth) for member, one in known.items()},
+        {member: dict(one.flanks) for member, one in known.items()},
+    )
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     mates = [gear for name in _pairs(scene) for gear in (scene.case.pair[name].driver, scene.case.pair[name].driven)]
-    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates))
+    odd = [task for name in _pairs(scene) for task in needs_odd_solution_in(scene, name, *_cracked(scene, name))]
+    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates), *dict.fromkeys(odd))
+
+
+def _cracked(scene: Scene, name: str) -> tuple[str, ...]:
+    """Gears of a pair that are solved with their cracked teeth."""
+    reshaped = reshaped_gears(scene)
+    return tuple(gear for gear in odd_gears_of(scene, name) if gear in reshaped)
 
 
 def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
@@ -180,7 +227,8 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         iso = attempt(partial(pair_stiffness, pair, specific_load=check.applied_load))
         in_mesh = attempt(partial(mesh_cycle, pair, driver, driven, w))
         outer = at_single_contact(pair, (driver, driven))
-        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value, outer)
+        odd = _odd_passages(asked, name, upstream) if name in asked.odd else ()
+        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso, in_mesh.value, outer, odd)
         iso_asked = asked.iso[name]
         rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
         work.progress((len(gears) + len(pairs)) / count)
@@ -188,6 +236,22 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         if wanted.helical is not None and wanted.settings is not None:
             rated[name] = rated_helical_pair(wanted.helical, wanted.choice, wanted.rims, wanted.settings, work.cache)
     return CrosscheckData(gears, pairs, rated)
+
+
+def _odd_passages(asked: CrosscheckInputs, name: str, upstream: Upstream) -> tuple[OddPassage, ...]:
+    """Mesh stiffness of a pair while each of its cracked or pitted teeth passes; none where no pair is in contact."""
+    from fegear.contact.compared.odd_cycle import odd_passages
+    from fegear.contact.plane.fe_compliance import finite_element_compliance
+    from fegear.contact.plane.odd_compliance import odd_compliance
+    from fegear.formulas.outcome import attempt
+
+    check = asked.pairs[name]
+    ordinary = tuple(finite_element_compliance(solution_of(upstream, gear)) for gear in check.gears)
+    solved = {task.subject: one for task, one in upstream.items() if task.stage in ODD_SOLUTIONS}
+    odd = tuple(odd_compliance(solved[gear]) if gear in solved else one
+                for gear, one in zip(check.gears, ordinary, strict=True))  # fmt: skip
+    found = attempt(partial(odd_passages, check.pair, odd, ordinary, check.line_load, asked.odd[name]))
+    return found.value or ()
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
@@ -248,21 +312,27 @@ def _said(seen: Seen) -> list[str]:
 
     Stiffness leads where a pair carries a load.
     """
-    outer, helical, stiffness, cycles, compliance, gears = (
+    outer, helical, stiffness, cycles, odd, compliance, gears = (
         [sentence for one in seen.each(where) for sentence in said(one)]
         for where, said in (
             ("pairs", said_of_single_contact), ("iso", said_of_helical), ("mean_stiffness", said_of_stiffness),
-            ("cycles", said_of_cycle), ("pairs", said_of_compliance), ("gears", said_of_root_stress),
+            ("cycles", said_of_cycle), ("passages", said_of_passage), ("pairs", said_of_compliance),
+            ("gears", said_of_root_stress),
         )
     )  # fmt: skip
     loaded = any(one.check.loaded for one in seen.data.pairs.values())
     if loaded or not (outer or gears):
-        return [*stiffness, *cycles, *outer, *helical, *compliance, *gears]
-    return [*outer, *helical, *gears, *compliance, *stiffness, *cycles]
+        return [*odd, *stiffness, *cycles, *outer, *helical, *compliance, *gears]
+    return [*outer, *helical, *gears, *compliance, *stiffness, *cycles, *odd]
 
 
 def _first_figure(seen: Seen) -> str:
-    """Mesh stiffness of the first pair under a load, else of the first gear; of helical pairs alone there is none."""
+    """Mesh stiffness of the first pair under a load, while an odd tooth passes if there is one; else the first gear's.
+
+    Of helical pairs alone there is none.
+    """
+    if (key := next(iter(seen.data.passages), None)) is not None:
+        return f"crosscheck_odd_tooth_{key}"
     loaded = (name for name in seen.data.cycles if seen.data.pairs[name].check.loaded)
     if (pair := next(loaded, None)) is not None:
         return f"crosscheck_mesh_stiffness_{pair}"
@@ -279,6 +349,7 @@ _SHEET = Sheet(
         Rows("crosscheck_sources", "Formulas and their basis of comparison", (Every("sources"),), of="sources"),
         Each("gears", _STRESS_TABLE, _TOOTH_TABLE),
         Each("cycles", CYCLE_TABLE),
+        Each("passages", ODD_TABLE),
         Each("pairs", _SINGLE_TABLE, _PAIR_TABLE),
         Each("iso", ISO_TABLE),
         Each("gears", SECTION_TABLE, when="cornell"),
@@ -302,9 +373,11 @@ _SHEET = Sheet(
             Number("ratio_to_fe", owner="{key}"),
         ),
         Each("cycles", cycle_values),
+        Each("passages", passage_values),
         Each("gears", *SECTION_VALUES, when="cornell"),
     ),
     figures=(
+        Each("passages", ODD_CHART),
         Each("cycles", CYCLE_CHART),
         Each(
             "gears",
@@ -323,6 +396,7 @@ _SHEET = Sheet(
         Each("gears", _silent(_ROOT, "root_stress"), _silent(_TOOTH, "compliance")),
         Each("pairs", _silent(_of_pair, "compliance")),
         Each("cycles", silent_formulas),
+        Each("passages", silent_on_odd_teeth),
         Each("iso", _silent_iso),
     ),
 )  # fmt: skip
@@ -342,4 +416,5 @@ CROSSCHECK = Stage(
         *RING,
     ),
     forecast=_forecast,
+    effects_of=lambda _scene, _subject: (ODD_TEETH.name,),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ from fegear.base.shown import shown, shows
 from fegear.results.gear.crosscheck_answer import MeanStiffness
 from fegear.results.gear.crosscheck_cycle import CycleCompared
 from fegear.results.gear.crosscheck_iso import CornellSection, IsoInputs, IsoPair, load_of_stiffness
+from fegear.results.gear.crosscheck_odd import PassageCompared
 from fegear.results.gear.crosscheck_rows import (
     GearComplianceRows,
     PairComplianceRows,
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.compared.mesh_cycle import MeshCycle
+    from fegear.contact.compared.odd_cycle import OddPassage, OddTeethOfPair
     from fegear.contact.compared.rated_gears import RatedPair
     from fegear.contact.compared.single_contact import AtSingleContact
     from fegear.fem.plane.table import StiffnessTable
@@ -70,11 +72,15 @@ class PairCheck:
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckInputs:
-    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
+    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name.
+
+    `odd`: which teeth of pairs are cracked or pitted.
+    """
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, PairCheck]
     iso: Mapping[str, IsoInputs]
+    odd: Mapping[str, OddTeethOfPair] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +100,7 @@ class PairAnswers:
 
     `cycle`: mesh stiffness over the mesh cycle; None where no pair is on the path somewhere.
     `outer`: root stress of both gears at their outer points of single pair contact; empty where there are none.
+    `odd`: mesh stiffness while each cracked or pitted tooth passes.
     """
 
     reference: PairReference
@@ -101,6 +108,7 @@ class PairAnswers:
     iso: Outcome[Stiffness]
     cycle: MeshCycle | None
     outer: tuple[AtSingleContact, ...] = ()
+    odd: tuple[OddPassage, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +250,12 @@ class Everything:
     def cycles(self) -> dict[str, CycleCompared]:
         """Mesh stiffness of the pairs over the mesh cycle, where there is one."""
         return {name: one.cycle for name, one in self.pairs.items() if one.cycle is not None}
+
+    @property
+    def passages(self) -> dict[str, PassageCompared]:
+        """Mesh stiffness while odd teeth pass, by pair, gear and number of the tooth."""
+        found = (PassageCompared(name, odd) for name, one in self.pairs.items() for odd in one.answers.odd)
+        return {one.key: one for one in found}
 
     @property
     def sources(self) -> tuple[FormulaSource, ...]:

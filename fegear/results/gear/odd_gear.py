@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 ODD = "odd-gear-solution"
 #: That of the same gears on the flanks with which they drive, where they are driven by the others.
 OTHER = "odd-gear-other-flank"
+#: Both.
+ODD_SOLUTIONS = (ODD, OTHER)
 #: Seconds of a ring with one odd sector with the default settings, and of each further odd tooth.
 _RING, _CRACK = 0.12, 0.08
 #: Places over the flank at which a crack is looked at; beyond which share of them it counts as closed.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fegear.base.notes import neglecting
+from fegear.base.notes import assuming, neglecting
 from fegear.case.built.odd_gears import odd_gears_of, reshaped_gears
 from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, check_plane_pits, odd_teeth_in
 from fegear.case.built.pair_checks import check_odd_teeth, check_plane_pair
@@ -13,6 +13,7 @@ from fegear.case.built.pair_spec import pair_spec
 from fegear.contact.odd_flank import OddFlank
 from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
+from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.odd_gear import needs_odd_solution_in
 from fegear.results.gear.solved_gear import needs_solution
 from fegear.results.pair.loaded_pair import cites, forecast, settings
@@ -27,12 +28,27 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
 
 
+@dataclass(frozen=True)
+class AskedOfOddTeeth(AskedOfTeeth):
+    """A pair with odd teeth that is to be loaded.
+
+    Parameters
+    ----------
+    tips : tuple of tuple of (int, (float, float))
+        Tips of the cracks of driver and driven gear for a formula, as of `OddTeeth.crack_tips`.
+    """
+
+    tips: tuple[tuple[tuple[int, tuple[float, float]], ...], ...] = ((), ())
+
+
 def _pairs(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in plane_pairs(scene) if odd_gears_of(scene, name))
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     part, reshaped = scene.case.pair[name], reshaped_gears(scene)
+    if part.compliance.source != "fe":
+        return ()
     odd = tuple(gear for gear in odd_gears_of(scene, name) if gear in reshaped)
     return (
         *needs_odd_solution_in(scene, name, *odd),
@@ -40,7 +56,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     )
 
 
-def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
+def _inputs(scene: Scene, name: str) -> AskedOfOddTeeth:
     spec, odd = pair_spec(scene, name), odd_gears_of(scene, name)
     known = {gear: odd_teeth_in(scene, name, gear) for gear in odd}
     driver, driven = (
@@ -49,12 +65,28 @@ def _inputs(scene: Scene, name: str) -> AskedOfTeeth:
         else flank
         for flank in spec.both
     )
-    return replace(AskedOfTeeth.of(scene, replace(spec, driver=driver, driven=driven), ()), neglected=False)
+    asked = AskedOfOddTeeth.of(scene, replace(spec, driver=driver, driven=driven), ())
+    if spec.compliance == "fe":
+        return replace(asked, neglected=False)
+    tips = tuple(
+        tuple(sorted(known[gear].crack_tips(spec.pair.gear(member).teeth).items())) if gear in odd else ()
+        for member, gear in zip(MEMBERS, spec.gears, strict=True)
+    )
+    return replace(asked, neglected=False, tips=tips)
 
 
-def _compute(asked: AskedOfTeeth, upstream: Upstream, work: Work) -> LoadedPair:
+def _compute(asked: AskedOfOddTeeth, upstream: Upstream, work: Work) -> LoadedPair:
     from fegear.contact.plane.maker import load_plane
 
+    spec = asked.spec
+    if spec.compliance != "fe":
+        from fegear.contact.plane.odd_formula_compliance import odd_formula_compliance  # late: all formulas
+
+        sources = tuple(
+            odd_formula_compliance(spec.pair.gear(member), spec.compliance, dict(tips))
+            for member, tips in zip(MEMBERS, asked.tips, strict=True)
+        )
+        return load_plane(spec, sources, estimates=asked.estimates)  # a formula is no content of a key
     solved = {task.subject: gear for task, gear in upstream.items()}
     gears = tuple(solved[gear] for gear in asked.spec.gears)
     return load_plane(asked.spec, gears, cache=work.cache, estimates=asked.estimates)
@@ -85,6 +117,11 @@ def _remarks(seen: Seen) -> Iterator[str]:
                 "change the contact only: tooth body as without pits, uniform load over the remaining face. Set "
                 'width = "solid" of the pair for pits beside mid-face.'
             )
+    if spec.compliance != "fe" and any(seen.asked.tips):
+        yield assuming(
+            f"Pair {seen.name}: cracked teeth by {spec.compliance}: open crack faces, gear body as without a crack, "
+            "no coupling of neighbouring teeth."
+        )
     for flank in spec.both if not spec.relief else ():
         if flank.profiles:
             yield neglecting(f"Gear {flank.gear}: profiles of single teeth ignored because effects.relief is off.")
