@@ -44,6 +44,29 @@ def nearest(
     return f'did you mean "{near[0]}"? {listed}' if near and len(names) > 1 else listed
 
 
+#: Plurals that are no singular and an s.
+_IRREGULAR = {"teeth": "tooth", "radii": "radius", "axes": "axis"}
+
+
+def other_number(name: str, known: Iterable[str]) -> str:
+    """The known name of which another one is the singular or the plural: `teeth` for `tooth`; empty where none is."""
+    single = _singular(name)
+    return next((one for one in known if one != name and _singular(one) == single), "")
+
+
+def _singular(name: str) -> str:
+    """A name with all its words in the singular."""
+    return "_".join(map(_one_singular, name.lower().split("_")))
+
+
+def _one_singular(word: str) -> str:
+    if word in _IRREGULAR:
+        return _IRREGULAR[word]
+    if word.endswith("ies"):
+        return f"{word[:-3]}y"
+    return word[:-1] if word.endswith("s") and not word.endswith(("ss", "us", "is")) else word
+
+
 def _listed(name: str, names: list[str]) -> str:
     """All names, or the most similar ones where they are too many for a sentence."""
     if len(names) <= _MOST:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.base.errors import PATH, InputError, shown
 from fegear.case.known_keys import keys_at, places_of, words_at
-from fegear.case.nearest import nearest
+from fegear.case.nearest import nearest, other_number
 from fegear.case.trade_words import Meaning, of_key, of_value
 
 if TYPE_CHECKING:
@@ -24,7 +24,12 @@ _ALL_BUT = 0.9
 
 
 def meant(word: str, known: Collection[str] = ()) -> Meaning | None:
-    """What an unknown key means: a word of the trade, or a key of another table unless it is all but one of these."""
+    """What an unknown key means: a known one in the other number, a word of the trade, or a key of another table.
+
+    Of another table unless it is all but a known one. `gears` beside `results` are tables of the case: `[gear.NAME]`.
+    """
+    if "results" not in known and (key := other_number(word, known)):
+        return Meaning((key,))
     found = of_key(word, known)
     places = () if found or get_close_matches(word, known, n=1, cutoff=_ALL_BUT) else tuple(places_of(word))
     return Meaning(places) if 0 < len(places) <= _FEW_PLACES else found

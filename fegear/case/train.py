@@ -12,7 +12,6 @@ from fegear.case.part import (
     LengthOrZero,
     Number,
     Part,
-    PositiveInertia,
     PositiveLength,
     PositiveNumber,
     PositivePressure,
@@ -23,6 +22,8 @@ from fegear.case.part import (
 from fegear.geometry.plausible import LONGEST_OF_TRAIN, refuse_shaft
 
 TorsionalStiffness = Annotated[float, quantity("torsional_stiffness", positive=True)]
+#: What a body has besides its gears; zero where it has nothing.
+InertiaOrZero = Annotated[float, quantity("inertia", not_negative=True)]
 TorsionalDamping = Annotated[float, quantity("torsional_damping", not_negative=True)]
 MeshDamping = Annotated[float, quantity("damping", not_negative=True)]
 FrequencyOrZero = Annotated[float, quantity("frequency")]
@@ -38,9 +39,9 @@ Backlash = LengthOrZero | Literal["unlimited"]
 class BodyPart(Part):
     """A body that turns: its inertia, or the gears that it is made of, with their teeth and bodies."""
 
-    inertia: PositiveInertia | None = Field(
+    inertia: InertiaOrZero | None = Field(
         default=None,
-        description="Moment of inertia, in addition to that of `gears`.",
+        description="Moment of inertia, in addition to that of `gears`; zero only beside these.",
     )
     gears: Annotated[list[str], Field(min_length=1)] | None = Field(
         default=None,
@@ -54,6 +55,11 @@ class BodyPart(Part):
             raise refuse(
                 "is missing", 'set inertia = "0.002 kg*m^2", or gears = ["a"] to take it from their geometry',
                 key="inertia", value="(not given)",
+            )  # fmt: skip
+        if self.inertia == 0.0 and self.gears is None:
+            raise refuse(
+                "must be greater than zero",
+                'replace it by gears = ["a"] for the inertia of gears from their geometry', key="inertia",
             )  # fmt: skip
         return self
 

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import fegear
 from fegear.results.gear import odd_tooth_stiffness
 from fegear.results.gear.odd_tooth_stiffness import _compute
 from fegear.results.planetary.compound_modes import _remarks
@@ -127,11 +126,3 @@ def test_modes_depend_on_the_angle_between_carriers_where_a_set_has_fewer_than_t
     asked.drive = None
     assert any("compound.P.input" in str(one) for one in _remarks(seen))
     assert len(list(_remarks(seen))) == len(sentences) + 1
-
-
-def test_a_formula_refuses_a_cracked_tooth_with_the_place_of_its_own_formula():
-    gear = fegear.Gear(26, "2.5 mm", bore_radius="11 mm", face_width="14 mm", name="pinion")
-    wheel = fegear.Gear(41, "2.5 mm", bore_radius="16 mm", face_width="14 mm", name="wheel")
-    pair = fegear.Pair(gear.with_crack(depth_ratio=0.3), wheel, compliance="potential-energy-simplified")
-    with pytest.raises(fegear.InputError, match=r"fegear\.formulas\.potential_energy_simplified"):
-        fegear.mesh_stiffness_revolution(pair, torque="75 N*m")

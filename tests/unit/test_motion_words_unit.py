@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fegear.base.notes import NoteClass
+from fegear.case.built.neglected_in_motion import FactorChange
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.results.train import motion
 from fegear.results.train.motion import _common_period, _unsteady, _without_backlash, averaging_remarks, undamped
@@ -111,6 +113,23 @@ def test_teeth_without_backlash_cannot_lose_contact_and_rounded_shifts_are_said(
     assert plain.startswith("Mesh I: no backlash: contact on both flanks")
 
 
+def test_non_working_flanks_that_carry_load_are_said_where_they_do_most():
+    meshes = (SimpleNamespace(pair=SimpleNamespace(normal_backlash=0.0)),) * 2
+    data = SimpleNamespace(**{**vars(TRAIN), "meshes": meshes, "speed_of": "motor"})
+    states = [state("periodic", rpm, periods=1) for rpm in (900.0, 1000.0, 1100.0)]
+    for one, share in zip(states, (0.0, 0.15, 0.02), strict=True):
+        one.behind = np.array([share, 0.0])
+    changes = [FactorChange(m, 2.0 * rpm * RPM, 1.9, -0.2) for m, rpm in ((0, 1000.0), (0, 1100.0), (1, 1000.0))]
+    (said,) = _without_backlash(data, tuple(states), changes)
+    assert said.kind is NoteClass.ASSUMED
+    assert "at 2 of 3 speeds the non-working flanks carry load, up to 15 % of the time at 1000 rpm" in said
+    assert "(dynamic factor 1.9, with unlimited backlash 1.7)" in said
+    assert said.count("unlimited backlash") == 1
+    assert "unlimited backlash" not in _without_backlash(data, tuple(states))[0]
+    (silent,) = _without_backlash(data, tuple(states[:1]))
+    assert silent.startswith("Mesh I: no backlash: contact on both flanks")
+
+
 @pytest.mark.parametrize("shift", [0.0, 0.9e-9, 2e-4, -3e-3])
 def test_a_ripple_whose_frequency_was_shifted_to_share_a_period_is_named_at_its_worst_speed(shift):
     def model(speed, stretch):
@@ -157,10 +176,12 @@ def test_with_a_ripple_the_motion_is_found_without_and_with_it_each_half_of_the_
     monkeypatch.setattr(motion, "gear_train", lambda upstream: upstream)
     monkeypatch.setattr("fegear.dynamics.motion.moving_train.steady_motions", steady)
     monkeypatch.setattr(motion, "neglected_in_motion", lambda spec, data, states: (spec, data.ripple, states))
+    monkeypatch.setattr(motion, "backlash_changes", lambda *_args: ["room"])
     asked = SimpleNamespace(motion="spec", neglected=True)
     found = motion._compute(asked, Data(("one",)), SimpleNamespace(progress=told.append))
     assert (found.states, found.still) == (("moved",), ("still",))
     assert found.neglected == ("spec", ("one",), ("moved",))
+    assert found.with_room == ("room",)
     assert told == [0.25, 0.75]
     plain = motion._compute(
         SimpleNamespace(motion="spec", neglected=False), Data(()), SimpleNamespace(progress=told.append)

@@ -3,6 +3,7 @@
 import tomllib
 from collections import Counter
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -10,9 +11,10 @@ from fegear.base.errors import InputError
 from fegear.case import trade_words
 from fegear.case.known_keys import keys_at
 from fegear.case.model import Case
-from fegear.case.nearest import nearest
+from fegear.case.nearest import nearest, other_number
 from fegear.case.reading import build_scene, set_key
 from fegear.case.refusal import meant
+from fegear.case.train import BodyPart
 from fegear.engine.plan import make_plan
 from fegear.results.catalogue import STAGES
 
@@ -228,3 +230,38 @@ def test_what_is_not_possible_is_said_of_values_too(change, told, tmp_path):
 def test_a_misspelt_word_of_the_trade_is_one(typed, remedy):
     known = ("ball_diameter", "bore_radius", "bore_diameter", "tip_diameter", "module", "teeth")
     assert nearest(typed, known, words=meant).startswith(remedy)
+
+
+@pytest.mark.parametrize(
+    ("table", "typed", "key"),
+    [
+        (["gear", "a"], "tooth", "teeth"),
+        (["gear", "a"], "odd_teeth", "odd_tooth"),
+        (["effects"], "odd_tooth", "odd_teeth"),
+        (["stiffness"], "radius", "radii"),
+        (["train", "body", "b"], "gear", "gears"),
+        (["train"], "bodies", "body"),
+        (["dynamics"], "Frequency", "frequencies"),
+        (["gear", "a", "odd_tooth", "0"], "cracks", "crack"),
+    ],
+)
+def test_a_key_in_the_other_number_is_named_first(table, typed, key):
+    known = keys_at(table)
+    assert nearest(typed, known, words=meant).startswith(f'did you mean "{key}"?')
+
+
+def test_names_in_one_number_only_have_none_and_tables_of_the_case_stay_tables():
+    assert other_number("bias", ["bias", "gear"]) == ""
+    assert other_number("class", ["clas", "glass"]) == ""
+    assert other_number("radius", ["radiu"]) == ""
+    assert nearest("gears", keys_at([]), words=meant).startswith("use gear.NAME (a table for each")
+
+
+def test_a_body_of_gears_may_have_nothing_besides_and_one_of_nothing_may_not():
+    body = BodyPart.model_validate({"inertia": "0 kg*m^2", "gears": ["a"]})
+    assert body.inertia == 0.0
+    case = tomllib.loads(CASE)
+    case["train"] = {"body": {"m": {"inertia": "0 kg*m^2"}}}
+    with pytest.raises(InputError, match=r'must be greater than zero; replace it by gears = \["a"\]') as refused:
+        build_scene(case, "case", Path())
+    assert refused.value.key == "train.body.m.inertia"

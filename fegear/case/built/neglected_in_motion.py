@@ -106,6 +106,20 @@ def _with_backlash(data: GearTrain) -> GearTrain:
     return replace(data, train=replace(data.train, meshes=meshes))
 
 
+def backlash_changes(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+    """What unlimited backlash changes where non-working flanks carry load for the largest part of the time.
+
+    Of meshes without backlash whose teeth may lose contact; no work where their non-working flanks carry none, and
+    none where a motion does not repeat, which takes long to find.
+    """
+    tight = [m for m in _loaded(data) if data.train.meshes[m].backlash == 0.0] if asked.contact_loss else []
+    known = [state for state in states if state.kind == "periodic" and any(state.behind[m] > 0.0 for m in tight)]
+    if not known:
+        return []
+    worst = max(known, key=lambda state: max(float(state.behind[m]) for m in tight))
+    return [change for change in _changes(asked, _with_backlash(data), worst) if change.mesh in tight]
+
+
 def friction_changes(asked: MotionSpec, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What tooth friction changes at the speed of the largest dynamic factor."""
     if not asked.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):

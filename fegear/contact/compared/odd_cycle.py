@@ -6,7 +6,7 @@ flanks are perfect but for pits, touch on the path of contact only, and all have
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -104,8 +104,8 @@ class OddPassage:
 
 def odd_passages(
     pair: GearPair,
-    odd: tuple[GearCompliance, GearCompliance],
-    ordinary: tuple[GearCompliance, GearCompliance],
+    odd: Sequence[GearCompliance],
+    ordinary: Sequence[GearCompliance],
     line_load: float,
     known: OddTeethOfPair,
 ) -> tuple[OddPassage, ...]:
@@ -114,7 +114,7 @@ def odd_passages(
     Parameters
     ----------
     pair : GearPair
-    odd, ordinary : tuple of GearCompliance
+    odd, ordinary : sequence of GearCompliance
         Finite elements of driver and driven gear with their odd teeth, and without.
     line_load : float
         Of all tooth pairs together, along the line of action [N/m].
@@ -149,8 +149,8 @@ _Both = tuple[Engagement, Engagement]
 
 def _both(
     pair: GearPair,
-    odd: tuple[GearCompliance, GearCompliance],
-    ordinary: tuple[GearCompliance, GearCompliance],
+    odd: Sequence[GearCompliance],
+    ordinary: Sequence[GearCompliance],
     known: OddTeethOfPair,
     *,
     coupling: bool,
@@ -158,8 +158,8 @@ def _both(
     """With odd teeth and without."""
     first, second = (dict(known.flanks.get(member, {})) for member in MEMBERS)
     return (
-        Engagement(PairCompliance(pair, *odd, coupling=coupling), driver_odd=first, driven_odd=second),
-        Engagement(PairCompliance(pair, *ordinary, coupling=coupling)),
+        Engagement(PairCompliance(pair, odd[0], odd[1], coupling), driver_odd=first, driven_odd=second),
+        Engagement(PairCompliance(pair, ordinary[0], ordinary[1], coupling)),
     )
 
 
@@ -168,7 +168,7 @@ def _formula(pair: GearPair, name: str, known: OddTeethOfPair) -> _Both:
         tuple(odd_formula_compliance(pair.gear(member), name, tips.get(member, {})) for member in MEMBERS)
         for tips in (known.tips, {})
     )
-    return _both(pair, odd, ordinary, known, coupling=False)  # type: ignore[arg-type]  # a member each
+    return _both(pair, odd, ordinary, known, coupling=False)
 
 
 def _follow(x: Array, cycles: list[int], load: float, both: _Both) -> OddAndOrdinary:

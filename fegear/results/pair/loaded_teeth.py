@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from fegear.base.effects import PLANE_EFFECTS, ROOT_EFFECTS, WIDE_EFFECTS
 from fegear.case.built.members import gear_name
@@ -75,7 +75,7 @@ class AskedOfTeeth:
         return self.spec.name
 
     @classmethod
-    def of(cls, scene: Scene, spec: PairSpec, notes: tuple[str, ...]) -> AskedOfTeeth:
+    def of(cls, scene: Scene, spec: PairSpec, notes: tuple[str, ...]) -> Self:
         """What a scene asks."""
         case = scene.case
         return cls(spec, scene.estimates, scene.sizes_neglected, case.effects, case.accuracy.tolerance, notes)

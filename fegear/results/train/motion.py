@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.notes import neglecting
+from fegear.base.notes import assuming, neglecting
 from fegear.base.printed import percent
-from fegear.case.built.neglected_in_motion import SIZED, NeglectedInMotion, motion_remarks, neglected_in_motion
+from fegear.case.built.neglected_in_motion import (
+    SIZED,
+    NeglectedInMotion,
+    backlash_changes,
+    motion_remarks,
+    neglected_in_motion,
+)
 from fegear.case.built.train import motion_spec, train_inputs
 from fegear.case.part import at
 from fegear.dynamics.motion.motion_spec import MotionSpec
@@ -24,8 +30,9 @@ from fegear.results import forecasts
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_train, the_train
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
+    from fegear.case.built.neglected_in_motion import FactorChange
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.dynamics.motion.steady_state import SteadyState
@@ -41,13 +48,15 @@ _SHIFTED = 1e-9
 class SweepData:
     """Steady motions over speeds, in increasing order of speed, and what they neglect.
 
-    `still`: the same without torque ripple, where there is any.
+    `still`: the same without torque ripple, where there is any. `with_room`: what unlimited backlash changes of meshes
+    without any, at the speed at which their non-working flanks carry load for the largest part of the time.
     """
 
     train: GearTrain
     states: tuple[SteadyState, ...]
     neglected: NeglectedInMotion
     still: tuple[SteadyState, ...] = ()
+    with_room: tuple[FactorChange, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -147,20 +156,36 @@ def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
     else:
         still, states = (), steady_motions(asked.motion, data, work.progress)
     neglected = neglected_in_motion(asked.motion, data, states) if asked.neglected else NeglectedInMotion({}, {})
-    return SweepData(data, states, neglected, still)
+    with_room = tuple(backlash_changes(asked.motion, data, states)) if asked.neglected else ()
+    return SweepData(data, states, neglected, still, with_room)
 
 
-def _without_backlash(data: GearTrain) -> list[str]:
-    """Meshes whose teeth touch on both flanks, so that contact loss cannot act."""
+def _without_backlash(
+    data: GearTrain, states: tuple[SteadyState, ...] = (), with_room: Sequence[FactorChange] = ()
+) -> list[str]:
+    """Meshes whose teeth touch on both flanks, so that contact loss cannot act, and where their other flanks carry."""
     said = []
-    for mesh, one in zip(data.train.meshes, data.meshes, strict=True):
+    for m, (mesh, one) in enumerate(zip(data.train.meshes, data.meshes, strict=True)):
         if mesh.backlash > 0.0:
             continue
         jam = one.pair.normal_backlash
         why = f" (negative by {-jam * 1e6:.3g} um, rounded profile shifts)" if jam < 0.0 else ""
+        remedy = f'set thickness_allowance of a gear, or train.mesh.{mesh.name}.backlash (a length or "unlimited").'
+        behind = [state for state in states if state.behind[m] > 0.0]
+        if not behind:
+            said.append(f"Mesh {mesh.name}: no backlash{why}: contact on both flanks, no loss of contact; {remedy}")
+            continue
+        worst = max(behind, key=lambda state: float(state.behind[m]))
+        room = "".join(
+            f" (dynamic factor {one.factor:.4g}, with unlimited backlash {one.factor + one.size:.4g})"
+            for one in with_room if one.mesh == m and one.speed == worst.model.speed
+        )  # fmt: skip
         said.append(
-            f"Mesh {mesh.name}: no backlash{why}: contact on both flanks, no loss of contact; set "
-            f'thickness_allowance of a gear, or train.mesh.{mesh.name}.backlash (a length or "unlimited").'
+            assuming(
+                f"Mesh {mesh.name}: no backlash{why}: at {len(behind)} of {len(states)} speeds the non-working flanks "
+                f"carry load, up to {percent(float(worst.behind[m]))} of the time at {speed_text(data, worst)}{room}. "
+                f"Gears with backlash lose contact there: {remedy}"
+            )
         )
     return said
 
@@ -324,7 +349,10 @@ _SHEET = Sheet(
     name=lambda _asked: "",
     remarks=(
         lambda seen: motion_remarks(seen.data.neglected, seen.data.train, seen.asked.effects, seen.asked.tolerance),
-        lambda seen: _without_backlash(seen.data.train) if seen.asked.motion.contact_loss else [],
+        lambda seen: (
+            _without_backlash(seen.data.train, seen.data.states, seen.data.with_room)
+            if seen.asked.motion.contact_loss else []
+        ),
         Remark(
             neglecting("dynamics.friction ignored because effects.friction is off."),
             when=lambda seen: seen.asked.idle_friction,
