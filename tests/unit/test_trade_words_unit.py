@@ -260,8 +260,10 @@ def test_names_in_one_number_only_have_none_and_tables_of_the_case_stay_tables()
 def test_a_body_of_gears_may_have_nothing_besides_and_one_of_nothing_may_not():
     body = BodyPart.model_validate({"inertia": "0 kg*m^2", "gears": ["a"]})
     assert body.inertia == 0.0
-    case = tomllib.loads(CASE)
-    case["train"] = {"body": {"m": {"inertia": "0 kg*m^2"}}}
+    case = {
+        "results": ["geometry"], "gear": {"a": {"teeth": 24, "module": "3 mm"}},
+        "train": {"body": {"m": {"inertia": "0 kg*m^2"}}},
+    }  # fmt: skip
     with pytest.raises(InputError, match=r'must be greater than zero; replace it by gears = \["a"\]') as refused:
         build_scene(case, "case", Path())
     assert refused.value.key == "train.body.m.inertia"
