@@ -247,7 +247,7 @@ def test_a_misspelt_word_of_the_trade_is_one(typed, remedy):
 )
 def test_a_key_in_the_other_number_is_named_first(table, typed, key):
     known = keys_at(table)
-    assert nearest(typed, known, words=meant).startswith(f'did you mean "{key}"?')
+    assert nearest(typed, known, words=meant).startswith(f'did you mean "{key}"')
 
 
 def test_names_in_one_number_only_have_none_and_tables_of_the_case_stay_tables():
