@@ -9,6 +9,7 @@ from typing import Any
 from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
+from fegear.results.catalogue import STAGES
 from fegear.workbench.gear import Gear
 from fegear.workbench.given import cache_of, table, taken, texts, working_folder
 from fegear.workbench.pair import Pair
@@ -75,7 +76,7 @@ def compute(
     if tolerance is not None:
         document["accuracy"] = {"tolerance": tolerance}
     document = _joined(document, table(tables, "tables"))
-    title = f"{', '.join(wanted)} of {' and '.join(document['gear'])}"
+    title = f"{', '.join(map(_spoken, wanted))} of {' and '.join(document['gear'])}"
     whole = {"title": title, "results": wanted, **document}
     scene = replace(build_scene(taken(whole, "case"), wanted[0], working_folder(), bare_si=True), neglects=False)
     return run_scene(scene, progress=progress, cache=cache_of(cache) if known is None else cache_of(cache, known))
@@ -121,6 +122,11 @@ def crosscheck(
         of, "crosscheck", torque=torque, load=load, tables={"stiffness": {"positions": positions or 20}},
         tolerance=tolerance, progress=progress, cache=cache,
     )  # fmt: skip
+
+
+def _spoken(result: str) -> str:
+    """A result in words, as progress and reports name it."""
+    return next((entry.title for entry in STAGES.entries if result in entry.results), result)
 
 
 def _joined(document: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from fegear.engine.run import Silence
 from fegear.engine.table import Column, Table
 from fegear.engine.value import Value
 from fegear.output.numbers import pretty_unit
+from fegear.output.plane_state import plane_state
 from fegear.output.report.blocks import value_cells
 from fegear.output.spoken_values import answer_lines
 from fegear.workbench.given import folder_of, texts
@@ -108,7 +109,9 @@ class Results(Found):
         found = {word: len(getattr(self, word)) for word in ("values", "tables", "figures")}
         found["notes"] = len(self.notes())
         counts = ", ".join(f"{count} {word if count > 1 else word[:-1]}" for word, count in found.items() if count)
-        return f"{self.scene.case.title or self.scene.name}: {counts} ({sum(self.seconds.values()):.2g} s)"
+        title = self.scene.case.title or self.scene.name
+        plane = f" (2D, {state})" if (state := plane_state(self)) else ""
+        return f"{title}{plane}: {counts} ({sum(self.seconds.values()):.2g} s)"
 
     def _repr_html_(self) -> str:
         """Show values with errors, the names of tables and figures, and the remarks in a notebook."""

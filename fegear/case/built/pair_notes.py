@@ -58,8 +58,7 @@ def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
         "results over a revolution only (mesh-stiffness-revolution)"
         if wide
         else "results over a revolution, of the train and of the gear only (mesh-stiffness-revolution, "
-        "stress-intensity, odd-tooth-stiffness, planet-revolution, "
-        "planet-vibration-revolution, FMU)"
+        "crosscheck, stress-intensity, odd-tooth-stiffness, planet-revolution, planet-vibration-revolution, FMU)"
     )
     return [neglecting(f"Gear {gear}: odd_tooth is included in {where}; here all teeth are identical.")]
 

@@ -11,6 +11,7 @@ from fegear.engine.citation import Citation, bibliography
 from fegear.engine.run_answer import in_order
 from fegear.output.fields import field_file
 from fegear.output.file_names import file_name
+from fegear.output.plane_state import plane_state
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
     Block,
@@ -212,13 +213,14 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     order = sorted(_in_order(results), key=lambda task: not any(_drawable(one, shown) for one in pictures[task]))
     stages = [_stage(results, task, pictures[task], shown | {answer.figure, *answer.tables}) for task in order]
     warned = f" {len(notes)} note{'s' if len(notes) > 1 else ''}, below the answer." if notes else ""
+    plane = f" 2D teeth: {state} (gear.NAME.plane)." if (state := plane_state(results)) else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
         title=scene.case.title or scene.name,
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. "
         f"{_number_of(count, 'value')} and {_number_of(len(results.tables), 'table')}, "
-        f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
+        f"computed in {total:.2f} s by fegear {fegear.__version__}.{plane}{warned}",
         sections=(
             Section("Answer", _answer(answer, drawn, shown, results.tables)),
             Section("Notes", _notes(notes)),
