@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import FegearError
 from fegear.results.planetary.turning_set import turning_loads, turning_set
 from fegear.results.shafts.drawn_gearbox import drawn_gearbox, largest_shift, motions
+from fegear.window.exercises import exercises_of_set
 from fegear.window.on_gears import packed, round_factor
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def assemblies_of(scene: Scene) -> dict[str, Any]:
     sets = {}
     for name in scene.case.planetary:
         with contextlib.suppress(FegearError):  # the case is refused for it
-            sets[name] = _plain(asdict(turning_set(scene, name)))
+            exercises = [one._asdict() for one in exercises_of_set(scene, name)]
+            sets[name] = _plain(asdict(turning_set(scene, name)) | {"exercises": exercises})
     gearbox = None
     if scene.case.shaft:
         with contextlib.suppress(FegearError):

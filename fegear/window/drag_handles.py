@@ -17,6 +17,7 @@ from fegear.case.changed_text import literal, value_at, with_value, with_values
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
 from fegear.window.assemblies import assemblies_of
+from fegear.window.exercises import exercises_of_pair
 from fegear.window.on_gears import gears_in_mesh
 
 if TYPE_CHECKING:
@@ -37,14 +38,15 @@ def hands_of(scene: Scene) -> dict[str, Any]:
     Returns
     -------
     dict
-        By the pair's name: ``mesh``, ``reliefs``, ``load``, and ``designs``: whether reliefs are found by theory, which
-        is of plane teeth.
+        By the pair's name: ``mesh``, ``reliefs``, ``load``, ``designs``: whether reliefs are found by theory, which is
+        of plane teeth, and ``exercises``.
     """
     found: dict[str, Any] = {}
     for name in scene.pairs:
         found[name] = {
             "mesh": gears_in_mesh(scene, name), "reliefs": _reliefs(scene, name), "load": _load(scene, name),
             "designs": name in scene.plane_pairs,
+            "exercises": [one._asdict() for one in exercises_of_pair(scene, name)],
         }  # fmt: skip
     return found
 

@@ -39,7 +39,7 @@ const fegearGears = (() => {
     const play = button("Play", "Turn the gears", () => { kept.playing = !kept.playing; play.textContent = kept.playing ? "Pause" : "Play"; if (kept.playing) requestAnimationFrame(turn); });
     const step = (way) => () => { kept.place = (kept.place + way * 0.05 + 2) % 1; draw(); };
     const told = document.createElement("span");
-    told.className = "quiet loads";
+    told.className = "loads";
     const large = button("Enlarge", "Gears only", () => {
       const on = host.classList.toggle("large");
       large.textContent = on ? "Back" : "Enlarge";
@@ -51,8 +51,7 @@ const fegearGears = (() => {
     tools.append(play, back, on, scrub, large);
     scrub.oninput = () => { kept.place = scrub.value / 1000; draw(); };
     const more = layersOf(pair, kept, () => draw());
-    stage.append(more.scales);
-    more.elements[0].append(told);
+    stage.append(told, more.scales);
     host.append(...more.flanks, stage, tools, ...more.elements);
     let last = 0;
     const frames = kept.frames = []; // when they were drawn [ms]
@@ -96,8 +95,9 @@ const fegearGears = (() => {
       let beside = -Infinity; // letters of points close to each other stand apart
       for (const [letter, x] of data.points) {
         svg("circle", { cx: x * 1e3 * c, cy: x * 1e3 * s, r: 0.07 * m, class: "point" }, up);
-        beside = Math.max(x * 1e3 * c + 0.12 * m, beside + 0.36 * m);
-        const word = svg("text", { x: beside, y: -x * 1e3 * s - 0.26 * m, "font-size": 0.36 * m }, picture);
+        const below = letter === "C"; // B and D may be close to it
+        if (!below) beside = Math.max(x * 1e3 * c + 0.12 * m, beside + 0.36 * m);
+        const word = svg("text", { x: below ? x * 1e3 * c + 0.08 * m : beside, y: -x * 1e3 * s + (below ? 0.5 : -0.26) * m, "font-size": 0.36 * m }, picture);
         word.textContent = letter.replace(/_\{(.*)\}/, "$1");
       }
       kept.arrows = svg("g", {}, up);
@@ -128,7 +128,7 @@ const fegearGears = (() => {
       const d = kept.data;
       if (!d) return;
       scrub.value = Math.round(kept.place * 1000);
-      const layers = more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
+      const layers = fegearGlance.hides() ? { ...more.now(), stress: null, deformed: null } : more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
       const field = layers.deformed || kept.sent.field === kept.old ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
       fegearField.draw(inside, kept.room, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
@@ -144,10 +144,10 @@ const fegearGears = (() => {
       const c = Math.cos(d.pressure_angle), s = Math.sin(d.pressure_angle), found = [];
       const largest = Math.max(...(loadsOf.get(pair)?.load ?? kept.sent.pressure?.load.flat() ?? [1]));
       for (let k = -6; first + k * d.base_pitch <= d.end + 6 * d.base_pitch; k += 1) {
-        const x = first + k * d.base_pitch, load = loadAt(x, k), here = x - off, on = here >= d.start && here <= d.end;
+        const x = first + k * d.base_pitch, load = loadAt(x, k), moved = x - off, on = moved >= d.start && moved <= d.end;
         if (!on && !(load > 0)) continue;
         const beside = !on && kept.sent.pressure && d.twist; // the contact line of a helical pair stands elsewhere on the face
-        const at = beside ? Math.min(Math.max(here, d.start), d.end) : here;
+        const at = beside ? Math.min(Math.max(moved, d.start), d.end) : moved;
         const [px, py] = fegearLayers.contactMoved(d, layers, k, at * 1e3 * c, at * 1e3 * s);
         if (!beside) arrows("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" });
         if (load > 0) {
@@ -156,7 +156,8 @@ const fegearGears = (() => {
           const look = beside ? " beside" : "";
           arrows("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` });
           arrows("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` });
-          found.push(`${digits(load, 4)} N at x = ${(x * 1e3).toFixed(2)} mm${beside ? " (pale: not in this section)" : ""}`);
+          const [letter] = d.points.find(([, point]) => Math.abs(point - x) < 2e-3 * d.base_pitch) ?? [], here = `x = ${(x * 1e3).toFixed(2)} mm`.replace("-", "−");
+          found.push(`${digits(load, 4)} N at ${letter ? `${letter.replace(/_\{(.*)\}/, "$1")} (${here})` : here}${beside ? " (pale: not in this section)" : ""}`);
         }
       }
       arrows.end();
@@ -171,6 +172,7 @@ const fegearGears = (() => {
     kept.take = more.take;
     kept.retell = () => { more.tell(); more.rest(); };
     kept.rest = more.rest;
+    kept.again = more.again;
     kept.started = () => more.limit() > 0;
     kept.canvasIsThere = () => canvas.isConnected;
     shown.set(pair, kept);
@@ -265,8 +267,9 @@ const fegearGears = (() => {
     function allow(refused) { // what is on stays a button, to be switched off
       vain = refused;
       for (const [kind, [, title]] of Object.entries(KINDS)) {
-        buttons[kind].disabled = !!vain[kind] && !kept.on[kind];
-        buttons[kind].title = vain[kind] ? `${title}. ${vain[kind]}` : title;
+        const why = fegearGlance.hides() && kind !== "tool" ? "Hidden until the answers are shown." : vain[kind];
+        buttons[kind].disabled = why !== vain[kind] || (!!why && !kept.on[kind]);
+        buttons[kind].title = why ? `${title}. ${why}` : title;
       }
     }
     function turn(kind, on) {
@@ -336,6 +339,7 @@ const fegearGears = (() => {
     return {
       tell,
       allow,
+      again: () => allow(vain),
       flanks: [flanks, pressed],
       elements: [switches, told],
       scales,
@@ -383,6 +387,7 @@ const fegearGears = (() => {
     },
     inside: (pair) => ({ field: shown.get(pair)?.sent.field, data: shown.get(pair)?.data, loadAt: shown.get(pair)?.loadAt }),
     frames: (pair) => shown.get(pair)?.frames ?? [],
+    soon() { for (const kept of shown.values()) { kept.again(); kept.soon(); } }, // answers are shown or hidden
     rest() { for (const kept of shown.values()) kept.rest(); }, // nothing moves any more
     loads({ pair, x, load }) {
       loadsOf.set(pair, { x, load });

@@ -20,157 +20,15 @@ const fegearGlance = (() => {
   const keep = (change) => { Object.assign(view, change); emitEvent("view", change); };
 
   // ---- exercises ----------------------------------------------------------------------------------------------------
-  const QUESTIONS = {
-    plane: [
-      "How large is the peak-to-peak transmission error, and does it rise or fall at half the torque?",
-      "Over what share of the path of contact do two tooth pairs carry the load?",
-      "Which gear has the higher root stress, and at which position in the mesh is it highest?",
-      "Is a gear undercut, and which profile shift avoids it?",
-      "How large is the contact ratio?",
-      "Where on the path of contact do the flanks not slide, and where do they slide most?",
-    ],
-    wide: [
-      "At which end of the face is the load larger, and how large is K_Hβ?",
-      "How large is the peak-to-peak transmission error, and does it rise or fall at half the torque?",
-      "Which gear has the higher root stress, and at which place on the face is it highest?",
-    ],
-    set: [
-      "In which order do the planets mesh, and do their mesh forces add up or cancel in the torque?",
-      "How does the load of one planet change over a mesh cycle?",
-    ],
-  };
-  // The answer to each of these in a sentence with rounded numbers; none where figures alone show it.
-  const rounded = ({ value, unit }) => `${Number(value.toPrecision(3))} ${unit}`;
-  const share = (part) => `${Math.round(100 * part)} %`;
-  function ofError() {
-    const one = numbers.get(`${pair}.te_peak_to_peak`);
-    if (!one) return "";
-    const at = halves[pair], now = `The peak-to-peak transmission error is ${rounded(one)}`;
-    if (!at || Math.abs(at.full - one.value) > 0.02 * one.value) return `${now}; that at half the torque follows.`; // of the case before
-    const ratio = at.half / at.full, how = Math.abs(ratio - 1) < 0.01 ? "stays at" : ratio < 1 ? "falls to" : "rises to";
-    return `${now}; at half the torque it ${how} ${rounded({ value: at.half, unit: one.unit })}.`;
-  }
-  function ofSharing() {
-    const { data, loadAt } = fegearGears.inside(pair);
-    if (!data || !loadAt) return "";
-    const places = Array.from({ length: 401 }, (_, i) => data.start + (i + 0.5) / 401 * (data.end - data.start));
-    const loads = places.map((x) => loadAt(x, 0) ?? 0), most = Math.max(...loads);
-    if (!(most > 0)) return "";
-    const several = loads.filter((one) => one < 0.999 * most).length / loads.length, ratio = pairs[pair]?.mesh?.ratios?.transverse;
-    if (!(ratio < 2)) return "With a contact ratio of 2 or more at least two tooth pairs carry the load everywhere.";
-    if (ratio < 1) return `Over none of it: the contact ratio is ${ratio.toFixed(3)}, below 1, and rigid gears are out of contact between two tooth pairs.`;
-    const rigid = 2 * (ratio - 1) / ratio, of = `Rigid gears: over 2 (ε − 1)/ε = ${share(rigid)} of the path of contact (contact ratio ε = ${ratio.toFixed(3)})`;
-    const single = `over the other ${share(1 - several)} a single one carries all of it`;
-    if (Math.abs(several - rigid) < 0.01) return `${of}; ${single}.`;
-    const why = several > rigid ? "tip edges of deflected teeth are in contact outside the path of contact, too" : "gaps from reliefs or deviations keep teeth out of contact";
-    return `${of}. Under this load: over ${share(several)} (${why}); ${single}.`;
-  }
-  function ofRatio() {
-    const { data } = fegearGears.inside(pair);
-    if (!data) return "";
-    const long = data.end - data.start, ratio = long / data.base_pitch, mm = (one) => `${Number((one * 1e3).toPrecision(4))} mm`;
-    return `Path of contact over base pitch: ${mm(long)} / ${mm(data.base_pitch)} = ${ratio.toFixed(3)}.${ratio < 1 ? " Below 1 motion is not transmitted continuously." : ""}`;
-  }
-  function ofSliding() {
-    const { data } = fegearGears.inside(pair);
-    if (!data) return "";
-    const mm = (one) => Number((Math.abs(one) * 1e3).toPrecision(3)), most = Math.abs(data.start) > data.end ? "A" : "E";
-    return `Not at C, the pitch point; the sliding velocity increases with the distance from it and is largest at ${most} (A: ${mm(data.start)} mm, E: ${mm(data.end)} mm from C).`;
-  }
-  function ofRoots() {
-    const both = ["driver", "driven"].map((gear) => [gear, numbers.get(`${pair}.${gear}.largest_root_tension`)]);
-    if (both.some(([, one]) => !one)) return "";
-    const [[high, most], [low, least]] = both.sort(([, one], [, other]) => other.value - one.value);
-    const spec = specs.get(`root_stress_history_${pair}`)?.spec, curve = spec && ofPanel(spec, 1).filter(({ name: words }) => words && plain(words).includes(high) && !/compress/.test(plain(words)))[0];
-    let where = "";
-    if (curve) {
-      const y = numbersOf(curve.y), at = y.reduce((best, one, i) => (one > y[best] || !(y[best] === y[best]) ? i : best), 0), axis = plain(spec.layout.xaxis?.title?.text ?? "");
-      const x = numbersOf(curve.x)[at], { data } = fegearGears.inside(pair);
-      const [letter] = (data?.points ?? []).find(([, one]) => Math.abs(one * 1e3 - x) < 0.01 * data.base_pitch * 1e3) ?? [];
-      where = ` at ${letter ? `${letter}, ` : ""}${Number(x.toPrecision(3))}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
-    }
-    return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
-  }
-  function ofUndercut() {
-    const cut = pairs[pair]?.mesh?.undercut, enough = Object.entries(pairs[pair]?.mesh?.enough ?? {});
-    if (!cut) return "";
-    if (!cut.length) return `Neither gear is undercut${enough.length ? `; undercut begins below profile_shift = ${enough.map(([member, one]) => `${one.toFixed(4)} (${member})`).join(", ")}` : ""}.`;
-    const why = (straight) => (straight ? ` (x_min = h − z sin²α/2, with h = ${straight.toFixed(3)}: this rack's flank is straight down to h modules below its reference line)` : "");
-    return cut.map(({ member, lost, enough: least, straight }) => `The ${member} gear is undercut: ${Number(lost.toPrecision(2))} mm of its involute above the base circle are cut away; profile_shift = ${least.toFixed(4)} and more avoid it${why(straight)}.`).join(" ");
-  }
-  function ofPhases() { // harmonic h of N equal mesh forces with delays d adds up to |sum of exp(2 pi i h d)|
-    const delay = fegearSets.of(pair)?.data?.meshes.sun.delay.map((one) => ((one % 1) + 1) % 1);
-    if (!delay) return "";
-    const sum = (harmonic) => Math.hypot(...[Math.cos, Math.sin].map((part) => delay.reduce((all, one) => all + part(2 * Math.PI * harmonic * one), 0))) / delay.length;
-    const early = (one) => (one > 1 - 1e-6 ? 0 : one), order = delay.map((one, n) => [early(one), n + 1]).sort(([one], [other]) => one - other);
-    const phases = `phases ${order.map(([one]) => Number(one.toFixed(3))).join(", ")} base pitches`;
-    if (order.at(-1)[0] < 1e-6) return `All planets mesh with the sun at the same time (${phases}): all harmonics of their mesh forces add up in the torque.`;
-    const first = sum(1), all = Array.from({ length: 12 }, (_, i) => i + 1), whole = all.filter((one) => sum(one) > 0.999);
-    const how = first < 1e-3 ? "cancels" : `adds up to ${share(first)} of the sum of amplitudes`;
-    return `Planets ${order.map(([, n]) => n).join(", ")} mesh with the sun in this order (${phases}): the first harmonic of their mesh forces ${how} in the torque${whole.length ? `; harmonics ${whole.slice(0, 3).join(", ")}${whole.length > 3 ? ", ..." : ""} add up in full` : ""}.`;
-  }
-  function ofPlanet() { // the planet whose load changes most; its load is the mean of its two meshes, as in the drawing
-    const loads = fegearSets.of(pair)?.loads;
-    if (!loads) return "";
-    const { shape: [, planets, count], data, step } = loads.force, force = (mesh, n, i) => step * data[(mesh * planets + n) * count + i];
-    const all = Array.from({ length: planets }, (_, n) => Array.from({ length: count }, (_, i) => 0.5 * (force(0, n, i) + force(1, n, i))));
-    const [n, least, most] = all.map((one, i) => [i + 1, Math.min(...one), Math.max(...one)]).sort(([, a, b], [, c, d]) => (d - c) - (b - a))[0];
-    const newtons = (value) => `${Number(value.toPrecision(4))} N`;
-    if (most - least < 1e-3 * most) return `It does not change: planet ${n} carries ${newtons(most)} all the time.`;
-    return `That of planet ${n} changes most: between ${newtons(least)} and ${newtons(most)}, by ${Number((200 * (most - least) / (most + least)).toPrecision(2))} % of its mean.`;
-  }
-  const ANSWERS = { plane: [ofError, ofSharing, ofRoots, ofUndercut, ofRatio, ofSliding], wide: [() => "", ofError, ofRoots], set: [ofPhases, ofPlanet] };
-  let hiding = false;
-  /** The button by which a lecturer writes another question in the place of the one that is asked; an empty one is none. */
-  function ownQuestion(asked) {
-    const own = Object.assign(made("button", "button own", "Own question"), { type: "button" });
-    own.onclick = () => {
-      const words = asked.querySelector("p");
-      words.contentEditable = "plaintext-only";
-      words.setAttribute("role", "textbox");
-      words.setAttribute("aria-label", "Own question; Enter to ask it");
-      words.onkeydown = (event) => {
-        event.stopPropagation();
-        if (event.key === "Escape") words.textContent = view.words ?? "";
-        if (event.key === "Enter" || event.key === "Escape") { event.preventDefault(); words.blur(); }
-      };
-      words.onblur = () => {
-        words.onblur = words.onkeydown = null;
-        for (const name of ["contenteditable", "role", "aria-label"]) words.removeAttribute(name);
-        keep({ words: words.textContent.trim() });
-        ask();
-      };
-      words.focus();
-      getSelection().selectAllChildren(words);
-    };
-    return own;
-  }
-  /** The question of an exercise, and room for the student's own answer, which stands beside the computed one later. */
-  function ask() {
-    const host = $("question"), asked = $("asked");
-    if (!host || !asked) return;
-    host.hidden = !view.exercise;
-    if (!view.exercise) { hiding = false; return; }
-    if (!asked.firstChild) {
-      const answer = Object.assign(made("textarea"), { rows: 1, placeholder: "Your answer, in one sentence" });
-      answer.setAttribute("aria-label", "Your answer");
-      answer.addEventListener("keydown", (event) => event.stopPropagation());
-      const next = Object.assign(made("button", "button", "Next question"), { type: "button" });
-      next.onclick = () => { keep({ question: (view.question ?? 0) + 1, words: "", revealed: false }); apply(); };
-      asked.append(made("p"), answer, next, ownQuestion(asked), made("output"));
-    }
-    const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")];
-    const about = kind === "set" ? "set" : pairs[pair]?.mesh?.wide ? "wide" : "plane", all = QUESTIONS[about];
-    if (words.isContentEditable) return; // it is being written
-    const question = view.words || all[Math.abs(view.question ?? 0) % all.length], another = words.textContent !== question;
-    words.textContent = question;
-    if (another || (!view.revealed && !hiding)) answer.value = ""; // another exercise
-    hiding = !view.revealed;
-    answer.readOnly = !!view.revealed;
-    const computed = asked.querySelector("output"), sentence = view.revealed && !view.words ? ANSWERS[about][Math.abs(view.question ?? 0) % all.length]() : "";
-    if (computed.textContent !== sentence) computed.textContent = sentence;
-    computed.hidden = !sentence;
-  }
+  const { ask } = fegearExercise({
+    view: () => view,
+    shown: () => ({ kind, pair, mesh: pairs[pair]?.mesh, exercises: pairs[pair]?.exercises ?? [] }),
+    number: (name) => numbers.get(`${pair}.${name}`),
+    half: () => halves[pair],
+    spec: (key) => specs.get(key)?.spec,
+    keep,
+    changed: () => apply(),
+  });
 
   // ---- what is shown, and how ---------------------------------------------------------------------------------------
   function apply() {
@@ -183,6 +41,7 @@ const fegearGlance = (() => {
     document.body.classList.toggle("revealed", !!view.revealed);
     ask();
     fegearSets.soon();
+    fegearGears.soon();
     const hidden = !view.revealed;
     for (const [id, on, words] of [
       ["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"],
@@ -271,7 +130,7 @@ const fegearGlance = (() => {
     legend.replaceChildren(...inOrder(named).map((one) => {
       const entry = made("span"), key = made("i"), colour = one.line?.color ?? one.marker?.color;
       key.style.borderTop = `${one.type === "bar" ? 7 : 2}px ${STYLES[one.line?.dash] ?? "solid"} ${fegearFigure.theme() === "dark" ? darker[colour] ?? colour : colour}`;
-      entry.append(key, plain(one.name));
+      entry.append(key, plain(one.name).replace(/^(driver|driven) [^,]+, /, "$1, ")); // gears have names of any length
       return entry;
     }));
     if (!withA) return;

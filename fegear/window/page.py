@@ -53,6 +53,7 @@ _SCRIPTS = (
     "flanks",
     "field",
     "plots",
+    "exercise",
     "glance",
     "middle",
     "gears",

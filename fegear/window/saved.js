@@ -45,6 +45,8 @@ const fegearSaved = (() => {
     const drawing = copied(stage.querySelector("svg.mesh"));
     for (const [name, value] of Object.entries({ x: 0, y: 0, width, height })) drawing.setAttribute(name, value);
     host.append(drawing);
+    const loads = stage.querySelector(".loads");
+    if (seen(loads)) made("text", { x: 8, y: 18, "font-size": 13, "font-family": "sans-serif", fill: colour }, host, loads.textContent);
     scales.forEach((scale, i) => scaled(scale, height + 20 * i + 2, colour, `scale-${i}`, host));
     return new XMLSerializer().serializeToString(host);
   }

@@ -225,9 +225,16 @@ def asked_and_answered(browser) -> None:
     answer = "document.querySelector('#asked output').textContent"
     counts_echoes(browser)
     answers = []
-    for _ in range(6):
+    choice = "document.querySelector('.choose-question')"
+    count = browser.run(f"{choice}.options.length")
+    for number in (1, 2, 3, 4, count - 1, 0):
         before = browser.run(words)
+        if number == count - 1:
+            browser.run(f"(one => {{ one.value = '{number - 1}'; one.onchange(); }})({choice})")
+            browser.until(f"{words} !== {json.dumps(before)}", 5.0)
+            browser.run("new Promise(done => setTimeout(done, 800))")
         pressed_and_heard(browser, button("Next question"))
+        assert browser.run(f"{choice}.value") == str(number)
         assert browser.run(words) != before
         assert not browser.run(shown)
         assert browser.run(answer) == ""
@@ -239,6 +246,9 @@ def asked_and_answered(browser) -> None:
     limit = browser.run("fegearGears.inside('I').data.enough.driver")
     assert f"{limit:.4f} (driver)" in answers[2]
     assert f"2 (ε − 1)/ε = {100 * 2 * (ratio - 1) / ratio:.0f} %" in answers[0]
+    assert answers[4].startswith("p = √(F_n E* / (π b ρ)) = ")
+    pressure = browser.run("document.querySelector('[data-number=\"I.largest_hertz_pressure\"] b').textContent")
+    assert f"in fegear is {float(pressure.split()[0]):.3g} MPa" in answers[4]
     assert answers[5].startswith("The peak-to-peak transmission error is ")
     # the gears as they are shown, as a file that holds by itself
     svg = "fegearSaved.text(document.querySelector('.mesh-stage'))"
@@ -810,7 +820,7 @@ def test_a_set_turns_with_its_loads_and_a_mesh_of_the_gearbox_opens_its_pair(bro
     browser.until(f"{canvas}.toDataURL() !== {json.dumps(with_loads)}")
     answer = "document.querySelector('#asked output').textContent"
     counts_echoes(browser)
-    for words in ("mesh with the sun", "planet "):
+    for words in ("mesh with the sun", "planet ", "(n_s − n_c) / (n_r − n_c) = −z_r/z_s"):
         pressed_and_heard(browser, "document.getElementById('to-answers')")
         browser.until(f"{answer}.includes('{words}')", 10.0)
         pressed_and_heard(browser, button("Next question"))

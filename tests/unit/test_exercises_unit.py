@@ -1,0 +1,171 @@
+"""Answers of exercises: what a student computes by hand, from numbers of teeth, module, shifts and torque."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from fegear.case.reading import build_scene
+from fegear.window.assemblies import assemblies_of
+from fegear.window.drag_handles import hands_of
+from fegear.window.exercises import exercises_of_pair, exercises_of_set
+
+ALPHA = math.radians(20.0)
+
+
+def pair_scene(driver, driven, **keys):
+    helical = "helix_angle" in driver
+    gear = {"normal_module" if helical else "module": "3 mm", "face_width": "30 mm"}
+    gears = {"p": gear | driver, "w": gear | driven}
+    pair = {"driver": "p", "driven": "w", "torque": "100 N*m", "speed": "900 rpm"}
+    return build_scene({"title": "t", "results": ["geometry"], "gear": gears, "pair": {"I": pair | keys}}, "t", Path())
+
+
+def answers(found):
+    return {one.question: one.answer.replace("−", "-") for one in found}
+
+
+def answer(found, word):
+    (one,) = (said for question, said in answers(found).items() if word in question)
+    return one
+
+
+def numbers(text):
+    return [float(one) for one in re.findall(r"-?\d+(?:\.\d+)?", text)]
+
+
+def involute(angle):
+    return math.tan(angle) - angle
+
+
+def working_angle(value):
+    low, high = 0.0, 1.2
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if involute(middle) < value else (low, middle)
+    return low
+
+
+def test_a_pair_with_profile_shifts_as_by_hand():
+    found = exercises_of_pair(pair_scene({"teeth": 18, "profile_shift": 0.4}, {"teeth": 35, "profile_shift": 0.1}), "I")
+    angle = working_angle(involute(ALPHA) + 2.0 * 0.5 * math.tan(ALPHA) / 53)
+    a = 79.5 * math.cos(ALPHA) / math.cos(angle)
+    assert f"= 79.5 mm; inv α_w = inv α + 2 (x₁ + x₂) tan α / (z₁ + z₂): α_w = {math.degrees(angle):.4g}°" in (
+        answer(found, "centre distance"))  # fmt: skip
+    assert f"a_w = a cos α / cos α_w = {a:.4g} mm without backlash." in answer(found, "centre distance")
+    assert f"= 35/18 = {35 / 18:.4g}; n₂ = {900 * 18 / 35:.4g} rpm; T₂ = i T₁ = {100 * 35 / 18:.4g} N m" in (
+        answer(found, "transmission ratio"))  # fmt: skip
+    assert f"= {3 * math.pi * math.cos(ALPHA):.4g} mm:" in answer(found, "base pitch")
+
+    bases = [0.5 * 3 * z * math.cos(ALPHA) for z in (18, 35)]
+    tips = [0.5 * 3 * (z + 2.0 * (1.0 + x)) for z, x in ((18, 0.4), (35, 0.1))]
+    roots = [math.sqrt(tip**2 - base**2) for tip, base in zip(tips, bases, strict=True)]
+    ratio = (sum(roots) - a * math.sin(angle)) / (3 * math.pi * math.cos(ALPHA))
+    assert answer(found, "contact ratio").endswith(f"= {ratio:.3f}.")
+
+    curvatures = [base * math.tan(angle) for base in bases]
+    ends = [roots[1] - curvatures[1], roots[0] - curvatures[0]]  # A and E from C
+    at_a = 1.0 - 18 / 35 * (curvatures[1] + ends[0]) / (curvatures[0] - ends[0])
+    at_e = 1.0 - 35 / 18 * (curvatures[0] + ends[1]) / (curvatures[1] - ends[1])
+    sliding = answer(found, "specific sliding")
+    assert f"driver {at_a:.3g} at A" in sliding
+    assert f"and {at_e:.3g} at E" in sliding
+    fastest = 900 * math.pi / 30 * (1 + 18 / 35) * max(ends) * 1e-3
+    assert f"{fastest:.3g} m/s" in sliding
+
+    tip_angle = math.acos(bases[0] / tips[0])
+    thick = 2 * tips[0] * ((math.pi / 2 + 0.8 * math.tan(ALPHA)) / 18 + involute(ALPHA) - involute(tip_angle))
+    assert f"driver {thick:.4g} mm = {thick / 3:.3g} m" in answer(found, "tip circle")
+
+    tangential = 100e3 / (bases[0] / math.cos(angle))
+    forces = answer(found, "forces")
+    assert f"F_t = 2 T₁ / d_w1 = {tangential:.4g} N; F_r = F_t tan α_w = {tangential * math.tan(angle):.4g} N" in forces
+    assert f"2 T₁ / d₁ = {100e3 / 27:.4g} N" in forces
+    load, modulus = 100e3 / bases[0], 206.8e3 / (2.0 * (1.0 - 0.3**2))
+    pressure = math.sqrt(load / 30 * modulus / math.pi * sum(1.0 / one for one in curvatures))
+    assert f"= {pressure:.4g} MPa with one tooth pair" in answer(found, "Hertzian")
+
+
+def test_undercut_has_the_rule_of_textbooks_beside_that_of_the_rack():
+    found = answer(exercises_of_pair(pair_scene({"teeth": 11}, {"teeth": 35}), "I"), "undercut")
+    sine = math.sin(ALPHA)
+    assert f"Textbooks take h = 1: {1 - 11 * sine**2 / 2:.3f} (driver)" in found
+    assert found.startswith("The driver gear is undercut: ")
+    assert f"down to h = {1.25 - 0.25 * (1 - sine):.3f} modules" in found
+
+
+def test_a_shortened_path_and_thinner_teeth_are_said_beside_the_formula():
+    shaved = {"teeth": 11, "thickness_allowance": "90 um"}
+    found = exercises_of_pair(pair_scene(shaved, {"teeth": 35}), "I")
+    assert "; fegear: " in answer(found, "contact ratio")
+    assert "(fegear: " in answer(found, "tip circle")
+    assert f"thinner teeth give {0.09 * math.cos(ALPHA):.4g} mm" in answer(found, "centre distance")
+
+
+@pytest.mark.parametrize("wider", [0.0, 0.2])
+def test_a_centre_distance_of_the_case_stands_beside_that_without_backlash(wider):
+    keys = {"centre_distance": f"{79.5 + wider} mm"}
+    found = answer(exercises_of_pair(pair_scene({"teeth": 18}, {"teeth": 35}, **keys), "I"), "centre distance")
+    assert ("the case has 79.7 mm" in found) == (wider > 0.0)
+    assert "x₁ + x₂ = 0" in found
+
+
+def test_a_helical_pair_has_an_axial_force_and_no_pressure_of_a_spur_pair():
+    gears = ({"teeth": z, "helix_angle": "18 deg", "hand": hand} for z, hand in ((18, "left"), (35, "right")))
+    found = exercises_of_pair(pair_scene(*gears), "I")
+    beta = math.radians(18.0)
+    a = 3 * 53 / (2 * math.cos(beta))
+    assert f"= {a:.4g} mm" in answer(found, "centre distance")
+    tangential = 100e3 / (0.5 * 3 * 18 / math.cos(beta))
+    assert f"F_a = F_t tan β_w = {tangential * math.tan(beta):.4g} N" in answer(found, "forces")
+    assert not [one for one in answers(found) if "Hertzian" in one]
+    assert "overlap ratio " in answer(found, "contact ratio")
+
+
+def test_a_ring_gear_turns_the_same_way():
+    ring = {"teeth": 71, "internal": True, "cutter": {"teeth": 20, "addendum": 1.25, "tip_radius": 0.2}}
+    found = exercises_of_pair(pair_scene({"teeth": 20}, ring), "I")
+    assert "the same sense of rotation" in answer(found, "transmission ratio")
+    assert "a = m |z₁ - z₂| / 2 = 76.5 mm" in answer(found, "centre distance")
+    assert "(ω₁ - ω₂) g" in answer(found, "specific sliding")
+
+
+def set_scene(**keys):
+    gear = {"module": "2 mm", "face_width": "20 mm"}
+    part = {"sun": "s", "planet": "p", "ring_teeth": 74, "planets": 3, "fixed": "ring", "input": "sun",
+            "torque": "140 N*m", "speed": "1500 rpm"} | keys  # fmt: skip
+    document = {"title": "t", "results": ["planet-set"], "planetary": {"P": part},
+                "gear": {"s": gear | {"teeth": 22}, "p": gear | {"teeth": 26}}}  # fmt: skip
+    return build_scene(document, "t", Path())
+
+
+def test_a_planetary_set_as_by_hand():
+    found = exercises_of_set(set_scene(), "P")
+    assert f"= 1 + z_r/z_s = {1 + 74 / 22:.4g}, 1500 rpm at the sun, {1500 / (1 + 74 / 22):.4g} rpm" in (
+        answer(found, "Willis"))  # fmt: skip
+    torques = numbers(answer(found, "torques").split("losses:")[1])
+    assert torques == pytest.approx([140.0, 140 * 74 / 22, -140 * (1 + 74 / 22)], rel=1e-3)
+    assert "(z_s + z_r) / N = 96/3 = 32" in answer(found, "assembled")
+    assert f"{2 * 48 * math.sin(math.pi / 3) - 56:.4g} mm apart" in answer(found, "assembled")
+    force = 140e3 / (3 * 22)
+    assert f"= {force:.4g} N in each" in answer(found, "one planet")
+    assert f"= {force / math.cos(ALPHA):.4g} N along" in answer(found, "one planet")
+
+
+@pytest.mark.parametrize(
+    ("fixed", "driving", "ratio"),
+    [("ring", "carrier", 22 / 96), ("carrier", "sun", -74 / 22), ("sun", "ring", 96 / 74), ("sun", "carrier", 74 / 96)],
+)
+def test_formulas_of_all_fixed_members(fixed, driving, ratio):
+    found = answer(exercises_of_set(set_scene(fixed=fixed, input=driving, mesh_efficiency=0.97), "P"), "Willis")
+    assert f"= {ratio:.4g}, " in found
+    assert "(efficiency 0.9" in answer(
+        exercises_of_set(set_scene(fixed=fixed, input=driving, mesh_efficiency=0.97), "P"), "torques")  # fmt: skip
+
+
+def test_the_page_hears_them_with_the_gears():
+    scene = set_scene()
+    assert [one["topic"] for one in assemblies_of(scene)["sets"]["P"]["exercises"]] == ["Planetary gear set"] * 4
+    pair = pair_scene({"teeth": 18}, {"teeth": 35})
+    assert {one["topic"] for one in hands_of(pair)["I"]["exercises"]} == {"Geometry", "Forces and stresses"}
