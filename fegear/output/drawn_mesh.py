@@ -11,9 +11,10 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.sheet.load_words import loads_as_given
 from fegear.engine.stage import Task
-from fegear.output.draw_png import draw_pictures
+from fegear.output.draw_png.stress_drawing import write_drawing
+from fegear.output.file_names import file_name
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.drawn_mesh import stress_figures
+from fegear.results.pair.drawn_mesh import stress_drawings
 
 if TYPE_CHECKING:
     from fegear.contact.plane.loaded_pair import LoadedPair
@@ -48,8 +49,9 @@ def _written(request: Request, kind: str) -> Written:
         loaded = cast("LoadedPair", found[Task("loaded-pair", name)].data)
         inside = cast("StressInsideData", found[Task("stress-inside", name)].data)
         with loads_as_given(scene, name):
-            for figure in stress_figures(name, loaded.engagement, loaded.nominal, inside):
-                files += [one.path for one in draw_pictures(replace(figure, case=scene.name), request.folder, kind)]
+            for drawing in stress_drawings(name, loaded.engagement, loaded.nominal, inside):
+                files.append(request.folder / f"{file_name(f'mesh_{name}_{drawing.letter}')}.{kind}")
+                write_drawing(drawing, scene.name, files[-1])
     return files, ()
 
 

@@ -25,6 +25,9 @@ _DARK_RAMP = ("#FDE725", "#A0DA39", "#4AC16D", "#1FA187", "#3B8FB5", "#8A86D6")
 #: Scales of colour of maps, the same on any ground.
 SEQUENTIAL = "viridis"
 
+#: Stress inside teeth on light ground, as the window has it: unloaded material is pale.
+STRESS = ("#E6EBF1", "#9CC3E2", "#58B59B", "#EFC455", "#E0662F", "#8C0D1C")
+
 DIVERGING = ((0, 114, 178), (143, 193, 227), (255, 255, 255), (242, 196, 109), (230, 159, 0))
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import FegearError
+from fegear.results.exercises import exercises_of_set
 from fegear.results.planetary.turning_set import turning_loads, turning_set
 from fegear.results.shafts.drawn_gearbox import drawn_gearbox, largest_shift, motions
-from fegear.window.exercises import exercises_of_set
 from fegear.window.on_gears import packed, round_factor
 
 if TYPE_CHECKING:

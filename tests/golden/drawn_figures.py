@@ -106,7 +106,7 @@ def on_paper(figure):
 
     views = figure.views
     panels = [(panel, panel.title or view.label * (len(views) > 1)) for view in views for panel in view.panels]
-    with rc_context(draw_png._SETTINGS):
+    with rc_context(draw_png.SETTINGS):
         made = Canvas()
         Sheet(made, panels, min(figure.columns if len(views) == 1 else 3, len(panels)), (figure.title, "case")).draw()
         kept = {"size": told([made.get_size_inches(), [len(made.axes)]])}

@@ -1,5 +1,6 @@
 """Drawings of gears in mesh with their stress: loads at the points of the path, stress at the fillets, files."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.output.export import export_gears
 from fegear.results.catalogue import STAGES
 from fegear.results.gear.drawing import moving_pair
-from fegear.results.pair.drawn_mesh import standing_at_points, stress_figures, tooth_stress, turned_by
+from fegear.results.pair.drawn_mesh import standing_at_points, stress_drawings, tooth_stress, turned_by
 
 GEAR = {"module": "4 mm", "face_width": "20 mm", "plane": "stress"}
 CASE = {
@@ -95,12 +96,19 @@ def test_the_stress_is_where_the_flanks_touch(loaded, inside):
 
 @pytest.mark.dear
 def test_drawings_have_one_scale_and_are_written(scene, loaded, inside, tmp_path):
-    figures = list(stress_figures("I", loaded.engagement, loaded.nominal, inside))
-    fields = [figure.panels[0].items[0] for figure in figures]
-    assert len({field.top for field in fields}) == 1
-    assert [figure.name for figure in figures] == [f"mesh_I_{letter}" for letter in "ABCDE"]
+    drawings = list(stress_drawings("I", loaded.engagement, loaded.nominal, inside))
+    assert len({one.top for one in drawings}) == 1
+    assert [one.letter for one in drawings] == list("ABCDE")
+    for one in drawings:
+        assert sum(load for _, load in one.loads) == pytest.approx(one.load, rel=1e-6)
     found = export_gears(scene, tmp_path, (), "svg")
     assert found.files == tuple(f"mesh_I_{letter}.svg" for letter in "ABCDE")
     assert all((tmp_path / name).stat().st_size < 1_000_000 for name in found.files)  # as triangles 17 MB each
+    texts = [re.findall(r"<!-- (.*?) -->", (tmp_path / name).read_text("utf-8")) for name in found.files]
+    for one, said in zip(drawings, texts, strict=True):
+        assert {*"ABCDE"} <= set(said)  # points of the path of contact
+        assert {f"{load * 1e-3:.3g} kN" for _, load in one.loads} <= set(said)
+        assert "driver" in said
+        assert "driven" in said
     with pytest.raises(InputError, match="requires a pair of plane"):
         export_gears(build_scene({**CASE, "results": ["geometry"], "pair": {}}, "mesh", Path()), tmp_path, (), "svg")

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from fegear.case.reading import build_scene
+from fegear.results.exercises import exercises_of_pair, exercises_of_set
 from fegear.window.assemblies import assemblies_of
 from fegear.window.drag_handles import hands_of
-from fegear.window.exercises import exercises_of_pair, exercises_of_set
 
 ALPHA = math.radians(20.0)
 

@@ -16,14 +16,14 @@ from fegear.output.file_names import file_name
 DPI = 150
 #: SVG and PDF without dates, so that equal figures are equal bytes; PNG packed in two thirds of the time, a tenth
 #: larger.
-_SAVED: dict[str, dict[str, Any]] = {
+SAVED: dict[str, dict[str, Any]] = {
     ".svg": {"metadata": {"Date": None}},
     ".pdf": {"metadata": {"CreationDate": None}},
     ".png": {"pil_kwargs": {"compress_level": 3}},
 }
 #: So many views stand two by two, others three abreast.
 _SQUARE = 4
-_SETTINGS = {
+SETTINGS = {
     "font.size": 10.0,
     "axes.grid": True,
     "axes.axisbelow": True,
@@ -84,11 +84,11 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path, head: tuple[str, 
         for panel in view.panels
     ]
     columns = figure.columns if len(views) == 1 else min(len(views), 2 if len(views) == _SQUARE else 3)
-    with rc_context(_SETTINGS):
+    with rc_context(SETTINGS):
         made = Canvas()
         FigureCanvasAgg(made)
         Sheet(made, panels, min(columns, len(panels)), head).draw()
-        made.savefig(path, dpi=DPI, **_SAVED[path.suffix])
+        made.savefig(path, dpi=DPI, **SAVED[path.suffix])
 
 
 def warm_up() -> None:

@@ -11,11 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.base.printed import figures
-from fegear.engine.figure.axis import Axis
-from fegear.engine.figure.figure import Figure
-from fegear.engine.figure.items import Points, TriangleField, outline
-from fegear.engine.figure.panel import Panel
+from fegear.base.arrays import ReadOnlyArrays
 from fegear.engine.sheet.load_words import load_words
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.path_of_contact import path_points
@@ -23,6 +19,8 @@ from fegear.results.gear.drawing import MovingPair, moving_pair
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+
+    from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.engagement import Engagement
@@ -110,7 +108,56 @@ def tooth_stress(
     return np.sqrt((half - zz) ** 2 + 3.0 * (0.25 * (xx - yy) ** 2 + xy**2))
 
 
-def stress_figures(name: str, engagement: Engagement, load: float, inside: StressInsideData) -> Iterator[Figure]:
+@dataclass(frozen=True)
+class StressDrawing(ReadOnlyArrays):
+    """Gears at a point of the path of contact, ready to be drawn: lengths in mm from the pitch point, stress in MPa.
+
+    Parameters
+    ----------
+    name, letter : str
+        Of the pair, and of the point.
+    under : str
+        The load, in words.
+    points, triangles, stress : ndarray, shape (2, N), (3, T), (N,)
+    top : float
+        End of the scale of colours.
+    outlines : dict of Member to ndarray, shape (2, n)
+        By "driver" and "driven".
+    along : ndarray, shape (2,)
+        Unit vector of the line of action, toward which the driver pushes.
+    path : ndarray, shape (2,)
+        Places of its ends on it.
+    letters : tuple of (str, float)
+        Points of the path of contact.
+    loads : tuple of (float, float)
+        Places at which tooth pairs touch, and their loads [N].
+    load : float
+        Of all pairs [N].
+    room : tuple of float
+        Half width and height of the drawing.
+    module : float
+    """
+
+    name: str
+    letter: str
+    under: str
+    points: Array
+    triangles: NDArray[np.int64]
+    stress: Array
+    top: float
+    outlines: dict[Member, Array]
+    along: Array
+    path: Array
+    letters: tuple[tuple[str, float], ...]
+    loads: tuple[tuple[float, float], ...]
+    load: float
+    room: tuple[float, float]
+    module: float
+
+
+def stress_drawings(
+    name: str, engagement: Engagement, load: float, inside: StressInsideData
+) -> Iterator[StressDrawing]:
     """A drawing for each point of the path of contact, all with one scale of colours.
 
     Parameters
@@ -131,7 +178,7 @@ def stress_figures(name: str, engagement: Engagement, load: float, inside: Stres
     ]  # fmt: skip
     top = _rounded_up(max(fillets))
     for one, field in zip(stands, fields, strict=True):
-        yield _figure(name, pair, moving, one, field, inside, top, load)
+        yield _drawing(name, pair, moving, one, field, inside, top, load)
 
 
 _Field = tuple["Array", "Array"]
@@ -167,10 +214,10 @@ def _rounded_up(stress: float) -> float:
     return math.ceil(stress / step) * step
 
 
-def _figure(
+def _drawing(
     name: str, pair: GearPair, moving: MovingPair, stand: Standing, field: Mapping[Member, _Field],
     inside: StressInsideData, top: float, load: float,
-) -> Figure:  # fmt: skip
+) -> StressDrawing:  # fmt: skip
     m = pair.driver.module
     tall, wide = 1e3 * _TALL * m, 1e3 * max(_WIDE * m, 1.15 * max(-pair.x_start, pair.x_end))
     points, triangles, stress, before = [], [], [], 0
@@ -181,35 +228,16 @@ def _figure(
                 stress.append(value)
                 triangles.append(inside.gears[member].table.triangles + before)
                 before += value.size
-    shown = TriangleField(
-        1e3 * np.hstack(points), np.hstack(triangles), 1e-6 * np.concatenate(stress), 1e-6 * top, "von Mises stress",
-        "MPa",
-    )  # fmt: skip
-    lines = [
-        outline(
-            1e3 * _about(getattr(moving, member), _centre(moving, member),
-                         turned_by(moving, member, 0, stand.x, pair.base_pitch)),
-            "", "ink", 1.2,
-        )
+    outlines = {
+        member: 1e3 * _about(getattr(moving, member), _centre(moving, member),
+                             turned_by(moving, member, 0, stand.x, pair.base_pitch))
         for member in MEMBERS
-    ]  # fmt: skip
+    }  # fmt: skip
     along = np.array([math.cos(moving.pressure_angle), math.sin(moving.pressure_angle)])
-    path = outline(1e3 * np.outer(along, [pair.x_start, pair.x_end]), "", "green", 1.6)
-    x, y = 1e3 * np.outer(along, [one.x for one in stand.touching])
-    loads = tuple(f"{figures(one.load * 1e-3, 3)} kN" for one in stand.touching)
-    spots = Points(x, y, "", "green", size=7.0, written=True, notes=loads)
-    return Figure(
-        f"mesh_{name}_{stand.letter}",
-        f"Pair {name} in mesh at point {stand.letter}",
-        f"Pair {name} at {load_words(load)}, contact at point {stand.letter} of the path of contact (green): von Mises "
-        f"stress inside the teeth, load of each tooth pair. Colour scale to {figures(top * 1e-6, 3)} MPa, the maximum "
-        "at the fillets at points A to E; below the contacts it is higher.",
-        (
-            Panel(
-                Axis("perpendicular to the line of centres, from the pitch point", "mm", limits=(-wide, wide)),
-                Axis("along the centre line", "mm", limits=(-tall, tall)),
-                (shown, *lines, path, spots), height=1.6, equal=True,
-            ),
-        ),
-        under=load_words(load),
+    return StressDrawing(
+        name=name, letter=stand.letter, under=load_words(load), points=1e3 * np.hstack(points),
+        triangles=np.hstack(triangles), stress=1e-6 * np.concatenate(stress), top=1e-6 * top, outlines=outlines,
+        along=along, path=1e3 * np.array([pair.x_start, pair.x_end]),
+        letters=tuple((point.letter, 1e3 * point.x) for point in path_points(pair)),
+        loads=tuple((1e3 * one.x, one.load) for one in stand.touching), load=load, room=(wide, tall), module=1e3 * m,
     )  # fmt: skip
