@@ -5,7 +5,7 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
   const { plain, ofPanel } = fegearPlots, numbersOf = fegearPacked.numbers;
   const $ = (id) => document.getElementById(id);
   const made = (tag, cls, text) => Object.assign(document.createElement(tag), cls ? { className: cls } : {}, text === undefined ? {} : { textContent: text });
-  const rounded = ({ value, unit }) => `${Number(value.toPrecision(3))}${unit ? ` ${unit}` : ""}`;
+  const rounded = ({ value, unit }, count = 3) => `${Number(value.toPrecision(count))}${unit ? ` ${unit}` : ""}`;
   const share = (part) => `${Math.round(100 * part)} %`;
 
   // ---- answers that follow from solved gears; an empty one where figures alone show it ------------------------------
@@ -90,7 +90,7 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
   function questions() {
     const { kind, pair, mesh, exercises } = shown(), about = kind === "set" ? "set" : mesh?.wide ? "wide" : "plane";
     const byFormula = (kind === "set" ? fegearSets.of(pair)?.data?.exercises : exercises) ?? [];
-    const answer = (one) => () => { const found = one.number && number(one.number); return found ? `${one.answer} ${one.words.replace("{}", rounded(found))}` : one.answer; };
+    const answer = (one) => () => { const found = one.number && number(one.number); return found ? `${one.answer} ${one.words.replace("{}", rounded(found, 4))}` : one.answer; };
     return [
       ...COMPUTED[about].map(([question, of]) => ({ topic: "Under load (computed)", question, of })),
       ...byFormula.map((one) => ({ topic: one.topic, question: one.question, of: answer(one) })),
