@@ -26,12 +26,11 @@ RACKS = {
 }
 
 
-def pair_of(teeth=20, shift=0.2, rack=None, module=2e-3, backlash=40e-6, count=11, **more):
+def pair_of(teeth=20, shift=0.2, rack=None, module=2e-3, backlash=40e-6, count=11, tip_pinion=0.0, **more):
     """A pinion on a rack."""
     basic = rack or BasicRack()
-    pinion = Gear(
-        Tooth(teeth, basic, profile_shift=shift, thickness_allowance=0.01), module, 0.3 * teeth * module, 0.01
-    )
+    tooth = Tooth(teeth, basic, profile_shift=shift, thickness_allowance=0.01, tip_rounding=tip_pinion)
+    pinion = Gear(tooth, module, 0.3 * teeth * module, 0.01)
     straight = Rack(RackTooth(basic, **more), module, count, 6.0 * module, 0.01)
     return RackAndPinion(pinion, straight, distance_of_backlash(pinion, straight, backlash))
 
@@ -137,6 +136,51 @@ def test_corner_of_the_pinion_by_own_turning():
     gap, _, height, *_ = found.touching(np.array([pair.x_end + beyond]))
     assert gap[0] == pytest.approx(along + beyond - ra * math.sin(angle), rel=1e-9)
     assert height[0] == pytest.approx(pair.distance - ra * math.cos(angle - pair.rack.pressure_angle), rel=1e-9)
+
+
+def test_rounded_corner_of_the_pinion_by_the_farthest_point_of_its_arc():
+    """All points of the rounding, turned with the pinion: the one that reaches farthest along the rack's normal."""
+    pair = pair_of(tip_pinion=0.15)
+    found, rb, r = RackContacts(pair), pair.pinion.base_radius, 0.15 * pair.pinion.module
+    last, beyond = float(pair.roll_length(pair.x_end)), 0.13 * pair.rack.base_pitch
+    around = np.linspace(-math.pi, math.pi, 200001)
+    along, across, turn = last - r + r * np.cos(around), rb + r * np.sin(around), beyond / rb
+    reach = along * math.cos(turn) + across * math.sin(turn)
+    farthest = int(np.argmax(reach))
+    at = across[farthest] * math.cos(turn) - along[farthest] * math.sin(turn)
+    alpha = pair.rack.pressure_angle
+    gap, _, height, curvature, edge = (one[0] for one in found.touching(np.array([pair.x_end + beyond])))
+    assert gap == pytest.approx(last + beyond - reach[farthest], rel=1e-6)
+    assert height == pytest.approx(
+        pair.distance - reach[farthest] * math.sin(alpha) - at * math.cos(alpha), abs=1e-4 * r
+    )
+    assert curvature == pytest.approx(1.0 / r)
+    assert edge == -np.inf  # no sharp edge
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.1])
+def test_corner_of_the_rack_by_its_distance_from_the_involute(rounding):
+    """The middle of a rounding (or the corner) moves with the rack; an involute that turns moves along its normals."""
+    pair = pair_of(tip_rounding=rounding)
+    found, alpha = RackContacts(pair), pair.rack.pressure_angle
+    rb, rp = pair.pinion.base_radius, pair.pinion.pitch_radius
+    assert found.starts_at_tip
+    first, beyond, r = float(pair.roll_length(pair.x_start)), -0.11 * pair.rack.base_pitch, rounding * pair.rack.module
+    # d: along the line of action; n: from the pinion's middle to where that line touches the base circle
+    d, n = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    turn = beyond / rb
+    middle = rb * n + (first + r) * d + rp * turn * (math.cos(alpha) * d - math.sin(alpha) * n)
+    theta = np.linspace(-1.0, (first + beyond) / rb, 400001)
+    tangent = np.cos(theta) * n[:, None] + np.sin(theta) * d[:, None]
+    string = np.cos(theta) * d[:, None] - np.sin(theta) * n[:, None]
+    flank = rb * tangent + (first + beyond - rb * theta) * string
+    away = np.hypot(*(flank - middle[:, None]))
+    nearest = int(np.argmin(away))
+    gap, length, _, curvature, _ = (one[0] for one in found.touching(np.array([pair.x_start + beyond])))
+    assert gap == pytest.approx(away[nearest] - r, rel=1e-6)
+    at_touch = first + beyond - rb * theta[nearest] + gap  # of the point that touches once the gap is closed
+    assert length == pytest.approx(at_touch, rel=1e-5)
+    assert curvature == pytest.approx(1.0 / length + (1.0 / r if r else 0.0))
 
 
 @pytest.mark.parametrize(
