@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -161,6 +162,22 @@ def test_branches_of_random_pairs_of_two_gears_do_not_depend_on_the_values_eithe
     coarse, fine = follow_modes(build, ends), follow_modes(build, np.linspace(*ends, int(rng.integers(3, 40))))
     assert fine.ratio[[0, -1]] == pytest.approx(coarse.ratio, abs=1e-8)
     assert coarse.likeness >= 0.8
+
+
+def test_a_veering_beside_a_crossing_in_one_step_is_no_crossing():
+    """Two modes cross and two others, coupled by 1e-8, veer between the same two values, 6e-7 apart."""
+    coupling, t = 1e-8, 3e-7
+
+    def build(value):
+        stiffness = np.diag([3.0 + value, 3.0 - value, 1.0 + value, 1.0 - value])
+        stiffness[0, 1] = stiffness[1, 0] = coupling
+        return SimpleNamespace(mass=np.ones(4), stiffness=stiffness, natural_frequency=1.0)
+
+    found = follow_modes(build, [-t, t])
+    off = math.hypot(t, coupling)
+    squares = [[3.0 + off, 3.0 - off, 1.0 + t, 1.0 - t], [3.0 + off, 3.0 - off, 1.0 - t, 1.0 + t]]
+    assert found.ratio**2 == pytest.approx(np.array(squares), rel=1e-13)
+    assert {(one.first, one.second) for one in found.crossings} == {(2, 3)}
 
 
 def test_values_that_do_not_rise_are_refused():

@@ -38,6 +38,18 @@ def test_a_root_is_where_the_polynomial_falls_through_zero(seed, sign):
     assert sign * value_at(sign * steep, found) <= 0.0  # not a last digit before it: what closes there is closed
 
 
+def test_a_root_that_steps_of_newton_leave_is_the_one_of_the_interval():
+    """Flat in the middle: the steps lead out of the interval, where other roots are; halving stays inside."""
+    chance = np.random.default_rng(5)
+    for _ in range(60):
+        low, high = chance.uniform(0.5, 0.6), chance.uniform(0.7, 0.8)
+        root, below = chance.uniform(low, high), chance.uniform(0.1, 0.45, 2)
+        flat = 0.5 * (low + high) + 1e-3 * chance.normal()
+        row = polynomial.polymul(polynomial.polyfromroots([root, *below]), [flat**2 + 1e-5, -2.0 * flat, 1.0])
+        sign = 1.0 if value_at(row, low) > 0.0 else -1.0
+        assert _root(row, low, high, sign) == pytest.approx(root, rel=1e-9)
+
+
 def wanted(row, h, sign, moment):
     """The first real root in (0, h] at which sign * row falls, by numpy."""
     roots = polynomial.polyroots(row)

@@ -12,6 +12,7 @@ from fegear.window.bench import LEVELS, Bench
 from fegear.window.document import Desk
 from fegear.window.glance import LONGEST_QUESTION, View, read_view
 from fegear.window.job_queue import Compute, Design, Export, Said, Stop
+from fegear.window.journal import left_behind
 
 CASE = """
 results = ["load-sharing"]
@@ -103,6 +104,17 @@ def test_the_case_is_asked_for_with_what_is_seen_and_shown(bench):
     bench.see_otherwise({"pictures": ["te"]})
     assert bench.asked_for[-1].asked.pictures == ("te",)
     assert bench.view == View(pictures=("te",), measure="none")
+
+
+def test_a_case_that_an_earlier_window_left_lies_on_the_desk_as_it_was_left(bench, tmp_path):
+    desk = Desk(CASE, "unsaved", tmp_path)
+    desk.set(("gear", "a", "teeth"), "29")
+    desk.leave()  # a crash
+    (left,) = left_behind(None)
+    bench.from_left(left)
+    assert bench.desk.document["gear"]["a"]["teeth"] == 29
+    assert bench.desk.restored.startswith("Unsaved changes of ")
+    assert "teeth = 29" in bench.asked_for[-1].asked.text
 
 
 def test_every_page_hides_and_shows_the_answers_of_an_exercise_as_the_lecturer_does(bench):
