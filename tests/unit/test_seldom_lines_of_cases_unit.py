@@ -10,7 +10,7 @@ from fegear.base.errors import InputError
 from fegear.case.built import compound as built_compound
 from fegear.case.built.odd_teeth import keyway_of
 from fegear.case.built.tip_tolerances import flank_tolerance, tip_tolerances
-from fegear.case.compound import CompoundPart
+from fegear.case.compound import CompoundPart, CompoundPlanetPart
 from fegear.case.drafts import two_stages
 from fegear.case.drafts.first_size import MODULES
 from fegear.case.drafts.two_stages import TWO_STAGES
@@ -277,3 +277,18 @@ def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypa
     assert found.whole is (sized and given is None)  # distances are whole where nobody has given a size
     assert (found.suited is start.suited) == (module == 2.0)
     assert module == 2.0 or found.suited["torque"] == "50 N*m"
+
+
+def test_planets_are_placed_by_their_number_or_by_their_angles():
+    """The first of equally spaced planets may be turned; angles say it themselves."""
+    uneven = CompoundPlanetPart.model_validate({"carrier": "c", "angles": ["0 deg", "117 deg"]})
+    assert uneven.angles == pytest.approx([0.0, math.radians(117.0)])
+    turned = CompoundPlanetPart.model_validate({"carrier": "c", "planets": 3, "first_angle": "10 deg"})
+    assert turned.first_angle == pytest.approx(math.radians(10.0))
+    for placed, words in (
+        ({"angles": ["0 deg", "117 deg"], "first_angle": "10 deg"}, "contradicts angles"),
+        ({"angles": ["0 deg"], "planets": 3}, "must be specified in one way"),
+        ({}, "must be specified in one way"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            CompoundPlanetPart.model_validate({"carrier": "c", **placed})

@@ -90,7 +90,7 @@ def mesh_cycle(pair: GearPair, driver: SolvedTeeth, driven: SolvedTeeth, line_lo
 
 def _by_formula(pair: GearPair, name: str, load: float, x: Array) -> OverCycle:
     driver, driven = (closed_form_compliance(gear, name) for gear in (pair.driver, pair.driven))
-    return _over(PairCompliance(pair, driver, driven, coupling=False), load, x)
+    return _over(PairCompliance(pair, driver, driven), load, x)
 
 
 def _over(teeth: PairCompliance, load: float, x: Array) -> OverCycle:
