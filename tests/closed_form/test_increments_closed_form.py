@@ -89,6 +89,23 @@ def largest_error(train, frequencies):
     return worst
 
 
+@pytest.mark.parametrize("mesh", [0, 1, 2])
+def test_increments_by_pivots_are_exact_where_meshes_differ_in_stiffness_and_damping(mesh):
+    train = Train(
+        bodies=tuple(Body(name, inertia) for name, inertia in zip("abcd", (0.004, 0.0008, 0.003, 0.02), strict=True)),
+        meshes=(
+            Mesh("I", "a", "b", 0.04, 0.06, 28, 42, 8e7, damping=900.0),
+            Mesh("II", "b", "c", 0.03, 0.05, 21, 35, 3e8, damping=70.0), Mesh("III", "c", "d", 0.02, 0.09, 20, 90, 5e8),
+        ),
+        dampers=(Damper("a", None, 2.0), Damper("d", None, 1.0)),
+        torques=(Torque("a", 40.0), Torque("d", 40.0 * (0.06 / 0.04) * (0.05 / 0.03) * (0.09 / 0.02))),
+    )  # fmt: skip
+    omega = 2.0 * math.pi * np.array([40.0, 900.0, 7000.0])
+    found = _Solver.of(train)._by_pivots(omega.astype(np.longdouble), mesh).q
+    for n, w in enumerate(omega):
+        assert found[:, n] == pytest.approx(exact_increments(train, w)[:, mesh], rel=1e-11)
+
+
 def test_damping_constants_are_the_papers():
     """(5.10): 12.6114, 6.30571, 43.5062 N m s; 1e-4, since the paper worked them out in inches and pounds."""
     c1, c2, c3, ca = damping_constants()

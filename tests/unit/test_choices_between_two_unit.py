@@ -1,0 +1,99 @@
+"""Which of two things a line takes: which mesh, which end, which side of a limit; by values that differ."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.contact.many import changes as many_changes
+from fegear.contact.many.corners import PITCH, START
+from fegear.engine.processes import Job, opened
+from fegear.fem.plane.ring_closure import close_ring
+from fegear.formulas.agma import agma2101
+from fegear.formulas.iso6336 import part2_pitting as pitting
+from fegear.formulas.iso6336.rated import Strength
+from fegear.geometry.external_tooth import Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.results.shafts.gearbox_overview import _designation
+from fegear.results.train import dynamic_factor
+
+
+def summed(*given):
+    return sum(one if isinstance(one, int) else 100 for one in given)
+
+
+@pytest.mark.parametrize(("shares", "result"), [(False, 21), (True, 121)])
+def test_a_job_computes_its_point_in_this_process_too_with_its_cache_or_without(shares, result):
+    assert opened(Job(summed, shares, False, None)(21).payload) == result
+
+
+@pytest.mark.parametrize(("given", "source"), [(None, "8"), (1.31, "given")])
+def test_the_dynamic_factor_of_agma_says_whose_it_is(given, source):
+    gear, wheel = (Gear(Tooth(z), 3e-3, 0.02, 0.03) for z in (21, 43))
+    service = agma2101.Service(2000.0, 5.0, dynamic=given)
+    allowed = (agma2101.allowable_stress("carburized", 2, 350.0),) * 2
+    rating = agma2101.rate(GearPair(gear, wheel), service, allowed)
+    assert rating.factor("K_v").clause.endswith(source)
+    assert rating.factor("K_v").values[0] == (given or agma2101.dynamic_factor(5.0, 8))
+
+
+def test_flanks_of_unknown_hardness_are_not_hardened():
+    """Two through-hardened gears: Z_W = 1 of both, for any life, and a remark."""
+    (group, *_) = pitting.groups.THROUGH_HARDENED
+    known, unknown = Strength(group, 8e8, 3e8, hardness=250.0), Strength(group, 8e8, 3e8)
+    pair = SimpleNamespace(relative_curvature_radius=0.02, signed_ratio=3.0)
+    for strength in ((known, unknown), (unknown, known), (unknown, unknown)):
+        reference, static, remark = pitting.work_hardening(pair, strength, (3e-6, 3e-6), 220e-6, 5.0)
+        assert reference == static == (1.0, 1.0)
+        assert "hardness of the gears not specified" in remark
+
+
+@pytest.mark.parametrize(("reach", "sectors"), [(1, 2), (2, 4), (3, 6), (3, 29)])
+def test_a_row_of_sectors_has_room_for_the_neighbours_on_both_sides(reach, sectors):
+    with pytest.raises(InputError, match=f"must be between {2 * reach + 1} and 28"):
+        close_ring(SimpleNamespace(teeth=28), None, None, reach, sector_teeth=sectors)
+
+
+def test_the_mesh_with_the_highest_dynamic_factor_is_first():
+    def rank(factor):
+        seen = SimpleNamespace(data=SimpleNamespace(chart=object(), largest=SimpleNamespace(factor=factor)))
+        return dynamic_factor._SHEET.answer.rank(seen)
+
+    assert rank(2.7) < rank(1.4) < rank(1.1)
+
+
+def test_a_bearing_has_its_own_designation_before_that_of_its_dimensions():
+    ball = SimpleNamespace(kind="ball", bore=0.05, outside_diameter=0.11, width=0.027, given_angle=0.0)
+    assert _designation(SimpleNamespace(designation="6310-2RS", printed=ball)) == "6310-2RS"
+    assert _designation(SimpleNamespace(designation=None, printed=ball)) == "6310"
+    assert _designation(SimpleNamespace(designation=None, printed=None)) == ""
+
+
+@pytest.mark.parametrize("count", [1, 3, 5, 7, 9, 13])
+def test_all_changes_of_one_cell_are_found_but_of_one_that_hovers(monkeypatch, count):
+    """Two pairs whose nearness is known: beyond eight changes in a cell only the first and the last count."""
+    first = 0.13 + 0.24 * (np.arange(count) + 0.5) / count  # between two samples, at 0.125 and 0.375
+    second, at = 0.2603, [0.0]
+
+    def solved(*given):
+        at[0] = given[9]
+        return 0.0, 1.0
+
+    def nearness(n, load, numbers, error, state, c, v, out):
+        out[0] = math.prod(math.sin(0.5 * (at[0] - place)) for place in first) * 1e2**count
+        out[1] = at[0] - second
+
+    for name, function in list(vars(many_changes).items()):
+        monkeypatch.setattr(many_changes, name, getattr(function, "py_func", function))
+    for name, function in (("solved", solved), ("nearness", nearness)):
+        monkeypatch.setattr(many_changes, name, function)
+    n = np.zeros(64)
+    n[PITCH], n[START] = 1.0, 0.0
+    found = np.full(40, math.nan)
+    none = (None,) * 4
+    known = many_changes.changes(n, None, *none, 1.0, 2, 0, 4, np.array([0.0]), 1, *none, found)
+    wanted = np.sort([*first, second])
+    assert found[:known] == pytest.approx(wanted if count < 8 else wanted[[0, -1]], abs=1e-5)
