@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import cast
 
 import numpy as np
@@ -16,6 +16,7 @@ from fegear.contact.plane.engagement import Engagement, Loaded
 from fegear.contact.plane.transmission_error import TransmissionError, transmission_error
 from fegear.design.charts import Metric
 from fegear.design.excitation_relief import MinimumExcitationRelief
+from fegear.design.ground_digits import rounded_tips
 from fegear.design.load_range import LoadRange, proportions
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, relief_nodes, relief_table
@@ -148,6 +149,8 @@ class ReliefDesign:
         relief at any of these loads that counts: 0 where they do, None where none does.
     tables_leave : float
         Transmission error, peak to peak, of the relief tables read back linearly [m].
+    rounded : mapping of shape to ndarray, shape (L,)
+        Peak-to-peak value at each of these loads with the reliefs to grind as they are rounded for the drawing [m].
     """
 
     task: DesignTask
@@ -163,6 +166,7 @@ class ReliefDesign:
     tables_leave: float
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
+    rounded: Mapping[Shape, Array] = field(default_factory=dict)
 
     @property
     def shapes(self) -> list[Shape]:
@@ -239,6 +243,7 @@ def design_relief(
         for label, state in states.items()
         if label != "diagonal only"
     }
+    rounded = {shape: _as_rounded(plain, one, task) for shape, one in ground.items()}
     within: dict[Shape, Array] = {}
     if film is None and task.tip_tolerances is not None:
         for shape, one in ground.items():
@@ -250,9 +255,21 @@ def design_relief(
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     design = ReliefDesign(
-        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave
+        task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
+        rounded=rounded,
     )  # fmt: skip
     return replace(design, finer=_classes_finer(plain, design), decisive=_decisive(plain, design))
+
+
+def _as_rounded(plain: Engagement, ground: TipReliefPair, task: DesignTask) -> Array:
+    """Peak-to-peak value at each load with the digits of the drawing [m]."""
+    state = rounded_tips(plain.pair, ground).applied(plain)
+    if task.film is not None:
+        state = task.film.between(state)
+    found = (
+        transmission_error(state, one, task.harmonics if one == task.load else _OVER_LOADS) for one in task.over_loads
+    )
+    return np.array([one.peak_to_peak for one in found])
 
 
 def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:

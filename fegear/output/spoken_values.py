@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from fegear.engine.run_answer import in_order
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 #: More values than a screen has lines are read in no order; the other ones are in files and in the report.
 _MOST = 40
+#: Two searches for the same optimum agree within this.
+_SAME = 1e-6
 
 
 def spoken_values(results: Results) -> tuple[list[Value], int]:
@@ -38,7 +41,7 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
     summed = _summed_up(results)
     every = [value for task, of in results.outcomes.items() if task not in summed for value in of.values]
     names, count = {value.name for value in every}, len(results.values)
-    every = [value for value in results.values if value.name in names]
+    every = _once([value for value in results.values if value.name in names])
     if len(every) <= _MOST:
         return every, count - len(every)
     tasks = [
@@ -51,6 +54,18 @@ def spoken_values(results: Results) -> tuple[list[Value], int]:
         kept |= {value.name for value in results.outcomes[task].values[:share]}
     found = [value for value in every if value.name in kept]
     return found, count - len(found)
+
+
+def _once(values: list[Value]) -> list[Value]:
+    """Values without choices that an earlier result has found, too: the same number under another name."""
+    kept: list[Value] = []
+    for value in values:
+        again = value.choice and any(
+            one.choice and one.unit == value.unit and math.isclose(one.value, value.value, rel_tol=_SAME)
+            for one in kept
+        )
+        kept += [] if again else [value]
+    return kept
 
 
 def answer_lines(answer: RunAnswer) -> list[str]:

@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.results.relief.applied_design import applied_design, designs_of, keys_of_design
+from fegear.results.relief.applied_left import without_stale_comments
 from fegear.results.relief.ground_flank_keys import ground_rows, keys_of
 
 CASE = """# A drive of mine.
@@ -284,6 +286,55 @@ def numbers(keys, head=""):
 def test_what_does_not_fit_is_refused_by_its_key(text, design, pair, tables, key):
     with pytest.raises(InputError, match=key):
         applied(text, design, pair, tables)
+
+
+OVER_TORQUE = Table("relief_over_torque_I", (
+    Column("torque", np.array([100.0, 200.0, 300.0]), "N.m"), Column("weight", np.ones(3)),
+    Column("te_peak_to_peak_no_relief", np.array([2.0, 4.0, 6.0]) * 1e-6, "um"),
+    Column("te_peak_to_peak_designed", np.array([4.5, 2.0, 0.01]) * 1e-6, "um"),
+    Column("te_peak_to_peak_linear_tip_relief", np.array([1.0, 1.5, 3.0]) * 1e-6, "um"),
+    Column("te_peak_to_peak_rounded_linear_tip_relief", np.array([1.01, 1.51, 3.01]) * 1e-6, "um"),
+))  # fmt: skip
+
+
+def test_a_relief_for_one_torque_of_several_says_so_and_what_it_leaves_at_the_others():
+    torques = case().replace('torque = "300 N*m"', 'torques = ["100 N*m", "200 N*m", "300 N*m"]')
+    tables, document = TABLES | {"relief_over_torque_I": OVER_TORQUE}, tomllib.loads(torques)
+    exact = applied(torques, "exact", tables=tables, document=document)
+    assert exact.said.startswith("exact relief of results/drive in ")
+    assert exact.said.endswith(
+        "It is for 300 N m only: transmission error 6 -> 0.01 µm at 300 N m, 4 -> 2 µm at 200 N m, 2 -> 4.5 µm at "
+        "100 N m (more than without relief), peak to peak."
+    )
+    assert exact.text.count("# fegear apply: exact, results/drive, pair I, for 300 N m only") == 2
+    linear = applied(torques, tables=tables, document=document)
+    assert linear.said.endswith(  # as it is rounded in the grinding table, which is what is written
+        "Transmission error 6 -> 3.01 µm at 300 N m, 4 -> 1.51 µm at 200 N m, 2 -> 1.01 µm at 100 N m, peak to peak."
+    )
+    assert " only" not in linear.text
+    assert applied(torques, "parabolic", tables=tables, document=document).said.endswith("no modification.")
+    alone = Table("relief_over_torque_I", tuple(
+        replace(one, si=np.array([0.0, 0.0, 1.0])) if one.name == "weight" else one for one in OVER_TORQUE.columns
+    ))  # fmt: skip
+    one = applied(torques, tables=TABLES | {"relief_over_torque_I": alone}, document=document)
+    assert "It is for 300 N m only: transmission error 6 -> 3.01" in one.said
+
+
+def test_comments_of_a_drafted_case_that_a_relief_ends_are_renewed_or_go():
+    draft = (
+        '    "transmission-error",      # transmission error without relief\n'
+        "# relief = true                # off: for the final check, with relief of the gears\n"
+    )
+    assert without_stale_comments(draft, ()) == (
+        '    "transmission-error",      # transmission error with the relief of the gears\n'
+    )
+    example = '# relief = { tip = { amount = "15 um", length = "4 mm" } }\n'
+    gears = f"[gear.p]\nteeth = 20\n{example}[gear.w]\n{example}"
+    assert without_stale_comments(gears, ("p",)) == f"[gear.p]\nteeth = 20\n[gear.w]\n{example}"
+    assert without_stale_comments(gears, ("w",)) == f"[gear.p]\nteeth = 20\n{example}[gear.w]\n"
+    assert without_stale_comments(gears, ("x",)) == gears
+    text = applied(case(p=example)).text
+    assert example not in text
 
 
 def test_designs_are_those_of_the_table_and_the_one_of_theory():

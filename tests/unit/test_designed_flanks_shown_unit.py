@@ -20,6 +20,7 @@ from fegear.geometry.rack import BasicRack
 from fegear.results.relief import flank_design
 from fegear.results.relief import flank_design_sheet as sheet
 from fegear.results.relief.flank_design_data import FlankDesignData, FlankDesignInputs, FlanksShown
+from fegear.results.relief.ground_flank_keys import keys_of
 
 RACK = BasicRack(1.0, 1.25, 0.38)
 GEAR = Gear(Tooth(24, RACK), 2e-3, 0.01, face_width=0.02)
@@ -86,7 +87,7 @@ def shown(*, scattered=True, gear="both", weights=None, lead=ALLOWED):
             for label, left in (("lead", 6.0), ("profile-and-lead", 1.0), ("profile", 1.9))]  # fmt: skip
     design = SimpleNamespace(
         states=(none, exact, *ways), unrelieved=none, exact=exact, best=ways[2], least=ways[1], chosen=(ways[2],),
-        found=found, scattered=scattered, x=X, z=Z, removal=EXACT, roll=np.array([0.0, 1e-3, 2e-3]),
+        found=found, finer=0, scattered=scattered, x=X, z=Z, removal=EXACT, roll=np.array([0.0, 1e-3, 2e-3]),
         left_by=lambda one: one.judged.peak_to_peak.value,
         task=SimpleNamespace(
             load=1500.0, loads=(500.0, 1500.0), weights=weights, map_over_face=(-1e-6, 0.0, 1e-6),
@@ -449,6 +450,24 @@ def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its
     assert "5 µm crowning" in ground
     assert "12 -> 1.5 µm (within tolerances at most 4 µm) at 33.83 N m" in ground
     assert "is better than profile (2) as drawn" in compared
+
+
+def test_modifications_that_nobody_can_grind_are_none_and_round_off_of_a_grid_is_no_slope():
+    seen = speaking()
+    best = seen.data.design.best
+    tiny = replace(RELIEFS[best.label], driver_tip=0.1e-6, driven_tip=0.2e-6, slope=2e-19)
+    seen.data.design.found[best.label] = replace(seen.data.design.found[best.label], relief=tiny)
+    (only,) = sheet._grind(seen)
+    assert only.startswith("Pair I: no modification needed: the optimum, 0.1 µm from d ")
+    assert only.endswith(
+        "is below a quarter of its tolerances and cannot be ground; transmission error without relief 12 µm at "
+        "33.83 N m, 8 µm at 11.28 N m, peak to peak."
+    )
+    assert seen.data.recommended == ""
+    assert [row.modification for row in seen.data.grinding if row.design == best.label] == ["tip relief"] * 2
+    assert "slope" not in "; ".join(keys_of(tiny, PAIR, {"driver": "p", "driven": "w"}))
+    assert sheet._size(tiny, "slope") == 0.0
+    assert sheet._size(tiny, "driver_tip") == 0.1e-6
 
 
 def test_tolerances_of_all_that_is_ground_are_said_by_their_kinds_and_finer_by_classes():

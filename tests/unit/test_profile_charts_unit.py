@@ -1,5 +1,6 @@
 """Profile charts of tip reliefs, and what reliefs leave when they are off by their tolerances."""
 
+import math
 from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
@@ -18,12 +19,13 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.pair import GearPair
+from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
-from fegear.results.relief.profile_charts import _tip_side, profile_chart
+from fegear.results.relief.profile_charts import _abscissa, _place, _tip_side, profile_chart
 
 LOAD = 6000.0
 EXACT = TipTolerance(0.0, 0.0, 0.0)
@@ -98,14 +100,31 @@ def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, 
     chart = profile_chart("p", gear, tip, TipTolerance(4e-6, 0.5e-3, 3e-6))
     assert (chart.lower <= chart.profile).all()
     assert (chart.profile <= chart.upper).all()
-    assert (chart.profile[-1], chart.upper[-1], chart.lower[-1]) == pytest.approx((-20e-6, -16e-6, -27e-6), abs=1e-12)
-    assert (chart.profile[0], chart.upper[0], chart.lower[0]) == pytest.approx((0.0, 0.0, -3e-6), abs=1e-15)
+    assert (chart.profile[-1], chart.upper[-1], chart.lower[-1]) == pytest.approx((-20e-6, -16e-6, -24e-6), abs=1e-12)
+    assert (chart.profile[0], chart.upper[0], chart.lower[0]) == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
+    assert chart.with_form == pytest.approx(chart.lower - 3e-6, abs=1e-15)
     # Where relief begins within its length's tolerance.
-    for limit, off in ((chart.upper, -0.5e-3), (chart.lower + 3e-6, 0.5e-3)):
+    for limit, off in ((chart.upper, -0.5e-3), (chart.lower, 0.5e-3)):
         begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
         assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
     assert chart.words.startswith(f"20 ± 4 µm, {'linear' if power == 1.0 else 'parabolic'} from d ")
     assert chart.words.endswith(" ± 0.5 mm long); f_{fα} 3 µm")
+
+
+def test_points_of_single_contact_are_marked_and_words_stand_apart(engagement, tips):
+    pair = engagement.pair
+    active = active_profile(pair, "driver")
+    chart = profile_chart("p", pair.driver, tips[0], TipTolerance(4e-6, None, 0.0), None, active, recommended=True)
+    assert chart.with_form is None
+    assert [mark.label for mark in chart.marks[:2]] == ["LPSTC", "HPSTC"]
+    for mark, radius in zip(chart.marks, (active.lowest_single, active.highest_single), strict=False):
+        assert mark.at * 1e-3 == pytest.approx(math.sqrt(radius**2 - pair.driver.base_radius**2), rel=1e-12)
+    beside = replace(tips[0], start=chart.marks[1].at * 1e-3 / pair.driver.base_radius + 0.01)
+    words = [mark.label for mark in profile_chart("p", pair.driver, beside, EXACT, None, active).marks]
+    assert words == ["LPSTC", "HPSTC", ""]  # the line of the start stays
+    axis = _abscissa(SimpleNamespace(one=chart))
+    assert axis.second.value == pytest.approx(np.degrees(np.array(axis.second.at) * 1e-3 / pair.driver.base_radius))
+    assert _place(chart) == " (recommended)"
 
 
 def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):

@@ -15,6 +15,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.grinding import TIP, Grinding
 from fegear.results.relief.ground_tips import said_of_flat_optima
+from fegear.results.relief.recommended import recommended_design
 from fegear.results.relief.relief_over_range import LeftOverRange, said_at, said_of_range, said_of_undefined
 from fegear.results.relief.relief_robustness import as_designed
 
@@ -30,7 +31,9 @@ def left(values, most=None, finer=0, load=LOAD, share=None):
 def made(linear, parabolic, finer=0, grade=5, amounts=(6e-6, 6e-6), load=LOAD, single=0.8, share=None):
     """With linear reliefs to be ground."""
     rows = tuple(
-        Grinding("pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], start_diameter=0.06)
+        Grinding(
+            "pw"[n], member, f"{shape} tip relief", TIP, shape, amounts[n], amount_tolerance=5e-6, start_diameter=0.06
+        )
         for shape in ("linear", "parabolic") for n, member in enumerate(MEMBERS)
     )  # fmt: skip
     share = None if share is None else np.array(share)
@@ -59,6 +62,27 @@ def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_to
     assert single.endswith(
         "designed for 100 N m only gives 3.9 µm peak-to-peak at 50 N m, more than without relief (3.7 µm)."
     )
+
+
+def test_the_first_sentence_has_what_the_rounded_numbers_leave_where_that_is_known():
+    seen = made((3.3, 4.5), (3.5, 5.0))
+    best = seen.data.over_range["linear tip relief"]
+    seen.data.over_range["linear tip relief"] = replace(best, rounded=np.array([1.2345e-6, 2.3456e-6]))
+    first, *_ = said_of_range(seen)
+    assert first.endswith("at 50 N m, peak to peak (with the rounded numbers of the grinding table 2.35, 1.23 µm).")
+
+
+def test_a_design_is_recommended_unless_tolerances_or_tiny_amounts_make_it_useless():
+    def found(**more):
+        data = made(*more.pop("most", ((3.3, 4.5), (3.5, 5.0))), **more).data
+        return recommended_design(data.grinding, data.over_range)
+
+    assert found() == "linear tip relief"
+    assert found(amounts=(57e-9, 0.11e-6)) == ""
+    assert found(amounts=(57e-9, 6e-6)) == "linear tip relief"
+    lost = ((3.8, 7.1), (3.9, 7.2))
+    assert found(most=lost, finer=2) == found(most=lost, finer=None) == ""
+    assert recommended_design((), {}) == ""
 
 
 def test_an_answer_for_a_spectrum_has_the_time_of_each_torque_and_the_mean_over_it():

@@ -114,6 +114,8 @@ class Answers:
         """Refuse what cannot be read, or has no meaning for this kind."""
         if self.kind not in KINDS:
             raise InputError("--kind", f'"{self.kind}"', "is an unknown kind of case", nearest(self.kind, KINDS))
+        if self.kind == "ring":
+            _refuse_pair(self.given)
         asked = {question.name: question for question in self._questions}
         for name, text in self.given.items():
             if name not in asked:
@@ -357,6 +359,17 @@ def _allowed(question: Question, text: str) -> tuple[str, ...]:
         key = _option(question.name)
         raise InputError(key, f'"{text}"', "must be one torque", "a range requires --kind relief")
     return both or (text,)
+
+
+def _refuse_pair(given: Mapping[str, str]) -> None:
+    """Refuse what a ring gear alone has not, and point to the kinds that have a pinion, too."""
+    teeth = [one.removeprefix("-") for one in _split(given.get("teeth", ""))]
+    name = "teeth" if len(teeth) > 1 else "torque"
+    if name not in given or not all(one.isdecimal() for one in teeth):
+        return
+    both = f"{teeth[0]} -{teeth[1]}" if len(teeth) > 1 else f"21 -{(teeth or ['66'])[0]}"
+    rule = "is of a pair; --kind ring is a ring gear without its pinion"
+    raise InputError(_option(name), f'"{given[name]}"', rule, f"use --kind relief, or pair, with --teeth {both}")
 
 
 def _option(name: str) -> str:

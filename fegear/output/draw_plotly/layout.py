@@ -68,19 +68,41 @@ def layout(figure: Figure, members: list[list[int]], count: int, names: int) -> 
         "hovermode": "x unified" if shared(figure) else "closest",
         "legend": {"orientation": "h", "x": 0, "xanchor": "left", "y": legend, "yanchor": "bottom",
                    "traceorder": "normal"},
-        "shapes": [], "annotations": [], "meta": {"names": names, "inner": inner, "beside": _BESIDE},
+        "meta": {"names": names, "inner": inner, "beside": _BESIDE},
     }  # fmt: skip
     if any(
         isinstance(i, HeatMap) and not np.isfinite(np.asarray(i.z)).all() for p in figure.all_panels for i in p.items
     ):
         made["plot_bgcolor"] = f"{LIGHT['grey']}66"
-    upper = 1.0
-    for number, panel in enumerate(panels, start=1):
-        lower = max(0.0, upper - heights[number - 1] / inner)
+    domains = _domains(heights, above)
+    for number, (panel, domain) in enumerate(zip(panels, domains, strict=True), start=1):
         joined = number > 1 and panel.x.like(panels[0].x) and not panel.x.categories
-        _axes(made, panel, anchor(number), (lower, upper), joined=joined)
+        _axes(made, panel, anchor(number), domain, joined=joined)
         if panel.x.second:
             made[f"xaxis{100 + number}"] = _second(panel, anchor(number))
+    uppers = [upper for _, upper in domains]
+    made |= _said_in(panels, uppers)
+    if menu:
+        place = 1 + (top - 8) / inner
+        made["updatemenus"] = [_choice(figure, members, count, place, uppers)]
+    return made
+
+
+def _domains(heights: Sequence[float], above: Sequence[float]) -> list[tuple[float, float]]:
+    """Lower and upper end of each panel's axes, as shares of the height from the first panel's to the last one's."""
+    inner = sum(heights) + sum(above[1:]) + _GAP * (len(heights) - 1)
+    upper, found = 1.0, []
+    for number, height in enumerate(heights, start=1):
+        lower = max(0.0, upper - height / inner)
+        found.append((lower, upper))
+        upper = lower - (_GAP + (above[number] if number < len(heights) else 0.0)) / inner
+    return found
+
+
+def _said_in(panels: Sequence[Panel], uppers: list[float]) -> Spec:
+    """Titles and marks of the panels of a view."""
+    made: Spec = {"shapes": [], "annotations": []}
+    for number, (panel, upper) in enumerate(zip(panels, uppers, strict=True), start=1):
         _marks(made, panel, anchor(number))
         if panel.title:
             made["annotations"].append({
@@ -88,17 +110,14 @@ def layout(figure: Figure, members: list[list[int]], count: int, names: int) -> 
                 "y": upper, "yanchor": "bottom", "align": "left",
                 "yshift": 2 + _SECOND * bool(panel.x.second), "showarrow": False,
             })  # fmt: skip
-        upper = lower - (_GAP + (above[number] if number < len(panels) else 0.0)) / inner
-    if menu:
-        place = 1 + (top - 8) / inner
-        made["updatemenus"] = [_choice(figure, members, count, place)]
     return made
 
 
-def _choice(figure: Figure, members: list[list[int]], count: int, place: float) -> Spec:
+def _choice(figure: Figure, members: list[list[int]], count: int, place: float, uppers: list[float]) -> Spec:
     buttons = []
-    for view, listed in zip(figure.views, members, strict=True):
-        titles: Spec = {}
+    said = [_said_in(view.panels, uppers) for view in figure.views]
+    for view, listed, own in zip(figure.views, members, said, strict=True):
+        titles: Spec = {} if all(one == said[0] for one in said) else dict(own)
         for number, panel in enumerate(view.panels, start=1):
             first = figure.views[0].panels[number - 1]
             if not panel.y.like(first.y) or any(not v.panels[number - 1].y.like(first.y) for v in figure.views):
@@ -172,7 +191,8 @@ def _second(panel: Panel, name: str) -> Spec:
         return {}
     places, texts = second.ticks()
     return {
-        "title": {"text": titled(second.label, second.unit)}, "overlaying": f"x{name}", "matches": "x", "side": "top",
+        "title": {"text": titled(second.label, second.unit)}, "overlaying": f"x{name}", "matches": f"x{name}",
+        "side": "top",
         "tickvals": places.tolist(), "ticktext": list(texts), "showgrid": False, "anchor": f"y{name}",
     }  # fmt: skip
 

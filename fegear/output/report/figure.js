@@ -34,6 +34,7 @@ const fegearFigure = (() => {
         layout.updatemenus[0].active = menu.active;
         for (const [path, value] of Object.entries(layout.updatemenus[0].buttons[menu.active]?.args[1] ?? {})) {
           const [name, part] = path.split(".");
+          if (!part) layout[name] = value; // words and marks of this view
           if (part === "title") layout[name] = { ...layout[name], title: { text: value } };
         }
       }

@@ -12,6 +12,7 @@ from fegear.base.effects import RELIEF
 from fegear.base.errors import InputError, shown
 from fegear.base.printed import figures
 from fegear.case.nearest import nearest
+from fegear.results.relief.applied_left import left_by_design, without_stale_comments
 from fegear.results.relief.grinding import BIAS, CROWNING, END, NOTHING, OF_FLANKS, OF_LEADS, SLOPE, TIP
 
 if TYPE_CHECKING:
@@ -189,7 +190,10 @@ def applied_design(
     modified = MODIFIED if any("lead" in one or "bias" in one for one in keys.values()) else ("relief",)
     if of_lead and before.case.effects.relief:  # on flanks that count: all but slope and crowning stays
         keys, modified = _leads(before, tables, pair, keys), ("lead",)
-    remark = f"{REMARK}: {chosen}, {source}, pair {pair}"
+    run = build_scene(document, where.stem, where.parent)
+    left = None if of_lead else left_by_design(run, tables, pair, chosen, exact=chosen == EXACT)
+    of_one = f", {left.remark}" if left and left.remark else ""
+    remark = f"{REMARK}: {chosen}, {source}, pair {pair}{of_one}"
     changes: dict[KeyPath, str | None] = {("effects", RELIEF.name): "true"}
     comments: dict[KeyPath, str] = {}
     for gear in keys:
@@ -205,8 +209,12 @@ def applied_design(
     except InputError:  # tables under heads of their own make room first
         room: dict[KeyPath, str | None] = dict.fromkeys(comments, None)
         made = with_values(with_values(text, room), changes, comments)
+    if made != text:
+        made = without_stale_comments(made, tuple(gear for gear in keys if keys[gear].get("relief")))
     build_scene(parse_document(made, f'"{where}"'), where.stem, where.parent)
-    return Applied(made, f"{chosen} of {source} in {where}: {_in_words(keys)}.")
+    then = f" {left.sentence}" if left else ""
+    named = "exact relief" if chosen == EXACT else chosen
+    return Applied(made, f"{named} of {source} in {where}: {_in_words(keys)}.{then}")
 
 
 def _leads(scene: Scene, tables: Mapping[str, Table], pair: str, keys: Keys) -> Keys:

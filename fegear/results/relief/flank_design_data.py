@@ -14,10 +14,12 @@ from fegear.base.shown import shown, shows
 from fegear.case.flank_design import FlankDesignPart
 from fegear.design.flanks.forms import lead_bearer
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.path_of_contact import active_profile
 from fegear.results.relief.grinding import Grinding
 from fegear.results.relief.ground_flank_keys import ground_rows
 from fegear.results.relief.lead_charts import LeadChart, lead_chart
 from fegear.results.relief.profile_charts import ProfileChart, profile_chart
+from fegear.results.relief.recommended import recommended_design
 from fegear.results.relief.relief_over_range import LeftOverRange
 
 if TYPE_CHECKING:
@@ -289,13 +291,14 @@ class FlanksShown:
         task, pair = self.design.task, self.data.pair
         load = np.array(task.loads)
         weights = np.ones(load.size) if task.weights is None else np.array(task.weights)
-        over = self.asked.over
+        over, best = self.asked.over, self.design.best.label if self.design.found else ""
         shares = None if over is None or over.shares is None else np.array(over.shares)
         return {
             state.label: LeftOverRange(
                 load * pair.driver.base_radius, load, weights / weights.max(), state.over_peak_to_peak,
                 state.over_first, state.over_most if state.label in self.design.found else None, state.over_error,
                 mean=state.over_mean if self.scattered else None, share=shares,
+                finer=self.design.finer if state.label == best else 0,
             )
             for state in self.design.states
         }  # fmt: skip
@@ -317,6 +320,11 @@ class FlanksShown:
         )  # fmt: skip
 
     @cached_property
+    def recommended(self) -> str:
+        """Name of the design to be ground; empty where none is worth it."""
+        return recommended_design(self.grinding, self.over_range)
+
+    @cached_property
     def profile_charts(self) -> dict[str, tuple[ProfileChart, ...]]:
         """Of both gears for each design with tip relief, the one to be ground first."""
         from fegear.design.flanks.flank_tolerance import end_reliefs
@@ -325,14 +333,17 @@ class FlanksShown:
         reliefs = {label: found[label].relief for label in dict.fromkeys(row.design for row in self.grinding)}
         return {
             label: tuple(
-                profile_chart(self.asked.gears[member], pair.gear(member), tip, allowed)
+                profile_chart(
+                    self.asked.gears[member], pair.gear(member), tip, allowed, active=active_profile(pair, member),
+                    recommended=label == self.recommended,
+                )
                 for member, tip, allowed in zip(
                     MEMBERS, end_reliefs(relief.numbers, pair, relief.tip_power), self.asked.tolerance.tips, strict=True
                 )
             )
             for label, relief in reliefs.items()
             if relief.driver_tip or relief.driven_tip
-        }
+        }  # fmt: skip
 
     @cached_property
     def lead_charts(self) -> dict[str, LeadChart]:

@@ -24,11 +24,12 @@ from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.flank_design_data import FlanksShown
 from fegear.results.relief.flank_design_ends import end_notes
-from fegear.results.relief.grinding import TIP, grinding_table
+from fegear.results.relief.grinding import NOTHING, TIP, grinding_table
 from fegear.results.relief.ground_flank_keys import keys_of
 from fegear.results.relief.interference_words import said_of_interference
 from fegear.results.relief.lead_charts import lead_k_chart
 from fegear.results.relief.profile_charts import k_chart
+from fegear.results.relief.recommended import nothing_words
 from fegear.results.relief.relief_over_range import (
     OVER_RANGE,
     RANGE_CHART,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.base.notes import Note
     from fegear.design.flanks.flank_design import FlankState
+    from fegear.design.flanks.forms import GroundRelief
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.grinding import Grinding
 
@@ -78,9 +80,15 @@ def _judged(key: str) -> tuple[Cell, Off]:
 def _ground(key: str) -> Cell:
     """A number of what is ground; zero where nothing of the kind is."""
     return Cell(
-        key, lambda seen: [getattr(way.state.relief, key) if way.state.relief else 0.0 for way in seen.data.ways],
+        key, lambda seen: [_size(way.state.relief, key) for way in seen.data.ways],
         lambda seen: seen.data.design.best.relief,
     )  # fmt: skip
+
+
+def _size(relief: GroundRelief | None, key: str) -> float:
+    """A number of what is ground; zero where it is nothing but round-off of a grid."""
+    size = getattr(relief, key) if relief else 0.0
+    return size if abs(size) > NOTHING else 0.0
 
 
 def _searched(key: str, without: float = 0) -> Cell:
@@ -198,6 +206,9 @@ def _grind(seen: Seen) -> Iterator[str]:
         drawn, most, rows = _left(seen, least.label)[1], _at_most(least, torque), _rows(seen, least)
     else:
         drawn, most, rows = after, within, ground
+    if rows and all(row.is_faint for row in rows):
+        yield nothing_words(seen.name, rows, torque, none)
+        return
     left = left_words(none, drawn, most, torque, ends, first.share)
     do = f"{'without deviations ' if lost else ''}grind {', '.join(row.words for row in rows) or 'nothing'}"
     over = "" if first.share is None else " over the load spectrum"

@@ -7,12 +7,14 @@ A result that designs further kinds makes `Grinding` rows of them, and a table o
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.base.shown import shown
+from fegear.design.ground_digits import ANGLE_STEP, LENGTH_STEP, amount_step, to_step
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import Member
 from fegear.results.relief.answer_numbers import microns
@@ -35,6 +37,14 @@ _FURTHER = (
 )  # fmt: skip
 #: An amount below this is nothing [m].
 NOTHING = 5e-9
+#: Amount over its tolerance below which grinding cannot be told from not grinding.
+_FAINT = 0.25
+#: Numbers of a row with the digits of amounts, and with those of diameters and lengths.
+_AMOUNTS = ("amount", "amount_tolerance", "amount_from", "amount_to")
+_LENGTHS = (
+    "start_diameter", "end_diameter", "length", "length_tolerance", "face_length", "start_diameter_from",
+    "start_diameter_to",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -64,6 +74,11 @@ class Grinding:
     start_diameter_to: float = shown("mm", "upper end of the near-optimum range", default=math.nan)
 
     @property
+    def is_faint(self) -> bool:
+        """Whether the amount is so far below its tolerance that grinding it cannot be told from not grinding."""
+        return abs(self.amount) < _FAINT * self.amount_tolerance
+
+    @property
     def words(self) -> str:
         """As a sentence says it; empty for nothing."""
         if abs(self.amount) <= NOTHING:
@@ -74,8 +89,28 @@ class Grinding:
         return f"{amount} {self.modification} on gear {self.gear}"
 
 
+def rounded_rows(rows: Sequence[Grinding]) -> tuple[Grinding, ...]:
+    """The rows with digits that can be ground: 0.1 µm, 0.001 mm and 0.01 deg.
+
+    Of a design whose largest amount is below 1 µm amounts have two digits.
+    """
+    largest: dict[str, float] = {}
+    for row in rows:
+        largest[row.design] = max(largest.get(row.design, 0.0), abs(row.amount))
+    return tuple(_rounded(row, amount_step(largest[row.design])) for row in rows)
+
+
+def _rounded(row: Grinding, step: float) -> Grinding:
+    steps = dict.fromkeys(_AMOUNTS, step) | dict.fromkeys(_LENGTHS, LENGTH_STEP) | {"start_roll_angle": ANGLE_STEP}
+    numbers: dict[str, Any] = {name: to_step(getattr(row, name), one) for name, one in steps.items()}
+    errors: dict[str, Any] = {
+        name: float(f"{getattr(row, name):.2g}") for name in ("amount_error", "start_diameter_error")
+    }
+    return replace(row, **numbers, **errors)
+
+
 def grinding_table(name: Text, title: Text, of: Where, each: Where | None = None) -> Rows:
-    """A table of `Grinding` rows; none where there are no rows.
+    """A table of `Grinding` rows with digits that can be ground; none where there are no rows.
 
     Parameters
     ----------
@@ -85,16 +120,20 @@ def grinding_table(name: Text, title: Text, of: Where, each: Where | None = None
     each : where, optional
         Objects that have such a table each: too many to be printed.
     """
+
+    def rows(seen: Seen) -> tuple[Grinding, ...]:
+        return rounded_rows(seen.find(of))
+
     return Rows(
         name, title,
         (
             "gear", "member", "design", "modification", "shape", "amount",
-            Off("amount", lambda seen: _given(seen, of, "amount_error")), _cell("amount_tolerance", of),
-            _cell("start_diameter", of),
-            Off("start_diameter", lambda seen: _given(seen, of, "start_diameter_error")),
-            *(_cell(quantity, of) for quantity in _FURTHER),
+            Off("amount", lambda seen: _given(seen, rows, "amount_error")), _cell("amount_tolerance", rows),
+            _cell("start_diameter", rows),
+            Off("start_diameter", lambda seen: _given(seen, rows, "start_diameter_error")),
+            *(_cell(quantity, rows) for quantity in _FURTHER),
         ),
-        of=of, each=each, when=of, printed=each is None,
+        of=rows, each=each, when=rows, printed=each is None,
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from fegear.design.flanks.forms import lead_bearer
 from fegear.design.tip_relief.tip_tolerance import OF_LENGTH
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import roll_in_drawing
-from fegear.results.relief.grinding import BIAS, CROWNING, END, SLOPE, TIP, Grinding
+from fegear.results.relief.grinding import BIAS, CROWNING, END, NOTHING, SLOPE, TIP, Grinding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,7 +45,7 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str], *
     bearer = lead_bearer(pair)
     flanks: dict[Member, list[str]] = {member: [] for member in MEMBERS}
     for member, amount, end, start in tips:
-        if amount:
+        if abs(amount) > NOTHING:
             on = bearer if on_one else member
             place, at = ("tip", "at_radius") if on == member else ("root", "end_radius")
             radii = [float(pair.radius(x, on)) for x in (start, end)]
@@ -57,14 +57,16 @@ def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str], *
         if ends:
             by_gear[gears[member]].append(f"relief = {{ {', '.join(ends)} }}")
     lead = [
-        f'{key} = "{_um(value)}"' for key, value in (("crowning", relief.crowning), ("slope", relief.slope)) if value
+        f'{key} = "{_um(value)}"'
+        for key, value in (("crowning", relief.crowning), ("slope", relief.slope))
+        if abs(value) > NOTHING  # a step of a grid that is none but for round-off
     ]
-    if relief.end_relief:
+    if abs(relief.end_relief) > NOTHING:
         face_ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
         lead.append(f"end_relief = {{ {face_ends} }}")
     if lead:
         by_gear[gears[bearer]].append(f"lead = {{ {', '.join(lead)} }}")
-    if relief.bias:
+    if abs(relief.bias) > NOTHING:
         # The driven gear's tip is where the driver's root is.
         bias = relief.bias if bearer == "driver" else -relief.bias
         by_gear[gears[bearer]].append(f'bias = "{_um(bias)}"')
@@ -106,7 +108,7 @@ def ground_rows(
         lead(END, "linear", relief.end_relief, own.crowning, relief.end_relief_length),
         lead(SLOPE, "linear", relief.slope, own.slope), lead(BIAS, "linear", bias, own.twist),
     ]  # fmt: skip
-    return [row for row in rows if row.amount]
+    return [row for row in rows if abs(row.amount) > NOTHING]
 
 
 def _um(value: float) -> str:

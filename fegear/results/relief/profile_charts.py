@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
-from fegear.engine.figure.axis import Axis
+from fegear.engine.figure.axis import Axis, Scale
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.geometry.relief import EndRelief, roll_in_drawing, roll_of_radius
@@ -23,14 +23,17 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.gear import Gear
+    from fegear.geometry.path_of_contact import ActiveProfile
     from fegear.geometry.relief import Relief
 
 #: Places of a chart over the involute.
 _PLACES = 241
 #: Share of the deepest removal that is left free above the involute.
 _ROOM = 0.18
-#: Limit toward more removal in the legend.
-_LOWER = "the same and profile form f_{fα}"
+#: Share of the abscissa that a word beside a mark takes.
+_WORD = 0.13
+#: Limit toward more removal with profile form in the legend.
+_FORM = "lower limit with profile form f_{fα}"
 _SHAPES = {1.0: "linear", 2.0: "parabolic"}
 
 
@@ -44,21 +47,30 @@ class ProfileChart:
     words : str
         The relief and its tolerances, in a line.
     marks : tuple of Mark
+        Points of single contact, and the start of the relief.
+    base_radius : float
+        [m].
+    recommended : bool
+        Whether it is of the design to be ground.
     """
 
     gear: str
     words: str
     marks: tuple[Mark, ...]
+    base_radius: float
+    recommended: bool
     roll_length: Array = shown("mm", "roll length from the base circle, along the line of action", label="roll length")
     profile: Array = shown("um", "deviation of the profile from the involute", label="deviation from the involute")
-    upper: Array = shown("um", "upper limit of the profile")
-    lower: Array = shown("um", "lower limit of the profile")
+    upper: Array = shown("um", "upper limit of the profile by the tolerances of amount and length")
+    lower: Array = shown("um", "lower limit of the profile by the tolerances of amount and length")
+    with_form: Array | None = shown("um", "lower limit of the profile with profile form", default=None)
     present: Array | None = shown("um", "profile with the relief of the case", default=None)
 
 
 def profile_chart(
-    name: str, gear: Gear, tip: EndRelief, tolerance: TipTolerance, present: Relief | None = None
-) -> ProfileChart:
+    name: str, gear: Gear, tip: EndRelief, tolerance: TipTolerance, present: Relief | None = None,
+    active: ActiveProfile | None = None, *, recommended: bool = False,
+) -> ProfileChart:  # fmt: skip
     """The chart of a tip relief over the involute of a gear.
 
     Parameters
@@ -70,12 +82,16 @@ def profile_chart(
     tolerance : TipTolerance
     present : Relief, optional
         That the gear has now.
+    active : ActiveProfile, optional
+        Where the mate touches the gear.
+    recommended : bool
+        Whether it is of the design to be ground.
     """
     low, high = (float(roll_of_radius(gear, r)) for r in (gear.form_radius, gear.involute_tip_radius))
     roll = np.unique(np.concatenate([np.linspace(min(low, high), max(low, high), _PLACES), [tip.start]]))
     least, most = tolerance.limits(gear, tip, roll)
     length = gear.base_radius * (tip.end - tip.start)
-    words, marks = "no relief", []
+    words, marks = "no relief", _single_contact(gear, active)
     if tip.amount > NOTHING:
         start = gear.base_radius * math.hypot(1.0, tip.start)
         amount = with_limits(tip.amount, tolerance.amount, least=0.0)
@@ -83,20 +99,49 @@ def profile_chart(
             f"{amount}, {_SHAPES[tip.power]} from d {2e3 * start:.1f} mm "
             f"({figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm long)"
         )
-        marks = [Mark("x", float(roll_in_drawing(gear, gear.base_radius * tip.start)) * 1e3, f"d {2e3 * start:.1f}")]
+        marks.append(Mark("x", _drawn_length(gear, tip.start), f"d {2e3 * start:.1f}"))
+    drawn, form = roll_in_drawing(gear, gear.base_radius * roll), None
     if tolerance.form > NOTHING:
-        words = f"{words}; f_{{fα}} {microns(tolerance.form)} µm"
+        words, form = f"{words}; f_{{fα}} {microns(tolerance.form)} µm", -most
     return ProfileChart(
-        name, words, tuple(marks), roll_in_drawing(gear, gear.base_radius * roll), -tip.removal(roll), -least, -most,
-        None if present is None else -present.removal(roll),
+        name, words, _apart(marks, float(np.ptp(drawn)) * 1e3), gear.base_radius, recommended, drawn,
+        -tip.removal(roll), -least, tolerance.form - most, form, None if present is None else -present.removal(roll),
     )  # fmt: skip
+
+
+def _apart(marks: Sequence[Mark], span: float) -> tuple[Mark, ...]:
+    """Marks of an axis that spans so much, without words that would lie on one before; lines stay."""
+    kept: list[Mark] = []
+    for mark in marks:
+        free = all(abs(mark.at - one.at) >= _WORD * span for one in kept if one.label)
+        kept.append(mark if free else Mark(mark.axis, mark.at))
+    return tuple(kept)
+
+
+def _drawn_length(gear: Gear, roll: float) -> float:
+    """Roll length of a roll angle as an abscissa [mm]."""
+    return float(roll_in_drawing(gear, gear.base_radius * roll)) * 1e3
+
+
+def _single_contact(gear: Gear, active: ActiveProfile | None) -> list[Mark]:
+    """Lowest and highest point of single tooth contact, where there is one."""
+    if active is None or math.isnan(active.lowest_single):
+        return []
+    ends = (("LPSTC", active.lowest_single), ("HPSTC", active.highest_single))
+    return [Mark("x", _drawn_length(gear, float(roll_of_radius(gear, radius))), word) for word, radius in ends]
+
+
+def _abscissa(seen: Seen) -> Axis:
+    """An axis for each gear, as they lie far apart; roll angles at the other side."""
+    length = np.array([seen.one.roll_length.min(), seen.one.roll_length.max()])
+    angle = Scale("roll angle", "deg", length * 1e3, np.degrees(length / seen.one.base_radius))
+    return Axis(f"roll length of {seen.one.gear}", "mm", second=angle)
 
 
 def _ordinate(seen: Seen) -> Axis:
     """With room for the diameter above the profile."""
-    deepest = -1e6 * min(
-        float(seen.one.lower.min()), 0.0 if seen.one.present is None else float(seen.one.present.min())
-    )
+    curves = (seen.one.lower, seen.one.with_form, seen.one.present)
+    deepest = -1e6 * min(0.0, *(float(one.min()) for one in curves if one is not None))
     return Axis("deviation from the involute", "um", limits=(-1.08 * deepest, _ROOM * deepest))
 
 
@@ -106,6 +151,10 @@ def _tip_side(charts: Mapping[str, Sequence[ProfileChart]]) -> str:
         one.gear for each in charts.values() for one in each if one.roll_length[-1] < one.roll_length[0]
     )
     return f"tip at right (of {', '.join(hollow)} at left)" if hollow else "tip at right"
+
+
+def _place(chart: ProfileChart) -> str:
+    return " (recommended)" if chart.recommended else ""
 
 
 def k_chart(of: str) -> Chart:
@@ -120,26 +169,34 @@ def k_chart(of: str) -> Chart:
     return Chart(
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
         lambda seen: (
-            "Pair {name}: profile of each gear over roll length, material removed below zero, "
-            f"{_tip_side(seen.find(of))}. Dashed: limits by the tolerances of amount and length; the lower one "
-            "(dash-dot) includes profile form f_fα (flank tolerance class), more removal."
+            f"Pair {seen.name}: profile of each gear over roll length, material removed below zero, "
+            f"{_tip_side(seen.find(of))}. Dashed: upper and lower limit by the tolerances of amount and length; "
+            "dotted: the lower one with profile form f_fα (flank tolerance class). LPSTC, HPSTC: lowest and highest "
+            "point of single tooth contact; d: start of the relief."
         ),
         (
             Over(
-                lambda seen: Axis(f"roll length of {seen.one.gear}", "mm"),  # an axis for each: they lie far apart
+                _abscissa,
                 (
                     Line("profile", "nominal", "designed", look={**plain, "width": 2.4}, x="roll_length"),
                     Line(
-                        "upper", "limits of amount and length", "grey",
-                        look={**plain, "dash": "dash"}, x="roll_length",
+                        "upper", "limits of amount and length", "red",
+                        look={**plain, "dash": "dash", "width": 1.4}, x="roll_length",
                     ),
-                    Line("lower", lambda _: _LOWER, "grey", look={**plain, "dash": "dashdot"}, x="roll_length"),
+                    Line(
+                        "lower", "limits of amount and length", "red",
+                        look={**plain, "dash": "dash", "width": 1.4}, x="roll_length",
+                    ),
+                    Line(
+                        "with_form", lambda _: _FORM, "grey", look={**plain, "dash": "dot", "width": 1.2},
+                        x="roll_length",
+                    ),
                     Line("present", "present relief", "present relief", look=plain, x="roll_length"),
                 ),
                 _ordinate,
-                title="{one.gear}: {one.words}", each=lambda seen: seen.one,
+                title=lambda seen: f"{seen.one.gear}{_place(seen.one)}: {seen.one.words}", each=lambda seen: seen.one,
                 marks=lambda seen: seen.one.marks,
             ),
         ),
-        views=of, when=of, columns=1,
+        views=of, when=of, columns=1, view=lambda seen: f"{seen.key}{_place(seen.one[0])}",
     )  # fmt: skip

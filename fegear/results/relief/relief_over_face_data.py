@@ -11,10 +11,12 @@ import numpy as np
 from fegear.base.shown import shows
 from fegear.contact.fourier import effective_error
 from fegear.geometry.pair import MEMBERS, GearPair, Member
+from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.relief import roll_in_drawing
 from fegear.results.relief.ground_flank_keys import ground_rows
 from fegear.results.relief.harris import HarrisMap
 from fegear.results.relief.profile_charts import ProfileChart, profile_chart
+from fegear.results.relief.recommended import recommended_design
 from fegear.results.relief.relief_over_range import LeftOverRange
 
 if TYPE_CHECKING:
@@ -247,10 +249,12 @@ class TipsShown:
     def profile_charts(self) -> dict[str, tuple[ProfileChart, ...]]:
         """Of both gears for each shape, the best first."""
         present = self.data.present or (None, None)
+        recommended = recommended_design(self.grinding, self.over_range)
         charts = {
             (tip.shape, tip.member): profile_chart(
                 self.asked.gears[tip.member], self.data.pair.gear(tip.member), tip.relief,
                 self.asked.tolerances[MEMBERS.index(tip.member)], present[MEMBERS.index(tip.member)],
+                active_profile(self.data.pair, tip.member), recommended=f"{tip.shape} tip relief" == recommended,
             )
             for tip in self.tips
         }  # fmt: skip

@@ -35,9 +35,6 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair
     from fegear.results.relief.grinding import Grinding
 
-#: Tip relief over its tolerance below which grinding cannot be told from not grinding.
-_FAINT = 0.25
-
 #: Torques of a spectrum that an answer names at most.
 _NAMED = 4
 
@@ -78,6 +75,10 @@ class LeftOverRange:
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
     share: Array | None = shown("", "share of time in the load spectrum", default=None, name="time_share")
+    rounded: Array | None = shown(
+        "um", "peak-to-peak transmission error with the rounded numbers of the grinding table",
+        name="te_peak_to_peak_rounded", default=None,
+    )  # fmt: skip
 
     @property
     def time_mean(self) -> float:
@@ -105,6 +106,7 @@ def left_over_range(
     shares = None if over is None or over.shares is None else np.array(over.shares)
     within = {f"{shape} tip relief": both[:, 1] for shape, both in design.within.items()}
     best = f"{design.shapes[0]} tip relief" if design.ground else ""
+    rounded = {f"{shape} tip relief": one for shape, one in design.rounded.items()}
     searched = {f"{shape} tip relief": one for shape, one in design.ground.items()}
     searched |= {f"{shape} tip relief for one load": one for shape, one in design.for_one_load.items()}
     return {
@@ -113,7 +115,7 @@ def left_over_range(
             np.array([one.peak_to_peak for one in found]), np.array([one.series.amplitude[0] for one in found]),
             within.get(label), _errors(found, shifted, searched.get(label)),
             finer=design.finer if label == best else 0, decisive=design.decisive if label == best else (),
-            share=shares,
+            share=shares, rounded=rounded.get(label),
         )
         for label, found in design.over_range.items()
     }  # fmt: skip
@@ -171,7 +173,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         best, rows = d.over_range[f"{shape} tip relief"], _ground(seen, shape)
     else:
         shape = chosen
-    faint = [row for row in rows if _is_faint(seen, row)]
+    faint = [row for row in rows if row.is_faint]
     if rows and len(faint) == len(rows):
         yield _nothing_to_grind(seen, none, rows, ends)
         single = d.over_range.get(f"{shape} tip relief for one load")
@@ -185,7 +187,8 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     do = f"grind {' and '.join(ground)}, {shape}" if ground else "no tip relief reduces the transmission error"
     do = f"without deviations {do}" if lost else do
     over = "" if none.share is None else " over the load spectrum"
-    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak."
+    rounded = _as_rounded(best, at) if ground else ""
+    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak{rounded}."
     yield from said_of_spectrum(seen.name, none, best)
     single = d.over_range.get(f"{shape} tip relief for one load")
     if single and len(every) > 1 and none.share is None:  # beside other results a design has room for two sentences
@@ -203,10 +206,12 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         )
 
 
-def _is_faint(seen: Seen, row: Grinding) -> bool:
-    """Whether an amount is so far below its tolerance that grinding it cannot be told from not grinding."""
-    off: float = seen.asked.tolerances[MEMBERS.index(row.member)].amount
-    return row.amount < _FAINT * off
+def _as_rounded(best: LeftOverRange, at: Sequence[int]) -> str:
+    """What is left with the rounded numbers of the grinding table; empty where this is not known."""
+    if best.rounded is None:
+        return ""
+    left = ", ".join(microns(best.rounded[i], 3) for i in at)
+    return f" (with the rounded numbers of the grinding table {left} µm)"
 
 
 def _nothing_to_grind(seen: Seen, none: LeftOverRange, rows: Sequence[Grinding], ends: tuple[int, ...]) -> str:
@@ -317,7 +322,7 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
             yield f"Pair {seen.name}: {decides}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 and best.share is None else ""
     for row in rows:
-        if _is_faint(seen, row):
+        if row.is_faint:
             off = seen.asked.tolerances[MEMBERS.index(row.member)].amount
             amount, allowed_off = microns(row.amount), microns(off)
             yield (
@@ -416,6 +421,11 @@ def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_").replace("-", "_")
 
 
+def _legend(seen: Seen) -> str:
+    """A relief in a legend; that by theory is for one load, whatever the others are for."""
+    return "exact relief for one load (designed)" if seen.key == "designed" else seen.key
+
+
 def _role(seen: Seen) -> str:
     """The look of a relief, or of its place among several that have none."""
     places = list(seen.data.over_range)
@@ -432,11 +442,12 @@ OVER_RANGE = Rows(
         "torque", "load", "weight", "share",
         Each(
             "over_range",
-            Cell("peak_to_peak", name=lambda seen: f"te_peak_to_peak_{_key(seen)}", further="{key}"),
+            Cell("peak_to_peak", name=lambda seen: f"te_peak_to_peak_{_key(seen)}", further=", {key}"),
             Off("peak_to_peak", "errors", name=lambda seen: f"te_peak_to_peak_{_key(seen)}"),
-            Cell("most", name=lambda seen: f"te_peak_to_peak_max_{_key(seen)}", further="{key}"),
-            Cell("first", name=lambda seen: f"te_first_harmonic_{_key(seen)}", further="{key}"),
-            Cell("mean", name=lambda seen: f"te_mean_over_scatter_{_key(seen)}", further="{key}"),
+            Cell("rounded", name=lambda seen: f"te_peak_to_peak_rounded_{_key(seen)}", further=", {key}"),
+            Cell("most", name=lambda seen: f"te_peak_to_peak_max_{_key(seen)}", further=", {key}"),
+            Cell("first", name=lambda seen: f"te_first_harmonic_{_key(seen)}", further=", {key}"),
+            Cell("mean", name=lambda seen: f"te_mean_over_scatter_{_key(seen)}", further=", {key}"),
         ),
     ),
     of=_first, when="over_range", printed=True,
@@ -462,7 +473,7 @@ RANGE_CHART = Chart(
                 Bundle(
                     Family("over_range", role=_role),
                     (
-                        Line("peak_to_peak", "{key}", look={"markers": True}),
+                        Line("peak_to_peak", _legend, look={"markers": True}),
                         Line("most", look={"width": 0.8, "markers": False}),
                     ),
                 ),

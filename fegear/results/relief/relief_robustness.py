@@ -125,16 +125,18 @@ def recommended(shapes: Sequence[str], candidates: Iterable[str]) -> str:
 
 def _worst_combination(seen: Seen) -> str:
     """Which combination is worst, in words."""
-    factor, spacing, depth = seen.one.worst_case
-    where = f"load factor {factor:g}, pitch deviation {spacing * 1e6:g} um, relief {percent(depth, signed=True)}"
-    return f"{seen.key}, maximum of the {seen.one.values.size} combinations: {where}"
+    found: Robustness = seen.one
+    at = tuple(np.unravel_index(int(found.values.argmax()), found.values.shape))
+    where = _combination(found, at, seen.data.torque)
+    return f"{seen.key}, maximum of the {found.values.size} combinations: {where}"
 
 
 def _over_load(extreme: Callable[..., Array], width: float) -> Line:
-    """The extreme of all combinations at each load, over the loads in their order."""
+    """The extreme of all combinations at each load, over the torques in their order."""
     return Line(
         "values", "{key}", si=lambda seen: extreme(seen.one.values, axis=(1, 2))[np.argsort(seen.one.load_factors)],
-        x_si=lambda seen: np.sort(seen.one.load_factors), look={"width": width, "markers": width > 1.0},
+        x="load_factors", x_si=lambda seen: np.sort(seen.one.load_factors) * seen.data.torque,
+        look={"width": width, "markers": width > 1.0},
     )  # fmt: skip
 
 
@@ -206,7 +208,7 @@ ROBUSTNESS_SHEET = Sheet(
             "tolerance.",
             (
                 Over(
-                    "load_factors",
+                    Axis("torque on the driver", "N.m"),
                     (Bundle(Family("candidates", role="{key}"), (_over_load(np.max, 1.8), _over_load(np.min, 0.8))),),
                     lambda seen: Axis(f"{_EXCITATION[seen.asked.metric]} transmission error", "um", zero=True),
                 ),

@@ -21,6 +21,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Every, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.geometry.pair import MEMBERS, Member
+from fegear.geometry.path_of_contact import active_profile
 from fegear.results.gear.path_marks import roll_marks
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import Grinding, grinding_table, tip_row
@@ -28,6 +29,7 @@ from fegear.results.relief.ground_tips import GRINDABLE, GroundTip, said_of_flat
 from fegear.results.relief.harris import HARRIS_CHART, HarrisMap
 from fegear.results.relief.left_errors import LeftError, left_error
 from fegear.results.relief.profile_charts import ProfileChart, k_chart, profile_chart
+from fegear.results.relief.recommended import recommended_design
 from fegear.results.relief.relief_answer import RELIEF_ANSWER
 from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS, LeftOverRange, left_over_range
 
@@ -206,6 +208,29 @@ class ReliefShown:
             for tip in tips_of(ground, pair, shape, te, self._left_error(te, ground).larger)
         )
 
+    @property
+    def best_first(self) -> dict[str, Leaves]:
+        """What each relief leaves: the one to be ground, none, then the others."""
+        shapes = [f"{shape} tip relief" for shape in self.data.design.shapes]
+        order = dict.fromkeys((*shapes[:1], "no relief", "present relief", *shapes, *self.left))
+        return {label: self.left[label] for label in order if label in self.left}
+
+    @property
+    def best_tips(self) -> tuple[GroundTip, ...]:
+        """Tip reliefs of the shape to be ground."""
+        return tuple(tip for tip in self.tips if tip.shape == next(iter(self.data.design.shapes)))
+
+    @property
+    def other_tips(self) -> tuple[GroundTip, ...]:
+        """Those of the other shapes."""
+        return tuple(tip for tip in self.tips if tip not in self.best_tips)
+
+    @property
+    def rounded(self) -> float | None:
+        """What the relief to be ground leaves at the design load with the rounded numbers of the drawing [m]."""
+        design = self.data.design
+        return float(design.rounded[design.shapes[0]][self.at_design_load]) if design.rounded else None
+
     @cached_property
     def over_range(self) -> dict[str, LeftOverRange]:
         """What each relief leaves at each torque."""
@@ -237,11 +262,13 @@ class ReliefShown:
         pair, allowed = self.data.pair.engagement, self.asked.tolerances
         present = pair.driver_relief, pair.driven_relief
         found = [(shape, self.data.design.ground[shape]) for shape in self.data.design.shapes]
+        recommended = recommended_design(self.grinding, self.over_range)
         return {
             f"{shape} tip relief": tuple(
                 profile_chart(
                     self.asked.gears[member], pair.pair.gear(member), getattr(ground, member), allowed[i],
                     present[i] if "present relief" in self.data.design.te else None,
+                    active_profile(pair.pair, member), recommended=f"{shape} tip relief" == recommended,
                 )
                 for i, member in enumerate(MEMBERS)
             )
@@ -273,6 +300,11 @@ class ReliefShown:
 
 def _key(seen: Seen) -> str:
     return seen.key.replace(" ", "_")
+
+
+def _meant(seen: Seen) -> str:
+    """What a relief is, in words."""
+    return "exact relief by theory, for the design load only" if seen.key == "designed" else seen.key
 
 
 def _is_taken_away(seen: Seen) -> bool:
@@ -366,19 +398,22 @@ RELIEF_SHEET = Sheet(
         Number("root_tension", of="least_stress", name="design_root_tension",
                meaning="maximum of both gears, design load"),
         Number("hertz_pressure", of="least_stress", name="design_hertz_pressure"),
+        tip_numbers("best_tips", "{one.shape}_tip_"),
+        Number("te.peak_to_peak", of="left.designed", si="rounded", name="te_peak_to_peak.as_rounded",
+               meaning="relief to grind with the rounded numbers of the grinding table, design load"),
         Each(
-            "left",
+            "best_first",
             Number("te.peak_to_peak", "error.peak_to_peak", name=lambda seen: f"te_peak_to_peak.{_key(seen)}",
-                   meaning="{key}, design load", zero=_is_taken_away),
+                   meaning=lambda seen: f"{_meant(seen)}, design load", zero=_is_taken_away),
             Number("te.effective_error", "error.effective", name=lambda seen: f"te_effective.{_key(seen)}",
-                   meaning="A_e, {key}, design load", zero=_is_taken_away),
+                   meaning=lambda seen: f"A_e, {_meant(seen)}, design load", zero=_is_taken_away),
         ),
         Number("te.peak_to_peak", of="left.designed", si="data.design.tables_leave",
                name="te_peak_to_peak.relief_tables",
                meaning="designed, relief tables interpolated linearly, design load"),
         Number("te.mean", of="left.designed", name="te_mean.designed", meaning="design load"),
+        tip_numbers("other_tips", "{one.shape}_tip_"),
         TIME_MEANS,
-        tip_numbers("tips", "{one.shape}_tip_"),
         Number("relief", of="table", si=lambda seen: seen.one.table.relief.max(), owner="{name}.{one.member}",
                name="largest_relief", meaning="over the path", each="reliefs"),
     ),
