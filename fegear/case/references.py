@@ -31,9 +31,33 @@ def check_references(case: Case, built: Mapping[str, Collection[str]]) -> None:
     train = case.train
     of_train = {"body": train.body if train else (), "mesh": train.mesh if train else ()}
     known = {**built, **of_train, "gauge": case.gauge}
+    if train is not None:
+        _check_pairs_by_name(train, known["pair"])
     for key, name, kind in _references(case):
         if name is not None and name not in known[kind]:
+            if kind == "body" and name in known["gear"] and train is not None:
+                raise _gear_as_body(key, name, train)
             raise InputError(key, f'"{name}"', f"is not a {kind} of this case", nearest(name, known[kind]))
+
+
+def _check_pairs_by_name(train: TrainPart, pairs: Collection[str]) -> None:
+    """Refuse a mesh that says no pair and has the name of none."""
+    for name, mesh in train.mesh.items():
+        if mesh.pair is None and name not in pairs:
+            one = nearest(name, pairs) if len(pairs) != 1 else f'set pair = "{next(iter(pairs))}"'
+            raise InputError(
+                f"train.mesh.{name}.pair", "(not given)", f"is required: no pair of this case is called {name}", one
+            )  # fmt: skip
+
+
+def _gear_as_body(key: str, name: str, train: TrainPart) -> InputError:
+    """A gear where a body is asked for."""
+    carriers = [body for body, part in train.body.items() if name in (part.gears or ())]
+    return InputError(
+        key, f'"{name}"', "is a gear, not a body of the train",
+        f'set "{carriers[0]}", the body that has this gear' if carriers else
+        f"specify one of the bodies {', '.join(train.body)}",
+    )  # fmt: skip
 
 
 def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:

@@ -18,7 +18,7 @@ import numpy as np
 from fegear.base.shown import shown, shows
 from fegear.contact.fitted_line import FITTED, Fitted, FittedLine, linear, squares_left, standard_errors
 from fegear.contact.trace_outliers import Beside, outliers, suspected
-from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean
+from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean, step_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array, Mask
+    from fegear.contact.mains_hum import MainsHum
     from fegear.contact.once_per_turn import OncePerTurn
 
 #: Fewest turns of a trace that tell a drift from the curve: each of its places is there twice.
@@ -98,6 +99,10 @@ class FittedCurve:
         Standard error of the gain by the noise alone.
     left_out_angle, left_out : ndarray, shape (J,)
         Spikes, dropouts and saturated samples within the computed curve, as `angle` and `measured`.
+    step : float
+        In which the samples were taken; zero where they have none.
+    hum : MainsHum or None
+        At 50 or 60 Hz, where it was looked for.
     """
 
     fit: tuple[Fitted, ...]
@@ -137,6 +142,8 @@ class FittedCurve:
     wave_less: bool = False
     turn_gains: Array = field(default_factory=lambda: np.zeros(0))
     gain_noise: float = 0.0
+    step: float = 0.0
+    hum: MainsHum | None = None
 
     @property
     @shows("um/m", "amplitude of the part of the trace once per turn of the gear", name="measured_runout")
@@ -283,8 +290,9 @@ class FittedCurve:
 
 
 def fit_curve(
-    angle: Array, measured: Array, curve_angle: Array, curve: Array, fit: Collection[Fitted] = ()
-) -> FittedCurve:
+    angle: Array, measured: Array, curve_angle: Array, curve: Array, fit: Collection[Fitted] = (),
+    resolution: float | None = None,
+) -> FittedCurve:  # fmt: skip
     """Lay a measured curve over a computed one.
 
     Parameters
@@ -295,6 +303,8 @@ def fit_curve(
         Computed, ascending [rad, the same unit]; less than a turn.
     fit : collection of {"offset", "scale", "shift", "drift"}
         A drift goes with an offset.
+    resolution : float, optional
+        Step in which the samples were taken. Default: found from their values.
 
     Raises
     ------
@@ -311,7 +321,8 @@ def fit_curve(
             break
         spikes, saturated = again
         found = known.fitted(angle, measured, turns, asked, ~(spikes | saturated))
-    made = known.described(found, angle, measured, turns, asked)
+    step = step_of(measured) if resolution is None else resolution
+    made = known.described(found, angle, measured, turns, asked, step)
     inside = found.inside
     spikes, saturated = spikes & inside, saturated & inside
     out = spikes | saturated
@@ -394,9 +405,9 @@ class _Computed:
         )  # fmt: skip
 
     def described(
-        self, fit: _Fit, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...]
+        self, fit: _Fit, angle: Array, measured: Array, turns: Array, asked: tuple[Fitted, ...], step: float
     ) -> FittedCurve:
-        """A fit with its standard errors and its scatter."""
+        """A fit with its standard errors and its scatter, of samples taken in a step."""
         used, shift, line = fit.used, fit.shift, fit.line
         y, turn = measured[used], turns[used]
         spanned, turn = float(np.ptp(turn)), turn - fit.middle_turn
@@ -419,7 +430,8 @@ class _Computed:
             errors["shift"] = math.hypot(errors["shift"], spacing / math.sqrt(12.0))
         gain, of_gain = with_errors("scale")
         rest = gain.less(y, turn)
-        noise = noise_of(places, rest - gain.scale * found)
+        # within a step samples do not differ, and are none the better for it
+        noise = max(noise_of(places, rest - gain.scale * found), step / math.sqrt(12.0))
         of_turns = gains_of_turns(turn, found, rest, gain.scale, free="offset" in asked)
         by_noise = with_errors("scale", noise=noise)[1]["scale"]
         scatter = max(by_noise, of_mean(of_turns))
@@ -429,13 +441,18 @@ class _Computed:
             float(np.mod(shift + math.pi, _TURN) - math.pi), gain.scale, of_gain["scale"], places,
             line.less(y, turn) / (line.scale or 1.0), found, line.drift, drifting and drifting[0].drift,
             drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,
-            turn_gains=of_turns, gain_noise=by_noise,
+            turn_gains=of_turns, gain_noise=by_noise, step=step,
         )  # fmt: skip
+
+
+def going_on(angle: Array) -> Array:
+    """Angle of a trace that goes on from turn to turn, also where each turn begins at zero [rad]."""
+    return angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
 
 
 def turns_along(angle: Array) -> Array:
     """Turns of each sample of a trace from its first one, ascending along it, also where each turn begins at zero."""
-    going = angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
+    going = going_on(angle)
     return np.asarray((going - going[0]) / (_TURN if going[-1] >= going[0] else -_TURN))
 
 

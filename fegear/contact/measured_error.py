@@ -17,8 +17,9 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.shown import shown, shows
-from fegear.contact.fitted_curve import FittedCurve, fit_curve
+from fegear.contact.fitted_curve import FittedCurve, fit_curve, going_on
 from fegear.contact.trace_alternatives import alternatives
+from fegear.contact.trace_low_pass import low_pass
 from fegear.contact.trace_outliers import suspected
 
 if TYPE_CHECKING:
@@ -29,13 +30,12 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.fitted_line import Fitted
     from fegear.contact.trace_alternatives import Alternative
+    from fegear.contact.trace_low_pass import LowPass
 
 #: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
 FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
 #: Part of a tooth pitch over which a trace may have no sample, or run back (an encoder that trembles).
 _GAP = 0.25
-#: Turns from which on an angle is one that goes on, and is taken as it is.
-_GOES_ON = 1.1
 #: Part of a turn that a trace may lack of a whole one: the last of evenly spaced samples.
 _SLACK = 1e-3
 #: Harmonics of the mesh that are compared at most.
@@ -249,8 +249,7 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     if spikes.mean() > _MOST_SPIKES:
         spikes[:] = False
     angle, te = angle[~spikes], te[~spikes]
-    going = angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
-    turned, te = _one_way(going, te, _GAP * pitch)
+    turned, te = _one_way(going_on(angle), te, _GAP * pitch)
     length = float(turned[-1] - turned[0])
     samples = turned.size * pitch / length if length else 0.0
     step = length / max(turned.size - 1, 1)  # the last sample stands for as much as each
@@ -443,6 +442,27 @@ def better_described(
         fit,
     )  # fmt: skip
     return tuple(replace(one, fitted=replace(one.fitted, shift=one.fitted.shift / found.teeth)) for one in better)
+
+
+def behind_low_pass(
+    found: MeasuredError, fitted: FittedError, x: Array, te: Array, base_pitch: float, fit: Collection[Fitted]
+) -> LowPass | None:  # fmt: skip
+    """The low pass with which a trace fits clearly better, its time constant as an angle of the shaft; None for none.
+
+    Parameters
+    ----------
+    found : MeasuredError
+        Of a trace along which the shaft turns forward.
+    fitted : FittedError
+        As it is described.
+    x, te : ndarray, shape (P,)
+        Computed transmission error over one base pitch [m].
+    base_pitch : float
+    fit : collection of {"offset", "scale", "shift"}
+    """
+    over = _Over(x, base_pitch)
+    behind = low_pass(fitted, found.teeth * found.angle, found.te, over.angle, over.closed(te), fit, repeats=True)
+    return behind and replace(behind, lag=behind.lag / found.teeth)
 
 
 class _Over:

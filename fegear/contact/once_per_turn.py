@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
 
 #: Lengths of the computed curve about its middle that count as in or near the mesh.
 _NEAR = 1.5
@@ -48,6 +48,23 @@ class OncePerTurn:
         return np.asarray(self.amplitude * np.cos(angle - self.place))
 
 
+def outside_mesh(angle: Array, shift: float, curve_angle: Array) -> Mask:
+    """Which samples of a trace are far from the mesh of the tooth of its gauge, shape (N,).
+
+    Parameters
+    ----------
+    angle : ndarray, shape (N,)
+        As measured [rad].
+    shift : float
+        By which the measured curve lags behind the computed one [rad].
+    curve_angle : ndarray, shape (Q,)
+        Of the computed curve, ascending [rad].
+    """
+    middle, half = 0.5 * (curve_angle[0] + curve_angle[-1]), 0.5 * (curve_angle[-1] - curve_angle[0])
+    beside = np.abs(np.mod(angle - shift - middle + math.pi, _TURN) - math.pi)
+    return np.asarray(beside > _NEAR * half)
+
+
 def once_per_turn(
     angle: Array, measured: Array, turns: Array, shift: float, curve_angle: Array
 ) -> OncePerTurn | None:  # fmt: skip
@@ -64,9 +81,7 @@ def once_per_turn(
     curve_angle : ndarray, shape (Q,)
         Of the computed curve, ascending [rad].
     """
-    middle, half = 0.5 * (curve_angle[0] + curve_angle[-1]), 0.5 * (curve_angle[-1] - curve_angle[0])
-    beside = np.abs(np.mod(angle - shift - middle + math.pi, _TURN) - math.pi)
-    used = beside > _NEAR * half
+    used = outside_mesh(angle, shift, curve_angle)
     eighths = np.unique(np.floor(np.mod(angle[used], _TURN) / _TURN * 8.0))
     if np.count_nonzero(used) < _FEWEST or eighths.size < _EIGHTHS:
         return None

@@ -1,4 +1,4 @@
-"""What would explain a trace clearly better: another sign, direction of the angle, fillet, zero of the angle or torque.
+"""What would explain a trace clearly better: sign, direction, zero or scale of its angle, fillet or torque.
 
 Each alternative is fitted as the trace itself is, its scale always free: what is compared is the part of the variance
 that a curve leaves unexplained, 1 - r^2 with the correlation r of the shapes, noise aside (1 where the fitted scale is
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve, going_on
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.contact.fitted_line import Fitted
 
 #: What may be otherwise than described.
-Change = Literal["sign", "reverse", "curve", "shift"]
+Change = Literal["sign", "reverse", "curve", "shift", "turning"]
 #: Least correlation of an alternative that is stated.
 _FITS = 0.9
 #: Times less that it leaves unexplained; where the trace fits in shape already, that many times.
@@ -41,8 +41,8 @@ _NOTHING = 1e-6
 _BY_NOISE = 3.0
 #: Tooth pitches by which one miscounts at most, and how near to them a shift is.
 _PITCHES, _NEAR = 2, 0.1
-#: Samples that are fitted at most.
-_MOST = 20_000
+#: Samples that are fitted at most, and with another scale of the angle, of which there are many descriptions.
+_MOST, _MOST_TURNING = 20_000, 4_000
 
 
 @dataclass(frozen=True)
@@ -51,17 +51,32 @@ class Alternative:
 
     Parameters
     ----------
-    changes : tuple of {"sign", "reverse", "curve", "shift"}
+    changes : tuple of {"sign", "reverse", "curve", "shift", "turning"}
         In what it differs: measured with the other sign, angle counted the other way, another computed curve, zero of
-        the angle elsewhere.
+        the angle elsewhere, angle of another shaft or of an encoder that counts other than stated.
     curve : str
         Name of the other curve; empty for the trace's own.
     fitted : FittedCurve
+    turning : str
+        Name of the factor of the angle; empty for the angle as measured.
     """
 
     changes: tuple[Change, ...]
     curve: str
     fitted: FittedCurve
+    turning: str = ""
+
+
+@dataclass(frozen=True)
+class _Description:
+    """Signs of trace and angle, computed curve, factor of the angle, and what is fitted besides."""
+
+    changes: tuple[Change, ...]
+    curve: str
+    sign: float
+    sense: float
+    turning: str
+    fits: tuple[Fitted, ...]
 
 
 def unexplained(found: FittedCurve) -> float:
@@ -76,7 +91,7 @@ def _left(found: FittedCurve) -> float:
 
 def alternatives(
     found: FittedCurve, angle: Array, measured: Array, curve_angle: Array, curves: Mapping[str, Array],
-    fit: Collection[Fitted], *, shifts: bool = True,
+    fit: Collection[Fitted], *, shifts: bool = True, turnings: Mapping[str, float] | None = None,
 ) -> tuple[Alternative, ...]:  # fmt: skip
     """Descriptions of a trace that fit it clearly better, the likeliest first; none where it fits as described.
 
@@ -92,21 +107,26 @@ def alternatives(
         What was asked for.
     shifts : bool
         Whether the zero of the angle may be elsewhere, if it is not fitted.
+    turnings : mapping of str to float, optional
+        Factors by which the angle may have to be multiplied, by their names; its zero is then anywhere.
     """
-    left = unexplained(found)
+    left, factors = unexplained(found), {"": 1.0, **(turnings or {})}
     if left < _EXPLAINED_REVERSED:
         return ()
-    some = slice(None, None, -(-angle.size // _MOST))
-    angle, measured = angle[some], measured[some]
+    going = going_on(angle)
     likely: list[Alternative] = []
-    for changes, name, sign, sense, more in _descriptions(curves, shifts=shifts and "shift" not in fit):
-        if left < _EXPLAINED and changes != ("reverse",):
+    for one in _descriptions(curves, factors, shifts=shifts and "shift" not in fit):
+        if left < _EXPLAINED and one.changes != ("reverse",):
             continue
+        some = slice(None, None, -(-angle.size // (_MOST_TURNING if one.turning else _MOST)))
+        at = going[some] * factors[one.turning] if one.turning else angle[some]
         try:
-            again = fit_curve(sense * angle, sign * measured, curve_angle, curves[name], {*fit, "scale", *more})
+            again = fit_curve(
+                one.sense * at, one.sign * measured[some], curve_angle, curves[one.curve], {*fit, "scale", *one.fits}
+            )
         except NothingToCompareError:
             continue
-        likely.append(Alternative(changes, name, again))
+        likely.append(Alternative(one.changes, one.curve, again, one.turning))
     good = [one for one in likely if clearly_better(one.fitted, found)]
     if not good:
         return ()
@@ -118,17 +138,20 @@ def alternatives(
     return tuple(sorted((one for one in alike if len(one.changes) == fewest), key=lambda one: unexplained(one.fitted)))
 
 
-def _descriptions(
-    curves: Collection[str], *, shifts: bool
-) -> Iterator[tuple[tuple[Change, ...], str, float, float, tuple[Fitted, ...]]]:
-    """Changes, curve, sign and sense of the angle of each other description, and what it fits besides."""
-    for name, sign, sense, shifted in product(curves, (1.0, -1.0), (1.0, -1.0), (False, True)[: 1 + shifts]):
+def _descriptions(curves: Collection[str], turnings: Collection[str], *, shifts: bool) -> Iterator[_Description]:
+    """Each other description."""
+    for name, turning, sign, sense, shifted in product(
+        curves, turnings, (1.0, -1.0), (1.0, -1.0), (False, True)[: 1 + shifts]
+    ):
+        if turning and shifted:  # another angle has another zero
+            continue
         wrong: tuple[tuple[Change, bool], ...] = (
             ("sign", sign < 0.0), ("reverse", sense < 0.0), ("curve", bool(name)), ("shift", shifted),
+            ("turning", bool(turning)),
         )  # fmt: skip
         changes = tuple(change for change, is_so in wrong if is_so)
         if changes:
-            yield changes, name, sign, sense, ("shift",) if shifted else ()
+            yield _Description(changes, name, sign, sense, turning, ("shift",) if shifted or turning else ())
 
 
 def clearly_better(one: FittedCurve, than: FittedCurve) -> bool:

@@ -25,6 +25,10 @@ _TURNS = 3
 _ROUNDED = 1e-9
 #: Part of the mean power of the curve that a turn needs to have a gain of its own.
 _POWER = 0.5
+#: Samples to each value from which on they are taken in steps, and part of a step that rounding may change a value by.
+_EACH, _ROUNDING = 8, 0.02
+#: Values nearer than this part of the range are one.
+_SAME = 1e-9
 
 
 def noise_of(place: Array, residual: Array) -> float:
@@ -52,6 +56,27 @@ def noise_of(place: Array, residual: Array) -> float:
     if usual == 0.0:  # of exact or coarsely rounded samples
         return float(np.sqrt(np.mean(off**2)))
     return float(np.sqrt(np.mean(np.clip(off, -_CUT * usual, _CUT * usual) ** 2)))
+
+
+def step_of(measured: Array) -> float:
+    """Step in which the samples of a trace were taken, of its amplifier or its file; zero where they have none.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (N,)
+    """
+    size = float(np.ptp(measured))
+    if not size:
+        return 0.0
+    values = np.unique(np.round((measured - measured.min()) / (_SAME * size)))
+    if values.size < 3 or values.size * _EACH > measured.size:
+        return 0.0
+    gaps = np.diff(values)
+    step = float(gaps.min())
+    whole = np.round(gaps / step)
+    if np.abs(gaps / step - whole).max() > _ROUNDING:
+        return 0.0
+    return float((values[-1] - values[0]) / whole.sum()) * _SAME * size  # known by all values together
 
 
 def gains_of_turns(turn: Array, curve: Array, rest: Array, scale: float, *, free: bool) -> Array:

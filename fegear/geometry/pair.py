@@ -354,6 +354,10 @@ class GearPair:
         """Driver or driven."""
         return self.driver if member == "driver" else self.driven
 
+    def mate(self, member: Member) -> Gear:
+        """The gear that it meshes with."""
+        return self.driven if member == "driver" else self.driver
+
     def _curvature_at_pitch(self, member: Member) -> float:
         gear = self.gear(member)
         return gear.tooth.side * gear.base_radius * math.tan(self.working_pressure_angle)

@@ -9,7 +9,7 @@ import pytest
 from fegear.contact.fitted_curve import fit_curve
 from fegear.contact.trace_alternatives import alternatives, unexplained, whole_pitches
 from fegear.contact.trace_outliers import suspected
-from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean
+from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean, step_of
 
 #: Places [deg] and strain of a tooth of a spur pair in its tension and in its compression fillet.
 _AT = np.array([-25.0, -12.0, -10.5, -1.5, 0.0, 3.0, 4.5, 13.0, 14.5, 28.0])
@@ -66,6 +66,26 @@ def test_what_is_described_wrongly_is_found(kind, shift):
         assert len(found) == 1  # beside another one at most, where noise hides the difference
         assert len(better) == 1 or (noise > 50.0 and len(better) == 2)
         assert 0.75 < found[0].gain < 1.25
+
+
+@pytest.mark.parametrize(
+    ("name", "factor", "sense"), [("mate", 31.0 / 19.0, -1.0), ("twice", 0.5, 1.0), ("half", 2.0, 1.0)]
+)
+def test_an_angle_of_another_shaft_or_counted_otherwise_is_found(name, factor, sense):
+    """Also where it begins again with every turn of the shaft that it is of, and where it is counted backwards."""
+    turnings = {"mate": 31.0 / 19.0, "twice": 0.5, "half": 2.0}
+    for seed, wrapped in ((1, False), (2, True)):
+        angle, strain = trace(seed, turns=5, shift=1.0, noise=10.0, step=1.0)
+        counted = sense * angle / factor
+        counted = np.mod(counted, 2.0 * math.pi) if wrapped else counted
+        found = fit_curve(counted, strain, ANGLE, CURVES[""], ("offset", "scale"))
+        better = alternatives(found, counted, strain, ANGLE, CURVES, ("offset", "scale"), turnings=turnings)
+        changes = ("turning",) if sense > 0.0 else ("reverse", "turning")
+        assert [(one.changes, one.turning) for one in better] == [(changes, name)]
+        assert better[0].fitted.gain == pytest.approx(1.0, abs=0.25)
+    rightly = trace(3, turns=4, noise=30.0)
+    found = fit_curve(*rightly, ANGLE, CURVES[""], ("offset", "scale", "shift"))
+    assert not alternatives(found, *rightly, ANGLE, CURVES, ("offset", "scale", "shift"), turnings=turnings)
 
 
 def test_what_is_left_unexplained_is_that_of_own_least_squares():
@@ -173,3 +193,16 @@ def test_a_torque_that_fluctuates_from_turn_to_turn_widens_the_limit():
         gain.std(ddof=1) / math.sqrt(8.0), rel=1e-9
     )
     assert of_mean(gains_of_turns(turn[:400], curve[:400], measured[:400], 1.0, free=True)) == 0.0
+
+
+@pytest.mark.parametrize("step", [0.5, 20.0])
+def test_samples_taken_in_steps_have_their_step_and_its_noise(step):
+    """Rounding to steps is noise of step / sqrt(12), also where most samples are equal to those beside them."""
+    angle, strain = trace(4, shift=1.0, noise=0.0, turns=6, step=0.1)
+    rounded = step * np.round(strain / step)
+    assert step_of(rounded) == pytest.approx(step, rel=1e-6)
+    assert step_of(strain) == 0.0
+    found = fit_curve(angle, rounded, ANGLE, CURVES[""], ("offset", "shift"))
+    assert found.step == pytest.approx(step, rel=1e-6)
+    assert found.noise >= 0.99 * step / math.sqrt(12.0)
+    assert found.gain_noise > 0.0

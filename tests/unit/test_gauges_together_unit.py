@@ -51,6 +51,21 @@ def test_a_known_factor_has_its_reason():
     assert "as of half the torque, or a quarter bridge evaluated as a half bridge; check torque and bridge" in said
 
 
+def test_one_gauge_that_agrees_agrees():
+    said = of_all_gauges(gauges(1.0, 1.3, 0.7, 1.9, 0.5))
+    assert said.startswith("One of five gauges agrees with the computed strain; no common factor")
+
+
+def test_gauges_whose_traces_are_described_otherwise_are_not_to_be_glued_again():
+    good, wrong = gauges(1.0, 1.01), replace(gauges(0.3, alike=False)[0], name="w", explained=True)
+    assert of_all_gauges([*good, wrong]) == (
+        "Two of three gauges agree with the computed strain; the trace of w fits only with another description: see "
+        "below."
+    )
+    said = of_all_gauges([*good, wrong, replace(wrong, name="v")])
+    assert said.endswith("; the traces of w and v fit only with other descriptions: see below.")
+
+
 def test_one_gauge_that_is_off_is_named_and_the_torque_is_confirmed():
     said = of_all_gauges(gauges(1.01, 0.99, 1.15, 1.0))
     assert said == (

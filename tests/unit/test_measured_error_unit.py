@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import InputError
+from fegear.base.printed import figures, percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.encoders import encoders_of
 from fegear.case.reading import build_scene
@@ -204,12 +205,18 @@ def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
         "measured transmission error does not agree with the computed one: 10 % below it (limit " in remark
         for remark in found.remarks
     )
-    judged, sides, once = found.answer.sentences
+    judged, cause, sides, once = found.answer.sentences
+    # of a torque between those computed the transmission error is that of both
+    low, high = (one.computed_peak_to_peak for one in found.data.traces)
+    needed, gain = found.data.last.torque_needed, 0.9 * high / low  # at the other torque
+    assert np.log2(needed / 10.0) == pytest.approx(np.log(gain) / np.log(gain / 0.9), abs=0.03)
+    assert cause.startswith("Encoders rig: measured / computed is the same at both torques, 0.9, as of a wrong scale")
     assert sides.startswith("Encoders rig at 20 N m, peak-to-peak values: measured")
     assert "(includes noise), computed" in sides
     assert judged == (
         "Encoders rig: measured transmission error does not agree with the computed one: 10 % below it (limit 1.0 %); "
-        "check torque, relief and the unit of the trace."
+        f"a torque of {figures(needed)} N m ({percent(1.0 - needed / 20.0)} "
+        "lower) would explain it; check torque, relief and the unit of the trace."
     )
     assert once.startswith("Encoders rig: once per revolution 5 µm of the driver (maximum at ")
     assert once.endswith(": runout of gear, shaft or encoder, not part of the comparison.")

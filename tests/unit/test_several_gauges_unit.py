@@ -80,7 +80,11 @@ def test_columns_of_traces_are_not_shown_where_nothing_was_measured():
     found = run({"one": {}, "two": {"grid_length": "0.2 mm"}, "three": {"fillet": "compression"}})
     lines = answer_lines(found.answer)
     assert lines[1].split() == ["gauge", "torque", "[N.m]", "computed_peak", "[um/m]"]
-    assert [line.split()[0] for line in lines[2:5]] == ["one", "two", "three"]
+    assert [line.split()[0] for line in lines[2:5]] == ["two", "one", "three"]  # by what their place counts
+    assert lines[0].startswith("Three gauges, computed peak strain -")
+    assert "; displaced within its tolerance two changes most, by up to -" in lines[0]
+    assert lines[0].count(" %") == 2
+    assert found.tables["gauges"].title == "Computed strain of all gauges"
     assert {"scale", "shift [deg]"} <= {column.head for column in found.tables["gauges"].columns}  # the file has all
 
 

@@ -7,8 +7,10 @@ import pytest
 
 from fegear.base.notes import NoteClass
 from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.measured_error import behind_low_pass, beside_computed, measured_error
 from fegear.contact.trace_low_pass import filtered, low_pass
-from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, alike, verdict
+from fegear.results.pair.gauge_otherwise import Otherwise
+from fegear.results.pair.trace_verdict import ComputedPeak, alike, verdict
 
 ANGLE = np.linspace(-0.45, 0.5, 400)
 STRAIN = 9e-4 * np.interp(
@@ -34,6 +36,45 @@ def test_a_step_and_a_ramp_behind_a_low_pass_have_their_closed_forms():
     assert step == pytest.approx(1.0 - np.exp(-at / 0.2), abs=2e-3)
     at, ramp = filtered(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 0.2)
     assert ramp == pytest.approx(at - 0.2 * (1.0 - np.exp(-at / 0.2)), abs=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.05, 0.5, 4.0])
+def test_harmonics_of_a_curve_that_repeats_have_their_closed_form_behind_a_low_pass(lag):
+    angle = np.linspace(1.0, 1.0 + 2.0 * math.pi, 721)
+    at, found = filtered(angle, 2.0 + np.cos(angle) + 0.4 * np.sin(3.0 * angle), lag, repeats=True)
+    assert found[-1] == pytest.approx(found[0], abs=1e-9)
+    expected = 2.0 + sum(
+        (factor * np.exp(1j * n * at) / (1.0 + 1j * n * lag)).real for n, factor in ((1, 1.0), (3, -0.4j))
+    )
+    np.testing.assert_allclose(found, expected, atol=1e-4)
+
+
+def test_an_encoder_behind_a_low_pass_has_its_time_constant_and_no_other_difference_has_one():
+    """A transmission error with three harmonics, 23 teeth; samples filtered one by one along three turns."""
+    x = np.linspace(-2e-3, 7e-3, 181)
+
+    def curve(phase):
+        return 1e-6 * (np.cos(phase) + 0.5 * np.sin(2.0 * phase) + 0.3 * np.cos(3.0 * phase))
+
+    te = curve(2.0 * math.pi * x / 9e-3)
+    phase = np.arange(0.0, 3.0 * 23 * 2.0 * math.pi, 0.1)
+    rng = np.random.default_rng(8)
+
+    def asked(trace):
+        found = measured_error(phase / 23.0, trace + rng.normal(0.0, 2e-8, phase.size), 23)
+        fitted = beside_computed(found, x, te, 9e-3, FIT)
+        return behind_low_pass(found, fitted, x, te, 9e-3, FIT)
+
+    for lag in (0.4, 1.5):
+        behind = 1.04 * curve(phase) + 8e-6 * np.cos(phase / 23.0)
+        for i in range(1, phase.size):
+            behind[i] = behind[i - 1] + (behind[i] - behind[i - 1]) * (1.0 - math.exp(-0.1 / lag))
+        found = asked(behind)
+        assert 23.0 * found.lag == pytest.approx(lag, rel=0.05)
+        assert found.fitted.gain == pytest.approx(1.04, rel=0.01)
+    assert asked(1.1 * curve(phase)) is None
+    assert asked(curve(phase) + 2e-7 * np.sin(3.0 * phase)) is None  # flanks of another shape
+    assert asked(curve(-phase)) is None
 
 
 @pytest.mark.parametrize("lag", [0.02, 0.08])

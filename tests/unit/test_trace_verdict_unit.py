@@ -13,9 +13,10 @@ from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.once_per_turn import OncePerTurn
 from fegear.contact.trace_alternatives import Alternative, alternatives
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
 from fegear.results.pair.trace_named import drawn_as, left_out, runout_named, thinned
-from fegear.results.pair.trace_verdict import ComputedPeak, Otherwise, verdict
+from fegear.results.pair.trace_verdict import ComputedPeak, verdict
 
 ANGLE = np.linspace(-0.4, 0.5, 300)
 STRAIN = 9e-4 * np.interp(ANGLE, [-0.2, -0.15, 0.0, 0.05, 0.1, 0.2, 0.24], [0.0, 0.3, 0.9, 1.0, 0.6, 0.65, 0.0])
@@ -66,7 +67,7 @@ def test_the_other_fillet_is_named():
     measured = np.interp(np.mod(TURNS + math.pi, 2.0 * math.pi) - math.pi, ANGLE, other, left=0.0, right=0.0)
     said = judged(measured, curves={"opposite": other})
     assert said.startswith("the trace fits the compression fillet: ")
-    assert said.endswith("measured / computed 1; check fillet")
+    assert said.endswith("measured / computed 1.00; check fillet")
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,8 @@ class ErrorTrace:
         Where the case names it.
     of_angle : bool
         Whether the transmission error is given as an angle.
+    speed : float or None
+        Of the shaft of the angle, as far as it is known [rad/s].
     """
 
     angle: Array
@@ -59,6 +61,7 @@ class ErrorTrace:
     key: str = field(compare=False)
     file: str = field(compare=False)
     of_angle: bool = False
+    speed: float | None = None
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,9 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
             reading = [read.reading] if read.reading else []
             reading += said_of_rest(read.torque, read.angle, list(found.values()), torques, part.torque_band, pair)
             traces += [
-                ErrorTrace(read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file, of_angle)
+                ErrorTrace(
+                    read.angle[run], read.te[run], loads[k], ", ".join(reading), key, one.file, of_angle, read.speed
+                )
                 for k, run in found.items()
             ]
             continue
@@ -141,7 +146,7 @@ def encoders_of(scene: Scene, name: str) -> Encoders:
                 or f"add it to pair.{pair}.torques",
             )  # fmt: skip
         load = known[0] if known else 0.0
-        traces.append(ErrorTrace(read.angle, read.te, load, read.reading, key, one.file, of_angle))
+        traces.append(ErrorTrace(read.angle, read.te, load, read.reading, key, one.file, of_angle, read.speed))
     traces.sort(key=lambda one: one.load)
     same = [two for two in pairwise(traces) if two[0].load == two[1].load]
     if same:
@@ -164,6 +169,7 @@ class _Columns:
     te: Array
     torque: Array | None
     reading: str
+    speed: float | None
 
 
 def _trace(scene: Scene, name: str, pair: GearPair, file: str, key: str) -> _Columns:
@@ -191,10 +197,10 @@ def _trace(scene: Scene, name: str, pair: GearPair, file: str, key: str) -> _Col
         ):
             found.require(column, key, file, of)
     te = found[measured]
-    angle, said = (
+    angle, said, speed = (
         _rotation(scene, name, pair, file, key, found[part.time_column], te)
         if over_time
-        else (found[part.angle_column], "")
+        else (found[part.angle_column], "", _stated_speed(scene, name, pair))
     )
     for what, values in (("angle", angle), ("angle" if angles else "transmission error", te)):
         if float(np.ptp(values)) <= 1e-12 * max(float(np.abs(values).max()), 1e-300):
@@ -212,17 +218,25 @@ def _trace(scene: Scene, name: str, pair: GearPair, file: str, key: str) -> _Col
             "check the unit of the angles" if angles else "check the unit and te_at",
         )  # fmt: skip
     reading = ", ".join(filter(None, (found.reading, said)))
-    return _Columns(angle, te, found.get(part.torque_column), reading)
+    return _Columns(angle, te, found.get(part.torque_column), reading, speed)
+
+
+def _stated_speed(scene: Scene, name: str, pair: GearPair) -> float | None:
+    """Speed of the shaft of the angle [rad/s]: its own, or that of the pair."""
+    part, of_pair = scene.case.encoders[name], scene.case.pair[pair_of_encoders(scene, name)].speed
+    if part.speed is not None or of_pair is None:
+        return part.speed
+    gear = pair.driver if part.shaft == "driver" else pair.driven
+    return of_pair * abs(pair.driver.teeth / gear.teeth)
 
 
 def _rotation(
     scene: Scene, name: str, pair: GearPair, file: str, key: str, time: Array, te: Array
-) -> tuple[Array, str]:  # fmt: skip
-    """Rotation of the shaft at a constant speed from the time of the samples [rad], and how that was found."""
+) -> tuple[Array, str, float]:  # fmt: skip
+    """Rotation of the shaft at a constant speed from the time of the samples [rad], how that was found, and it."""
     part = scene.case.encoders[name]
-    of_pair = scene.case.pair[pair_of_encoders(scene, name)].speed
-    gear = pair.driver if part.shaft == "driver" else pair.driven
-    if part.speed is None and of_pair is None:
+    stated = _stated_speed(scene, name, pair)
+    if stated is None:
         raise InputError(
             f"encoders.{name}.speed", "(not given)", f'is required: "{file}" has the time in column '
             f"{part.time_column} and no column {part.angle_column}",
@@ -232,8 +246,7 @@ def _rotation(
         raise InputError(
             key, f'"{file}"', f"must have ascending times in column {part.time_column}", "sort the lines"
         )  # fmt: skip
-    teeth = abs(gear.teeth)
-    stated = part.speed or (of_pair or 0.0) * abs(pair.driver.teeth) / teeth
+    teeth = abs((pair.driver if part.shaft == "driver" else pair.driven).teeth)
     found = mesh_turning(time, te, stated, teeth)
     at = f"{stated * _RPM:.6g} rpm, the {'stated speed' if part.speed else 'speed of the pair'}"
     if found.found:
@@ -242,7 +255,7 @@ def _rotation(
     if found.wander * teeth > _WANDERS:
         share = percent(found.wander * teeth / (2.0 * np.pi))
         said += f"; the speed was not constant: parts of the trace are up to {share} of a tooth pitch off"
-    return found.speed * (time - time[0]), said
+    return found.speed * (time - time[0]), said, found.speed
 
 
 def _of_both_shafts(

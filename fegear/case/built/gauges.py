@@ -62,6 +62,16 @@ class Gauge:
     name: str = field(compare=False)
     second: str = ""
 
+    @property
+    def trace_speed(self) -> float | None:
+        """Speed of its gear during its trace, where that is over time [rad/s]."""
+        return None if self.measured is None else self.measured.speed
+
+    @property
+    def over_time(self) -> bool:
+        """Whether its trace has the time in place of an angle."""
+        return self.trace_speed is not None
+
 
 def gauge_of(scene: Scene, name: str) -> Gauge:
     """A gauge of a case with its trace.

@@ -71,6 +71,10 @@ class MeasuredStrain:
     file : str
     runout : bool
         Whether what it has once per turn is subtracted.
+    speed : float or None
+        Of the gear [rad/s], where the angle is that of this constant speed.
+    of_mate : bool
+        Whether the angle was that of the shaft of the mating gear.
     """
 
     angle: Array
@@ -80,6 +84,8 @@ class MeasuredStrain:
     levels: tuple[StrainLevel, ...] = ()
     file: str = field(compare=False, default="")
     runout: bool = False
+    speed: float | None = None
+    of_mate: bool = False
 
 
 def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str, teeth: int) -> MeasuredStrain:
@@ -124,8 +130,9 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
         found[part.strain_column], part, *found.units[part.strain_column], f"gauge.{name}.measured"
     )
     reading += [said] if said else []
+    speed = None
     if part.time_column in found and (part.angle_column not in found or part.time_column != _TIME):
-        angle, said = _rotation(scene, name, part, pair, teeth, found[part.time_column], strain)
+        angle, said, speed = _rotation(scene, name, part, pair, teeth, found[part.time_column], strain)
         reading.append(said)
     else:
         found.require(part.angle_column, key, part.file, "angle_column (at a constant speed: time_column and speed)")
@@ -148,7 +155,10 @@ def measured_strain(scene: Scene, name: str, part: MeasuredStrainPart, pair: str
         angle, strain = at_nominal.angle, at_nominal.strain
     _check(name, key, part, angle, strain)
     fit = tuple(one for one in part.fit if one != "runout")
-    return MeasuredStrain(angle, strain, fit, ", ".join(reading), levels, part.file, "runout" in part.fit)
+    of_mate = part.shaft is not None and _turns_for_one(scene, pair, part.shaft, teeth) != 1.0
+    return MeasuredStrain(
+        angle, strain, fit, ", ".join(reading), levels, part.file, "runout" in part.fit, speed, of_mate
+    )  # fmt: skip
 
 
 def _turns_for_one(scene: Scene, pair: str, shaft: str, teeth: int) -> float:
@@ -158,8 +168,8 @@ def _turns_for_one(scene: Scene, pair: str, shaft: str, teeth: int) -> float:
 
 def _rotation(
     scene: Scene, name: str, part: MeasuredStrainPart, pair: str, teeth: int, time: Array, strain: Array
-) -> tuple[Array, str]:  # fmt: skip
-    """Rotation of a gear at a constant speed from the time of the samples [rad], and how that was found."""
+) -> tuple[Array, str, float]:  # fmt: skip
+    """Rotation of a gear at a constant speed from the time of the samples [rad], how that was found, and it."""
     key, of_pair = f"gauge.{name}.measured", scene.case.pair[pair].speed
     if part.speed is None and of_pair is None:
         raise InputError(
@@ -181,7 +191,7 @@ def _rotation(
     said = f"rotation from the time at {stated}"
     if found.wander > _WANDERS:
         said += f"; the speed was not constant: parts of the trace are up to {math.degrees(found.wander):.2g}° off"
-    return found.speed * (time - time[0]), said
+    return found.speed * (time - time[0]), said, found.speed
 
 
 def _levels(

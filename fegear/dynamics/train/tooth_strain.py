@@ -75,6 +75,11 @@ class ToothStrain:
         return self.x / self.pair.gear(self.member).base_radius
 
     @property
+    def speed(self) -> float:
+        """Of the gear of the gauge [rad/s]."""
+        return float(np.ptp(self.angle) / np.ptp(self.time))
+
+    @property
     def _peak(self) -> int:
         """Position of the largest strain, in the sense of the largest static one."""
         sign = np.sign(self.static[int(np.argmax(np.abs(self.static)))])

@@ -12,11 +12,12 @@ from fegear.contact.trace_alternatives import Alternative
 if TYPE_CHECKING:
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.trace_alternatives import Change
+    from fegear.contact.trace_low_pass import LowPass
 
 #: Ratios of measured to computed that a wrong unit has, and how near to one of them a ratio is.
 _UNITS, _OF_UNIT = (1e-6, 1e-3, 1e3, 1e6), 0.2
 #: The changes in the order in which they are said.
-_ORDER: tuple[Change, ...] = ("curve", "sign", "reverse", "shift")
+_ORDER: tuple[Change, ...] = ("turning", "curve", "sign", "reverse", "shift")
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,34 @@ class BetterDescribed:
         instead = f" instead of {percent(found.rms / size)}" if found.fits else ", as described no fit"
         return (
             f"the trace fits {ways}: RMS of the residual {percent(likeliest.rms / size)} of {of}{instead}, "
-            f"measured / computed {figures(likeliest.gain)}; check {remedies}"
+            f"measured / computed {likeliest.gain:#.3g}; check {remedies}"
         )
+
+
+def behind_low_pass(behind: LowPass, found: FittedCurve, size: float, speed: float | None, of: str, check: str) -> str:
+    """That a trace fits behind a low pass, a clause.
+
+    Parameters
+    ----------
+    behind : LowPass
+    found : FittedCurve
+        The trace as it is described.
+    size : float
+        Computed, of which residuals are parts.
+    speed : float or None
+        Of the shaft of the angle [rad/s].
+    of, check : str
+        How the size is called, and where the low pass is looked for.
+    """
+    limit = f"{figures(math.degrees(behind.lag), 2)}° of rotation"
+    if speed:
+        cutoff = figures(speed / (2.0 * math.pi * behind.lag), 2)
+        limit += f", a limiting frequency of {cutoff} Hz at {figures(speed * 30.0 / math.pi)} rpm"
+    return (
+        f"the trace fits behind a low pass with a time constant of {limit}: RMS of the residual "
+        f"{percent(behind.fitted.rms / size)} of {of} instead of {percent(found.rms / size)}, measured / computed "
+        f"{behind.fitted.gain:#.3g}; check {check}"
+    )
 
 
 def degrees(one: Alternative) -> str:

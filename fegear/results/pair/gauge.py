@@ -13,7 +13,6 @@ from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
 from fegear.case.effects import EffectsPart
-from fegear.contact.trace_low_pass import low_pass
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -26,6 +25,7 @@ from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.pair.followed_gauge import gauge_in_plane, gauge_on_face
 from fegear.results.pair.gauge_data import GaugeData
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
 from fegear.results.pair.gauges_together import GaugeGain, of_all_gauges
 from fegear.results.pair.half_bridge import HalfBridge
@@ -38,23 +38,21 @@ from fegear.results.pair.placed_gauge import (
     MEASURED,
     RESIDUAL,
     TIMES_SCALE,
+    behind_low_pass,
     better_described,
     compared,
     comparison_table,
     comparison_values,
 )
+from fegear.results.pair.planned_gauges import PlannedGauge
 from fegear.results.pair.trace_levels import over_torque
-from fegear.results.pair.trace_verdict import Otherwise
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.gauge_strain import GaugeHistory, StrainWith
-    from fegear.contact.trace_alternatives import Alternative
-    from fegear.contact.trace_low_pass import LowPass
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
 
@@ -145,8 +143,10 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         bridge = HalfBridge.of(gauge.second, followed.history, other.history, at, followed.more, other.with_effects)
     history = bridge.history if bridge else followed.history
     strain = history.strain[:, at]
-    found = compared(gauge, history.angle, strain)
-    better = better_described(gauge, found, history.angle, strain, None if bridge else history.strain_opposite[:, at])
+    speed = gauge.trace_speed or asked.speed
+    found = compared(gauge, history.angle, strain, speed)
+    opposite, pair = None if bridge else history.strain_opposite[:, at], history.pair
+    better = better_described(gauge, found, pair, history.angle, strain, opposite)
     neglected, of_trace = (
         {effect: one for effect, one in more.items() if abs(one.change) > asked.tolerance}
         for more in (followed.more, bridge.with_effects if bridge else followed.more)
@@ -157,24 +157,16 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         teeth.loads, at, followed.history, followed.place.place, followed.clearance, followed.place.clipped,
         gauge.load_tolerance, asked.speed, found,
         Otherwise(
-            better, gauge.side, history.pair.gear(gauge.member).teeth, torques, gauge.second,
+            better, gauge.side, pair.gear(gauge.member).teeth, torques, gauge.second,
             0.0 if bridge else _other_fillet(history, at, free=found is not None and "offset" in found.fit),
-            _behind(gauge, found, better, history.angle, strain), asked.speed,
+            behind_low_pass(gauge, found, better, history.angle, strain), speed,
+            pair.mate(gauge.member).teeth, gauge.over_time,
         ),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
         levels, {effect: one.change for effect, one in neglected.items()},
         including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
         followed.more if asked.in_bridge else {},
     )  # fmt: skip
-
-
-def _behind(
-    gauge: Gauge, found: FittedCurve | None, better: Sequence[Alternative], angle: Array, strain: Array
-) -> LowPass | None:
-    """The low pass that explains a trace which no other description does."""
-    if gauge.measured is None or found is None or better:
-        return None
-    return low_pass(found, gauge.measured.angle, gauge.measured.strain, angle, strain, gauge.measured.fit)
 
 
 def _other_fillet(history: GaugeHistory, at: int, *, free: bool) -> float:
@@ -258,10 +250,23 @@ def _subject(seen: Seen) -> str:
     return f"Gauge {seen.name} less {data.bridge.second}" if data.bridge else f"Gauge {seen.name}"
 
 
-def _gain(seen: Seen) -> GaugeGain | None:
+def _fact(seen: Seen) -> GaugeGain | PlannedGauge | None:
     """What the gauge adds to the sentence about all of them; None without a verdict."""
     data: GaugeData = seen.data
-    return data.gain_beside_others(seen.asked.gauge)
+    return data.beside_others(seen.asked.gauge)
+
+
+def _by_placement(seen: Seen) -> list[str]:
+    """How the peak changes with the place of the grid."""
+    data: GaugeData = seen.data
+    said = data.planned(seen.name).by_placement
+    return [f"Gauge {seen.name}: displaced within its tolerance the peak changes by {said}."] if said else []
+
+
+def _title_of_all(seen: Seen) -> str:
+    """What the table of all gauges has: before there are traces no measured strain."""
+    data: GaugeData = seen.data
+    return f"{'Computed' if data.compared is None else 'Measured and computed'} strain of all gauges"
 
 
 #: Of a history, in the order of its columns.
@@ -395,10 +400,10 @@ _SHEET = Sheet(
         lambda seen: [f"{_subject(seen)}: {seen.data.judged}."] if seen.data.judged else [],
         lambda seen: [f"{_subject(seen)}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
-        "Gauge {name}: displaced within its tolerance the peak changes by up to {v[peak_change_by_placement]}.",
+        _by_placement,
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
-        overview=gauge_rows("gauges", "Measured and computed strain of all gauges", _rows),
-        fact=_gain, common=of_all_gauges,
+        overview=gauge_rows("gauges", _title_of_all, _rows),
+        fact=_fact, common=of_all_gauges,
     ),
     remarks=(
         Remark(lambda seen: about(_subject(seen), seen.data.verdict), when="verdict"),
@@ -414,6 +419,8 @@ _SHEET = Sheet(
         Remark("Gauge {name}: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}: {d.runout}.", when="runout"),
         Remark("Gauge {name}: {d.unsteady}.", when="unsteady"),
+        Remark("Gauge {name}: {d.hum}.", when="hum"),
+        Remark("Gauge {name}: {d.steps}.", when="steps"),
         Remark("Gauge {name}: {d.without}.", when="without"),
         Remark("Gauge {name}: file of the trace read with {d.reading}.", when="reading"),
         Remark(

@@ -13,15 +13,19 @@ from fegear.base.shown import shown, shows
 from fegear.case.built.gauges import Gauge
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_places, reach_of_places
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauges_together import GaugeGain, gain_of
 from fegear.results.pair.half_bridge import HalfBridge
+from fegear.results.pair.planned_gauges import PlannedGauge
 from fegear.results.pair.trace_levels import OverTorque
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, verdict
 
 #: Contacts nearer than this to the grid leave stress there that the mesh does not resolve [modules].
 _NEAR_CONTACT = 0.15
 #: What puts a gauge whose strain is not linear over torque behind those whose own verdict is of the same class.
 _BY_LINEARITY = 0.25
+#: What puts a gauge without a trace before others, by the relative change of its peak with the place.
+_BY_PLACE = 0.4
 
 
 @dataclass(frozen=True)
@@ -207,6 +211,8 @@ class GaugeData(BesideTrace):
     def urgency(self) -> float:
         """A verdict at one torque is worth little where the strain is not linear; behind one that fails itself."""
         own = super().urgency
+        if self.compared is None:  # the one whose place counts most is the one to think about
+            return own - _BY_PLACE * min(max(self.reach_of_placement) / abs(float(self.peak_strain[self.at])), 1.0)
         return min(own, class_of(self.linearity) + _BY_LINEARITY) if self.linearity else own
 
     @property
@@ -214,12 +220,20 @@ class GaugeData(BesideTrace):
         """Whether contacts come so near to the grid that the stress under it is that of the contact."""
         return self.clearance < _NEAR_CONTACT
 
-    def gain_beside_others(self, gauge: Gauge) -> GaugeGain | None:
+    def planned(self, name: str) -> PlannedGauge:
+        """What the gauge of this name comes to as long as it has no trace."""
+        history = self.history
+        peaks = history.peak_of_places(self.at)
+        return PlannedGauge.of(name, float(self.peak_strain[self.at]), history.displacement, peaks)
+
+    def beside_others(self, gauge: Gauge) -> GaugeGain | PlannedGauge | None:
         """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict.
 
         Nor has one of which the ratio depends on the torque a ratio to compare.
         """
-        if self.compared is None or (self.linearity and self.over_torque and not self.over_torque.linear):
+        if self.compared is None:
+            return self.planned(gauge.name)
+        if self.linearity and self.over_torque and not self.over_torque.linear:
             return None
         return gain_of(gauge, self, self._computed(self.compared))
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.fitted_line import Fitted
-    from fegear.engine.sheet.seen import Seen
+    from fegear.engine.sheet.seen import Seen, Text
     from fegear.results.pair.trace_verdict import BesideTrace
 
 #: Word where a trace is not judged.
@@ -50,7 +50,7 @@ def _if_fitted(found: FittedCurve, quantity: Fitted) -> float:
     return float(getattr(found, quantity)) if quantity in found.fit else math.nan
 
 
-def gauge_rows(name: str, title: str, rows: Callable[[Seen], list[GaugeRow]]) -> Rows:
+def gauge_rows(name: str, title: Text, rows: Callable[[Seen], list[GaugeRow]]) -> Rows:
     """A table of gauges, of which each has one row, or without a trace one for each torque."""
     return Rows(
         name, title, ("gauge", "torque", "peak", "scale", "offset", "shift", "residual", "verdict"),

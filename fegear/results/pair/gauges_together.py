@@ -15,8 +15,10 @@ import numpy as np
 
 from fegear.base.notes import NoteClass
 from fegear.base.printed import figures, in_words, percent
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_teeth import TraceZero, teeth_apart
-from fegear.results.pair.trace_verdict import Otherwise, alike
+from fegear.results.pair.planned_gauges import PlannedGauge, of_planned_gauges
+from fegear.results.pair.trace_verdict import alike
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,6 +52,8 @@ class GaugeGain:
         Whether only the ratio may be wrong: the shapes agree, and nothing else explains the trace better.
     zero : TraceZero or None
         Where its tooth is in contact, by the angle of its trace; None where that was not fitted.
+    explained : bool
+        Whether another description, or a low pass, explains its trace.
     """
 
     name: str
@@ -60,6 +64,7 @@ class GaugeGain:
     agrees: bool
     alike: bool
     zero: TraceZero | None = None
+    explained: bool = False
 
     def within(self, factor: float) -> bool:
         """Whether the strain agrees with a computed one that is multiplied by a factor."""
@@ -93,6 +98,7 @@ def gain_of(gauge: Gauge, data: BesideTrace, peak: ComputedPeak) -> GaugeGain | 
     return GaugeGain(
         gauge.name, found.gain, limits.together(-1.0), limits.together(1.0), gauge.load_tolerance,
         judged.kind is NoteClass.INFORMATION, same, zero,
+        bool(data.otherwise.better or data.otherwise.low_pass),
     )  # fmt: skip
 
 
@@ -102,15 +108,20 @@ def common_factor(gauges: Sequence[GaugeGain]) -> float:
     return math.exp(float(np.average([math.log(one.gain) for one in gauges], weights=weights)))
 
 
-def of_all_gauges(gauges: Sequence[GaugeGain | None]) -> str:
+def of_all_gauges(gauges: Sequence[GaugeGain | PlannedGauge | None]) -> str:
     """Sentences about all gauges that have a trace: their ratios, from three on, and their teeth; empty for none.
+
+    Where none has a trace, a sentence about what is computed for them.
 
     Parameters
     ----------
-    gauges : sequence of GaugeGain or None
-        None for a gauge without a verdict.
+    gauges : sequence of GaugeGain, PlannedGauge or None
+        None for a gauge with a trace and without a verdict.
     """
-    measured = [one for one in gauges if one is not None]
+    planned = [one for one in gauges if isinstance(one, PlannedGauge)]
+    if planned and len(planned) == len(gauges):
+        return of_planned_gauges(planned)
+    measured = [one for one in gauges if isinstance(one, GaugeGain)]
     return " ".join(filter(None, (of_ratios(measured), teeth_apart([(one.name, one.zero) for one in measured]))))
 
 
@@ -128,7 +139,13 @@ def of_ratios(measured: Sequence[GaugeGain]) -> str:
             f"None of {in_words(len(measured))} gauges agrees with the computed strain, and no common factor explains "
             "them: check each of them."
         )
-    agree = f"{in_words(len(measured) - len(failing)).capitalize()} of {in_words(len(measured))} gauges agree"
+    good = len(measured) - len(failing)
+    agree = f"{in_words(good).capitalize()} of {in_words(len(measured))} gauges {'agrees' if good == 1 else 'agree'}"
+    if all(one.explained for one in failing):
+        fits = "trace of {} fits only with another description" if len(failing) == 1 else (
+            "traces of {} fit only with other descriptions"
+        )  # fmt: skip
+        return f"{agree} with the computed strain; the {fits.format(_names(failing))}: see below."
     if 2 * len(failing) < len(measured):
         its = "its" if len(failing) == 1 else "their"
         return (

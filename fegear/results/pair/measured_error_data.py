@@ -16,7 +16,9 @@ from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.contact.measured_error import FittedError, MeasuredError, OrderLine
 from fegear.contact.trace_alternatives import Alternative, Change
-from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
+from fegear.contact.trace_low_pass import LowPass
+from fegear.results.pair.better_described import BetterDescribed, behind_low_pass, degrees, of_unit
+from fegear.results.pair.error_over_torques import common_cause
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
@@ -42,10 +44,16 @@ class OtherwiseError(BetterDescribed):
         Teeth of the other gear where the orders of the trace are its multiples; 0 where they are not.
     ratio : float
         Number of teeth of the driven gear over that of the driver, where the trace is an angle; else 0.
+    low_pass : LowPass or None
+        With which the trace fits clearly better.
+    speed : float or None
+        Of the shaft of the angle [rad/s].
     """
 
     mate_teeth: int = 0
     ratio: float = 0.0
+    low_pass: LowPass | None = None
+    speed: float | None = None
 
     def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
         """How each change is said, and what to check."""
@@ -99,6 +107,8 @@ class TraceBeside:
         Whether errors were estimated: a draft, which does not know its own, judges no measurement.
     otherwise : OtherwiseError
         What else may explain the trace.
+    torque_needed : float or None
+        Torque on the driver at which the computed transmission error is the measured one [N m].
     """
 
     found: MeasuredError
@@ -112,6 +122,7 @@ class TraceBeside:
     reading: str = ""
     estimated: bool = True
     otherwise: OtherwiseError = field(default_factory=lambda: OtherwiseError())
+    torque_needed: float | None = None
 
     @property
     @shows("", "harmonic of the tooth-mesh frequency")
@@ -263,12 +274,14 @@ class TraceBeside:
             )
         if better := self.otherwise.said(fitted, computed, "the peak-to-peak value"):
             return failing(better)
+        if (behind := self.otherwise.low_pass) is not None:
+            return failing(behind_low_pass(
+                behind, fitted, computed, self.otherwise.speed, "the peak-to-peak value",
+                f"filters and averaging of the encoder signals{self._mesh_frequency}",
+            ))  # fmt: skip
         if fitted.gain <= 0.0:
             return failing("measured and computed curve go against each other; check positive, reverse and fit")
-        parts = {
-            "torque": self.load_tolerance, "computation": (self.computed_error or 0.0) / computed,
-            "scatter": _CERTAIN * fitted.gain_scatter,
-        }  # fmt: skip
+        parts = self._limits
         together = math.hypot(*parts.values())
         off = fitted.gain - 1.0
         within, by = abs(off) <= together, f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
@@ -297,12 +310,47 @@ class TraceBeside:
             said = f"measured transmission error agrees with the computed one: {by} it ({limit})"
         else:
             said = (
-                f"measured transmission error does not agree with the computed one: {by} it ({limit}); check torque, "
-                "relief and the unit of the trace"
+                f"measured transmission error does not agree with the computed one: {by} it ({limit}); "
+                f"{self._by_torque}check torque, relief and the unit of the trace"
             )
         if not brief and fitted.fits:
             said += f"; RMS of the residual {percent(fitted.rms / computed)} of the peak-to-peak value"
         return Note(said, kind)
+
+    @property
+    def _limits(self) -> dict[str, float]:
+        """What measured and computed may differ by, relative, by its cause."""
+        return {
+            "torque": self.load_tolerance,
+            "computation": (self.computed_error or 0.0) / self.computed_peak_to_peak,
+            "scatter": _CERTAIN * self.fitted.gain_scatter,
+        }
+
+    @property
+    def _by_torque(self) -> str:
+        """Which torque would give what was measured, a clause before another; empty for none."""
+        if self.torque_needed is None:
+            return ""
+        off = self.torque_needed / self.torque - 1.0
+        by = f"{percent(abs(off))} {'higher' if off >= 0.0 else 'lower'}"
+        return f"a torque of {figures(self.torque_needed)} N m ({by}) would explain it; "
+
+    @property
+    def _mesh_frequency(self) -> str:
+        """What a filter has to pass, where the speed is known; else empty."""
+        if not (speed := self.otherwise.speed):
+            return ""
+        return f" (mesh frequency {figures(speed * self.found.teeth / (2.0 * math.pi))} Hz)"
+
+    @property
+    def differs_in_size(self) -> bool:
+        """Whether shapes agree, and only the ratio does not."""
+        fitted, otherwise = self.fitted, self.otherwise
+        elsewhere = otherwise.mate_teeth or otherwise.better or otherwise.low_pass or otherwise.of_ratio(fitted.gain)
+        return (
+            self.estimated and not elsewhere and fitted.gain > 0.0 and fitted.likeness >= _ALIKE
+            and abs(fitted.gain - 1.0) > math.hypot(*self._limits.values())
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -340,6 +388,11 @@ class MeasuredErrorData:
     def urgency(self) -> float:
         """The smaller, the sooner a reader has to act: the class of the verdict at the largest load."""
         return float(class_of(self.last.judged))
+
+    @property
+    def common_cause(self) -> str:
+        """What would explain differences at all torques, a sentence without a subject; empty for none."""
+        return common_cause(self.traces)
 
     @property
     def several(self) -> bool:

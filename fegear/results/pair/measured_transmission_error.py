@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.base.errors import InputError
-from fegear.base.notes import about
+from fegear.base.notes import about, failing
 from fegear.base.printed import figures
 from fegear.case.built.encoders import Encoders, encoders_of, pair_of_encoders
 from fegear.engine.citation import Citation, citing
@@ -19,6 +21,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.results import forecasts
+from fegear.results.pair.error_over_torques import torque_of_gain, with_one_filter
 from fegear.results.pair.measured_error_data import (
     MeasuredErrorData,
     OtherwiseError,
@@ -72,7 +75,7 @@ def _measured(trace: ErrorTrace, teeth: int, mate_teeth: int) -> MeasuredError:
 
 
 def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorData:
-    from fegear.contact.measured_error import beside_computed, better_described
+    from fegear.contact.measured_error import behind_low_pass, beside_computed, better_described
 
     found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
     pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
@@ -90,17 +93,23 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         }
         better = better_described(measured, fitted, found.x, others, pair.base_pitch, asked.fit)
         of_mate = teeth[1] if orders_of_mate(measured, teeth[1]) else 0
-        otherwise = OtherwiseError(better, of_mate, pair.ratio if trace.of_angle else 0.0)
+        behind = None
+        if not (better or of_mate) and trace.angle[-1] > trace.angle[0]:  # time goes with the angle
+            behind = behind_low_pass(measured, fitted, found.x, found.te[:, at], pair.base_pitch, asked.fit)
+        otherwise = OtherwiseError(better, of_mate, pair.ratio if trace.of_angle else 0.0, behind, trace.speed)
+        order = np.argsort(found.loads)
+        gains = [beside_computed(measured, found.x, found.te[:, i], pair.base_pitch, asked.fit).gain for i in order]
+        torques = np.array(found.loads)[order] * lever
         amplitude: Array = found.series[at].amplitude[: measured.n.size]
         size = float(found.te_peak_to_peak[at])
         traces.append(
             TraceBeside(
                 measured, fitted, amplitude, None if relative is None else relative * size,
                 trace.load * lever, trace.load, size, asked.load_tolerance,
-                trace.reading, asked.estimates, otherwise,
+                trace.reading, asked.estimates, otherwise, torque_of_gain(torques, np.array(gains), trace.load * lever),
             )
         )  # fmt: skip
-    return MeasuredErrorData(traces, asked.member)
+    return MeasuredErrorData(with_one_filter(traces), asked.member)
 
 
 def _mesh_orders(seen: Seen) -> list[Mark]:
@@ -218,6 +227,7 @@ _SHEET = Sheet(
     ),
     answer=Answer(
         lambda seen: [f"Encoders {seen.name}: {seen.data.last.judged}."] if seen.data.last.judged else [],
+        lambda seen: [f"Encoders {seen.name}: {seen.data.common_cause}."] if seen.data.common_cause else [],
         "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
         "noise), computed {v[computed_peak_to_peak]}.",
         _runouts,
@@ -232,6 +242,7 @@ _SHEET = Sheet(
             lambda seen: about(f"Encoders {seen.name}, {seen.one.torque:.5g} N m", seen.one.verdict), each="traces",
             when=lambda seen: bool(seen.one.verdict),
         ),
+        Remark(lambda seen: failing(f"Encoders {seen.name}: {seen.data.common_cause}."), when="common_cause"),
         Remark(
             lambda seen: f"Encoders {seen.name}{seen.one[0]}: file read with {seen.one[1]}.", each="readings",
         ),

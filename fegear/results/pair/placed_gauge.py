@@ -12,8 +12,10 @@ from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, place_gauge
 from fegear.contact.fitted_curve import NothingToCompareError, fit_curve, turns_along
 from fegear.contact.fitted_line import FITTED
+from fegear.contact.mains_hum import mains_hum
 from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.trace_alternatives import alternatives
+from fegear.contact.trace_low_pass import low_pass
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
 from fegear.engine.sheet.each import Each
@@ -23,12 +25,13 @@ from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet
 from fegear.results.pair.gauge_data import GaugePlace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from fegear.base.arrays import Array
     from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.fitted_line import Fitted
     from fegear.contact.trace_alternatives import Alternative
+    from fegear.contact.trace_low_pass import LowPass
     from fegear.engine.sheet.seen import Seen
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
@@ -130,8 +133,16 @@ def gauges_on(gauge: Gauge, at: PlacedGauge, solved: GearInfluence) -> tuple[Gau
     )
 
 
-def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
+def compared(gauge: Gauge, angle: Array, strain: Array, speed: float | None = None) -> FittedCurve | None:
     """What the gauge measured beside a computed curve; None where it measured nothing.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    angle, strain : ndarray, shape (P,)
+        Computed.
+    speed : float, optional
+        Of its gear during the trace [rad/s].
 
     Raises
     ------
@@ -146,8 +157,15 @@ def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
         wave = once_per_turn(measured.angle, measured.strain, turns_along(measured.angle), found.shift, angle)
         if wave is not None and measured.runout:
             less = measured.strain - wave.at(measured.angle)
-            found = fit_curve(measured.angle, less, angle, strain, measured.fit)
-        return replace(found, wave=wave, wave_less=measured.runout)
+            found = fit_curve(measured.angle, less, angle, strain, measured.fit, found.step)
+        found = replace(found, wave=wave, wave_less=measured.runout)
+        hum = mains_hum(measured.angle, measured.strain, speed, found.shift, angle)
+        if hum is None:
+            return found
+        # whether torque and gauge were steady shows without it
+        less = measured.strain - hum.at(measured.angle)
+        steady = fit_curve(measured.angle, less, angle, strain, measured.fit, found.step)
+        return replace(found, hum=hum, turn_gains=steady.turn_gains)
     except NothingToCompareError:
         ends = np.rad2deg(angle[[0, -1]])
         raise InputError(
@@ -158,8 +176,8 @@ def compared(gauge: Gauge, angle: Array, strain: Array) -> FittedCurve | None:
 
 
 def better_described(
-    gauge: Gauge, found: FittedCurve | None, angle: Array, strain: Array, opposite: Array | None = None
-) -> tuple[Alternative, ...]:
+    gauge: Gauge, found: FittedCurve | None, pair: GearPair, angle: Array, strain: Array, opposite: Array | None = None
+) -> tuple[Alternative, ...]:  # fmt: skip
     """Descriptions of a trace that fit clearly better than the given one; none without a trace.
 
     Parameters
@@ -167,6 +185,7 @@ def better_described(
     gauge : Gauge
     found : FittedCurve or None
         Its trace as described.
+    pair : GearPair
     angle, strain : ndarray, shape (P,)
         Computed.
     opposite : ndarray, shape (P,), optional
@@ -176,7 +195,34 @@ def better_described(
     if measured is None or found is None:
         return ()
     curves = {"": strain} if opposite is None else {"": strain, "opposite": opposite}
-    return alternatives(found, measured.angle, measured.strain, angle, curves, measured.fit)
+    own, mate = abs(pair.gear(gauge.member).teeth), abs(pair.mate(gauge.member).teeth)
+    turnings = {"twice": 0.5, "half": 2.0}
+    if own != mate:
+        turnings = {"mate": mate / own, **turnings}
+        if measured.of_mate:  # the angle has been multiplied by that already
+            turnings["own"] = own / mate
+    return alternatives(
+        found, measured.angle, measured.strain, angle, curves, measured.fit, turnings=turnings
+    )  # fmt: skip
+
+
+def behind_low_pass(
+    gauge: Gauge, found: FittedCurve | None, better: Sequence[Alternative], angle: Array, strain: Array
+) -> LowPass | None:  # fmt: skip
+    """The low pass that explains a trace which no other description does; None without one.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    found : FittedCurve or None
+        Its trace as described.
+    better : sequence of Alternative
+    angle, strain : ndarray, shape (P,)
+        Computed.
+    """
+    if gauge.measured is None or found is None or better:
+        return None
+    return low_pass(found, gauge.measured.angle, gauge.measured.strain, angle, strain, gauge.measured.fit)
 
 
 def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | Each, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures, with_rough_error
+from fegear.base.printed import figures, percent, with_rough_error
 
 if TYPE_CHECKING:
     from fegear.contact.fitted_curve import FittedCurve
@@ -20,6 +20,8 @@ _STEPPED, _OF_NOISE = 0.15, 8.0
 #: Correlation of the shapes below which the rest of a trace is no runout, and smallest part of the largest gain of its
 #: turns that is still a torque: where the curve is not found in a turn at all the angle is wrong.
 _OF_ITS_CURVE, _FOUND = 0.6, 0.05
+#: Part of the range of the curve from which on hum and steps are named.
+_LARGE = 0.01
 
 
 def drawn_as(found: FittedCurve | None) -> str:
@@ -80,6 +82,32 @@ def runout_named(found: FittedCurve | None) -> str:
     if found.wave_less:
         return f"{said}, subtracted"
     return f'{said} (bending of the shaft, runout, slip ring), not subtracted; add "runout" and "offset" to fit'
+
+
+def hum_named(found: FittedCurve | None) -> str:
+    """Mains hum of a trace, a sentence without a subject; empty where that is little."""
+    if found is None or (hum := found.hum) is None or hum.amplitude < _LARGE * _range(found):
+        return ""
+    return (
+        f"the measured strain has ±{figures(hum.amplitude * 1e6)} µm/m at {figures(hum.frequency)} Hz "
+        f"({figures(hum.order)} times per turn, no multiple of the shaft frequency), outside the mesh as well: mains "
+        "hum; check shield and earth of the leads, or use a carrier-frequency amplifier"
+    )
+
+
+def step_named(found: FittedCurve | None) -> str:
+    """Coarse steps of a trace, a sentence without a subject; empty where they are small."""
+    if found is None or found.step < _LARGE * _range(found):
+        return ""
+    return (
+        f"the measured strain has steps of {figures(found.step * 1e6)} µm/m, {percent(found.step / _range(found))} of "
+        "the range of the curve (resolution of amplifier or file): set a smaller measuring range or write more digits"
+    )
+
+
+def _range(found: FittedCurve) -> float:
+    """Of the fitted curve, as it would be measured."""
+    return float(np.ptp(found.computed)) * abs(found.gain)
 
 
 def unsteady_named(found: FittedCurve | None) -> str:

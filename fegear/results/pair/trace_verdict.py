@@ -14,16 +14,16 @@ from fegear.base.notes import Note, NoteClass, class_of
 from fegear.base.printed import figures, percent
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
-from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
-from fegear.contact.trace_low_pass import LowPass
-from fegear.results.pair.better_described import BetterDescribed, degrees, of_unit
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.likely_cause import likely_causes, place_of_gain
 from fegear.results.pair.trace_named import (
     drawn_as,
     drift_named,
+    hum_named,
     left_out,
     runout_named,
     saturation,
+    step_named,
     thinned,
     unsteady_named,
 )
@@ -36,20 +36,6 @@ _ALIKE = 0.98
 _JUDGES = 0.1
 #: Change by effects that the computation does not have above which it judges nothing, over the rest of the limit.
 _COUNTS = 0.5
-#: Ratios of measured to computed strain with a reason.
-_FACTORS = {
-    0.25: "a quarter bridge evaluated as a full bridge",
-    0.5: "half the torque, or a quarter bridge evaluated as a half bridge",
-    2.0: "twice the torque, or a half bridge evaluated as a quarter bridge",
-    4.0: "a full bridge evaluated as a quarter bridge",
-}
-#: The same of a half bridge with a second gauge.
-_FACTORS_OF_BRIDGE = {
-    0.5: "half the torque, or a strain that the amplifier divided by two active arms (set active_arms = 2)",
-    2.0: "twice the torque, or a strain that was not divided by two active arms (remove active_arms)",
-}
-#: Difference from such a ratio within which it is named at most; a ratio nearer to one needs no reason.
-_NEAR = 0.05
 
 
 @dataclass(frozen=True)
@@ -144,105 +130,6 @@ class ComputedPeak:
         return place_of_gain(self.displacement, self.gains, gain)
 
 
-@dataclass(frozen=True)
-class Otherwise(BetterDescribed):
-    """What else may explain a trace.
-
-    Parameters
-    ----------
-    side : str
-        Fillet of the gauge.
-    teeth : int
-        Of its gear.
-    torques : mapping of str to float
-        Computed peak under other torques of the pair over that under the nominal one, by how they are said.
-    second : str
-        Other gauge of the half bridge that measured; empty for none.
-    fillet_ratio : float
-        Strain of an equal gauge in the other fillet over that of the gauge, in size and as traces are compared, over
-        the whole curve; zero where it is not known.
-    low_pass : LowPass or None
-        With which the trace fits clearly better.
-    speed : float or None
-        Of its gear [rad/s].
-    """
-
-    side: str = ""
-    teeth: int = 1
-    torques: Mapping[str, float] = field(default_factory=dict)
-    second: str = ""
-    fillet_ratio: float = 0.0
-    low_pass: LowPass | None = None
-    speed: float | None = None
-
-    def of_low_pass(self, found: FittedCurve, size: float) -> str:
-        """That the trace fits behind a low pass, a clause; empty for none.
-
-        Parameters
-        ----------
-        found : FittedCurve
-            The trace as it is described.
-        size : float
-            Computed peak.
-        """
-        if self.low_pass is None:
-            return ""
-        lag, through = self.low_pass.lag, self.low_pass.fitted
-        limit = f"{figures(math.degrees(lag), 2)}° of rotation"
-        if self.speed:
-            cutoff = figures(self.speed / (2.0 * math.pi * lag), 2)
-            limit += f", a limiting frequency of {cutoff} Hz at {figures(self.speed * 30.0 / math.pi)} rpm"
-        return (
-            f"the trace fits behind a low pass with a time constant of {limit}: RMS of the residual "
-            f"{percent(through.rms / size)} of the peak instead of {percent(found.rms / size)}, measured / computed "
-            f"{figures(through.gain)}; check filter and bandwidth of the amplifier"
-        )
-
-    def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
-        """How each change is said, and what to check."""
-        other, pitches = "compression" if self.side == "tension" else "tension", 0
-        if "shift" in one.changes:
-            pitches = whole_pitches(one.fitted.shift, self.teeth)
-        of_pitches = f" ({pitches:+d} tooth pitch{'es' if abs(pitches) > 1 else ''})" if pitches else ""
-        return {
-            "curve": (f"the {other} fillet", "fillet"),
-            "sign": (
-                "with its sign reversed",
-                f"which of both gauges is subtracted ({self.second}, by bridge)" if self.second else
-                "the polarity of the bridge",
-            ),
-            "reverse": ("with its angle reversed", "reverse (direction of the angle)"),
-            "shift": (
-                f"shifted by {degrees(one)}{of_pitches}",
-                "the tooth of the gauge and the zero of the angle" if pitches else 'the zero of the angle (add "shift" '
-                "to fit)",
-            ),
-        }  # fmt: skip
-
-    def of_ratio(self, ratio: float, limit: float) -> str:
-        """Reason that a ratio of measured to computed strain has, with the sign before it; empty for none.
-
-        Parameters
-        ----------
-        ratio : float
-        limit : float
-            Relative difference that does not count.
-        """
-        if abs(ratio - 1.0) <= max(limit, _NEAR):
-            return ""
-        if unit := of_unit(ratio, "the strain"):
-            return unit
-        near = min(max(limit, 0.01), _NEAR)
-        torque = next((one for one, factor in self.torques.items() if abs(ratio / factor - 1.0) <= near), "")
-        causes = _FACTORS_OF_BRIDGE if self.second else _FACTORS
-        cause = next((one for factor, one in causes.items() if abs(ratio / factor - 1.0) <= near), "")
-        if torque and cause:  # half the torque is often among those of the pair
-            return f", as computed at {torque}, or as of {cause.rpartition(', or ')[2]}; check torque and bridge"
-        if torque:
-            return f", as computed at {torque}; check the torque of the trace"
-        return f", as of {cause}; check torque and bridge" if cause else ""
-
-
 class Judged(Note):
     """A verdict that knows itself in a few words, for a table.
 
@@ -298,17 +185,32 @@ class BesideTrace:
     @property
     def drifts(self) -> str:
         """What the measured strain drifts by where that is not fitted; empty where it does not."""
-        return drift_named(self.compared)
+        return drift_named(self._as_described)
 
     @property
     def runout(self) -> str:
         """What the measured strain has once per turn; empty where that is little."""
-        return "" if self.otherwise.better else runout_named(self.compared)
+        return runout_named(self._as_described)
 
     @property
     def unsteady(self) -> str:
         """That measured strain differs from turn to turn as a torque does that is stepped; empty where it does not."""
-        return unsteady_named(self.compared)
+        return unsteady_named(self._as_described)
+
+    @property
+    def hum(self) -> str:
+        """Mains hum of the measured strain; empty where it has none."""
+        return hum_named(self._as_described)
+
+    @property
+    def steps(self) -> str:
+        """Coarse steps of the measured strain; empty where it has none."""
+        return step_named(self.compared)
+
+    @property
+    def _as_described(self) -> FittedCurve | None:
+        """The comparison, unless its angle or curve is a wrong one: what it has besides would be no advice."""
+        return None if self.otherwise.better else self.compared
 
     @property
     def without(self) -> str:
@@ -410,6 +312,9 @@ def verdict(
         judged += f"; {saturated}" if (saturated := saturation(found)) else ""
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
         steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
+        if hum_named(found) and found.hum is not None:
+            judged += f"; mains hum of ±{figures(found.hum.amplitude * 1e6)} µm/m at {figures(found.hum.frequency)} Hz"
+            word += ", mains hum"
         return Judged(judged + drifts + steps, kind, word=word)
     if not found.fits:
         return Judged(judged, kind, word=word)

@@ -29,6 +29,7 @@ from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
+from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
 from fegear.results.pair.gauges_together import GaugeGain, gain_of, of_all_gauges
 from fegear.results.pair.loaded_teeth import kind_of, loaded_pair, loaded_teeth, needs_teeth
@@ -37,6 +38,7 @@ from fegear.results.pair.placed_gauge import (
     MEASURED,
     RESIDUAL,
     TIMES_SCALE,
+    behind_low_pass,
     better_described,
     compared,
     comparison_table,
@@ -45,7 +47,8 @@ from fegear.results.pair.placed_gauge import (
     placed_gauge,
     placed_on_face,
 )
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, Otherwise, verdict
+from fegear.results.pair.planned_gauges import PlannedGauge
+from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, verdict
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
@@ -180,9 +183,15 @@ class DynamicStrain(BesideTrace):
             return Judged("")
         return verdict(self.compared, self._computed(self.compared), self.otherwise, brief=brief)
 
-    def gain_beside_others(self, gauge: Gauge) -> GaugeGain | None:
+    def planned(self, name: str) -> PlannedGauge:
+        """What the gauge of this name comes to as long as it has no trace."""
+        return PlannedGauge.of(name, self.found.peak, self.found.displacement, self.found.peak_of_places)
+
+    def beside_others(self, gauge: Gauge) -> GaugeGain | PlannedGauge | None:
         """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict."""
-        return None if self.compared is None else gain_of(gauge, self, self._computed(self.compared))
+        if self.compared is None:
+            return self.planned(gauge.name)
+        return gain_of(gauge, self, self._computed(self.compared))
 
     def _computed(self, compared: FittedCurve) -> ComputedPeak:
         """What the trace is judged by."""
@@ -253,9 +262,14 @@ def _compute(asked: DynamicStrainInputs, upstream: Upstream, _work: Work) -> Dyn
         peak = float(np.abs(seen.static).max())
         of_trace = {one: more[one].less(other.with_effects[one], peak) for one in more if one in other.with_effects}
     of = seen or found
-    measured = compared(gauge, of.angle, of.total)
-    better = better_described(gauge, measured, of.angle, of.total)
-    otherwise = Otherwise(better, gauge.side, of.pair.gear(of.member).teeth, second=gauge.second)
+    speed = gauge.trace_speed or of.speed
+    measured = compared(gauge, of.angle, of.total, speed)
+    better = better_described(gauge, measured, of.pair, of.angle, of.total)
+    otherwise = Otherwise(
+        better, gauge.side, of.pair.gear(of.member).teeth, second=gauge.second,
+        low_pass=behind_low_pass(gauge, measured, better, of.angle, of.total), speed=speed,
+        mate_teeth=of.pair.mate(of.member).teeth, over_time=gauge.over_time,
+    )  # fmt: skip
     neglected, changes = (
         {effect: one.change for effect, one in each.items() if abs(one.change) > asked.tolerance}
         for each in (more, of_trace)
@@ -335,7 +349,20 @@ def _rows(seen: Seen) -> list[GaugeRow]:
     return [GaugeRow.of(seen.name, data, data.torque, (data.seen or data.found).peak)]
 
 
-def _of_all(gauges: Sequence[GaugeGain | None]) -> str:
+def _by_placement(seen: Seen) -> list[str]:
+    """How the peak changes with the place of the grid."""
+    data: DynamicStrain = seen.data
+    said = data.planned(seen.name).by_placement
+    return [f"Gauge {seen.name}: displaced within its tolerance the dynamic peak changes by {said}."] if said else []
+
+
+def _title_of_all(seen: Seen) -> str:
+    """What the table of all gauges has: before there are traces no measured strain."""
+    data: DynamicStrain = seen.data
+    return f"{'Dynamic' if data.compared is None else 'Measured and dynamic'} strain of all gauges"
+
+
+def _of_all(gauges: Sequence[GaugeGain | PlannedGauge | None]) -> str:
     """Sentence about all gauges in motion; empty for none."""
     said = of_all_gauges(gauges)
     return f"In motion: {said[0].lower()}{said[1:]}" if said else ""
@@ -401,11 +428,10 @@ _SHEET = Sheet(
     answer=Answer(
         lambda seen: [f"{_subject(seen)}, in motion: {seen.data.judged}."] if seen.data.judged else [],
         _peak,
-        "Gauge {name}: displaced within its tolerance the dynamic peak changes by up to "
-        "{v[dynamic_change_by_placement]}.",
+        _by_placement,
         figure="dynamic_strain_{name}", rank=lambda seen: seen.data.urgency,
-        overview=gauge_rows("dynamic_gauges", "Measured and dynamic strain of all gauges", _rows),
-        fact=lambda seen: seen.data.gain_beside_others(seen.asked.gauge), common=_of_all,
+        overview=gauge_rows("dynamic_gauges", _title_of_all, _rows),
+        fact=lambda seen: seen.data.beside_others(seen.asked.gauge), common=_of_all,
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
@@ -414,6 +440,8 @@ _SHEET = Sheet(
         Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
         Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
         Remark("Gauge {name}, in motion: {d.unsteady}.", when="unsteady"),
+        Remark("Gauge {name}, in motion: {d.hum}.", when="hum"),
+        Remark("Gauge {name}, in motion: {d.steps}.", when="steps"),
         Remark("Gauge {name}, in motion: {d.without}.", when="without"),
     ),
     sharper_by="",
