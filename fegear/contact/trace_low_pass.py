@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 #: Angles of the time constant that are looked at first, up to a good part of the contact of a tooth, or of a curve that
 #: repeats with a full turn [rad].
 _LAGS, _LAGS_OF_PERIOD = np.radians(np.geomspace(0.2, 20.0, 9)), np.geomspace(0.05, 5.0, 9)
-#: Part of the variance left unexplained below which nothing is looked for.
-_EXPLAINED = 2e-3
+#: Part of the variance left unexplained below which nothing is looked for; of a curve that repeats, the mean of many.
+_EXPLAINED, _EXPLAINED_OF_PERIOD = 2e-3, 3e-4
 #: Least correlation behind a low pass, noise included: a rounder curve fits nearly every wrong one better.
 _FITS = 0.97
 #: Samples that are fitted at most, and points of the filtered curve.
@@ -100,7 +100,8 @@ def low_pass(
     repeats : bool
         Whether the curve is one turn that repeats.
     """
-    if unexplained(found) < _EXPLAINED or float(np.median(np.diff(np.unwrap(angle)))) <= 0.0:
+    explained = _EXPLAINED_OF_PERIOD if repeats else _EXPLAINED
+    if unexplained(found) < explained or float(np.median(np.diff(np.unwrap(angle)))) <= 0.0:
         return None  # it fits, or time goes against the angle
     from scipy.optimize import minimize_scalar
 

@@ -210,7 +210,7 @@ def test_a_synthetic_measurement_of_a_case_is_recovered(computed, tmp_path):
     low, high = (one.computed_peak_to_peak for one in found.data.traces)
     needed, gain = found.data.last.torque_needed, 0.9 * high / low  # at the other torque
     assert np.log2(needed / 10.0) == pytest.approx(np.log(gain) / np.log(gain / 0.9), abs=0.03)
-    assert cause.startswith("Encoders rig: measured / computed is the same at both torques, 0.9, as of a wrong scale")
+    assert cause.startswith("Encoders rig: measured / computed is the same at both torques, 0.9, as of the scale of ")
     assert sides.startswith("Encoders rig at 20 N m, peak-to-peak values: measured")
     assert "(includes noise), computed" in sides
     assert judged == (

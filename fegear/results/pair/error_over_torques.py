@@ -65,8 +65,8 @@ def common_cause(traces: Sequence[TraceBeside]) -> str:
     said = []
     if np.ptp(gains) <= _ONE * gains.mean():
         said.append(
-            f"measured / computed is the same at {all_torques}, {figures(float(gains.mean()))}, as of a wrong scale "
-            "(unit or te_at of the trace, marks of an encoder)"
+            f"measured / computed is the same at {all_torques}, {figures(float(gains.mean()))}, as of the scale of the "
+            "trace (radius by which an angle was converted) or of the stiffness (face width, material)"
         )
     if ratios.size == gains.size and np.ptp(ratios) <= _ONE * ratios.mean():
         off = ratios.mean() - 1.0
