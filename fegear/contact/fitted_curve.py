@@ -19,6 +19,7 @@ from fegear.base.shown import shown, shows
 from fegear.contact.fitted_line import FITTED, Fitted, FittedLine, linear, squares_left, standard_errors
 from fegear.contact.trace_outliers import Beside, outliers, suspected
 from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean, step_of
+from fegear.contact.turns import turns_along
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -44,8 +45,6 @@ _SLOPE = 1.0 / 500.0
 _JUMP_WITHIN, _JUMP_OF = 1e-5, 0.02
 #: A drift is named from this many standard errors on, and from this part of the computed range on over the whole trace.
 _DRIFT_ERRORS, _DRIFT_PART = 4.0, 0.01
-#: Turns from which on an angle is one that goes on, and is taken as it is.
-_GOES_ON = 1.1
 #: Fits at most, each without what is an outlier beside the last.
 _ROUNDS = 5
 #: Least uncertainty of a place, over the length of the curve; half of the step of the samples if that is more.
@@ -443,17 +442,6 @@ class _Computed:
             drifting and drifting[1]["drift"], spanned, scatter, noise / abs(line.scale) if line.scale else 0.0,
             turn_gains=of_turns, gain_noise=by_noise, step=step,
         )  # fmt: skip
-
-
-def going_on(angle: Array) -> Array:
-    """Angle of a trace that goes on from turn to turn, also where each turn begins at zero [rad]."""
-    return angle if float(np.ptp(angle)) > _GOES_ON * _TURN else np.unwrap(angle)
-
-
-def turns_along(angle: Array) -> Array:
-    """Turns of each sample of a trace from its first one, ascending along it, also where each turn begins at zero."""
-    going = going_on(angle)
-    return np.asarray((going - going[0]) / (_TURN if going[-1] >= going[0] else -_TURN))
 
 
 def _drift_by_places(angle: Array, turns: Array, measured: Array) -> float:

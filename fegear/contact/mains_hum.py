@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.fitted_curve import turns_along
 from fegear.contact.once_per_turn import outside_mesh
 
 if TYPE_CHECKING:
@@ -56,20 +55,22 @@ class MainsHum:
     amplitude: float
     phase: float
 
-    def at(self, angle: Array) -> Array:
-        """Along a trace of measured angles [rad]."""
-        return np.asarray(self.amplitude * np.cos(_TURN * self.order * turns_along(angle) - self.phase))
+    def at(self, turns: Array) -> Array:
+        """Along a trace, by the turns from its beginning."""
+        return np.asarray(self.amplitude * np.cos(_TURN * self.order * turns - self.phase))
 
 
 def mains_hum(
-    angle: Array, measured: Array, speed: float | None, shift: float, curve_angle: Array
+    angle: Array, measured: Array, turns: Array, speed: float | None, shift: float, curve_angle: Array
 ) -> MainsHum | None:  # fmt: skip
     """The hum of a trace; None where there is none, or where it could not be told.
 
     Parameters
     ----------
     angle, measured : ndarray, shape (N,)
-        Along the trace [rad].
+        As measured [rad].
+    turns : ndarray, shape (N,)
+        Of the samples along the trace, from its beginning.
     speed : float or None
         Of the gear [rad/s].
     shift : float
@@ -77,7 +78,6 @@ def mains_hum(
     curve_angle : ndarray, shape (Q,)
         Of the computed curve, ascending [rad].
     """
-    turns = turns_along(angle)
     length = float(turns[-1])
     used = outside_mesh(angle, shift, curve_angle)
     if not speed or length < _TURNS or np.count_nonzero(used) < _EACH * length * 8.0:

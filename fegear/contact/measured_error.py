@@ -17,10 +17,11 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.shown import shown, shows
-from fegear.contact.fitted_curve import FittedCurve, fit_curve, going_on
+from fegear.contact.fitted_curve import FittedCurve, fit_curve
 from fegear.contact.trace_alternatives import alternatives
 from fegear.contact.trace_low_pass import low_pass
 from fegear.contact.trace_outliers import suspected
+from fegear.contact.turns import going_on
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

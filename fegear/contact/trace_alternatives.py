@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve, going_on
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.turns import going_on
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.fitted_curve import FittedCurve, NothingToCompareError, fit_curve, turns_along
+from fegear.contact.fitted_curve import FittedCurve, NothingToCompareError, fit_curve
 from fegear.contact.trace_alternatives import clearly_better, unexplained
+from fegear.contact.turns import turns_along
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
-    from fegear.results.pair.measured_error_data import TraceBeside
 
 #: Logarithm of a torque over the last of those computed up to which a line through the last two goes on.
 _BEYOND = 0.25
@@ -48,20 +46,18 @@ def torque_of_gain(torques: Array, gains: Array, near: float) -> float | None:
     return float(np.exp(min(found, key=lambda one: abs(one - np.log(near))))) if found else None
 
 
-def common_cause(traces: Sequence[TraceBeside]) -> str:
-    """One cause of differences at all of several torques, a sentence without a subject; empty for none.
+def common_cause(torques: Array, gains: Array, needed: Sequence[float | None]) -> str:
+    """One cause of differences of size at all of several torques, a clause; empty for none.
 
     Parameters
     ----------
-    traces : sequence of TraceBeside
-        Of which each differs from what is computed in its size only.
+    torques, gains : ndarray, shape (L,)
+        Of the traces [N m], and measured / computed.
+    needed : sequence of float or None
+        Torques at which the computed transmission error is the measured one [N m].
     """
-    if len(traces) < 2 or not all(one.differs_in_size for one in traces):
-        return ""
-    gains = np.array([one.fitted.gain for one in traces])
-    needed = [one.torque_needed for one in traces]
-    ratios = np.array([torque / one.torque for one, torque in zip(traces, needed, strict=True) if torque])
-    all_torques = "both torques" if len(traces) == 2 else f"all {in_words(len(traces))} torques"
+    ratios = np.array([torque / own for own, torque in zip(torques, needed, strict=True) if torque])
+    all_torques = "both torques" if torques.size == 2 else f"all {in_words(torques.size)} torques"
     said = []
     if np.ptp(gains) <= _ONE * gains.mean():
         said.append(
@@ -77,14 +73,13 @@ def common_cause(traces: Sequence[TraceBeside]) -> str:
     return "; ".join(said)
 
 
-def with_one_filter(traces: Sequence[TraceBeside]) -> list[TraceBeside]:
-    """Traces of one rig, which have one filter: without those that one or other seems to have where they do not agree.
+def one_filter(lags: Sequence[float | None]) -> bool:
+    """Whether traces of one rig, which has one filter, are behind it.
 
     Parameters
     ----------
-    traces : sequence of TraceBeside
+    lags : sequence of float or None
+        Time constants that each seems to have, at equal speed; None for none.
     """
-    lags = [one.otherwise.low_pass.lag / (one.otherwise.speed or 1.0) for one in traces if one.otherwise.low_pass]
-    if 2 * len(lags) >= len(traces) and max(lags, default=0.0) <= _ONE_FILTER * min(lags, default=0.0):
-        return list(traces)
-    return [replace(one, otherwise=replace(one.otherwise, low_pass=None)) for one in traces]
+    found = [lag for lag in lags if lag is not None]
+    return 2 * len(found) >= len(lags) > 0 and max(found) <= _ONE_FILTER * min(found)

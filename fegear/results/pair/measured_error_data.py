@@ -392,7 +392,12 @@ class MeasuredErrorData:
     @property
     def common_cause(self) -> str:
         """What would explain differences at all torques, a sentence without a subject; empty for none."""
-        return common_cause(self.traces)
+        if not self.several or not all(one.differs_in_size for one in self.traces):
+            return ""
+        torques, gains = (
+            np.array(values) for values in zip(*((one.torque, one.fitted.gain) for one in self.traces), strict=True)
+        )  # fmt: skip
+        return common_cause(torques, gains, [one.torque_needed for one in self.traces])
 
     @property
     def several(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +22,7 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.results import forecasts
-from fegear.results.pair.error_over_torques import torque_of_gain, with_one_filter
+from fegear.results.pair.error_over_torques import one_filter, torque_of_gain
 from fegear.results.pair.measured_error_data import (
     MeasuredErrorData,
     OtherwiseError,
@@ -109,7 +110,13 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
                 trace.reading, asked.estimates, otherwise, torque_of_gain(torques, np.array(gains), trace.load * lever),
             )
         )  # fmt: skip
-    return MeasuredErrorData(with_one_filter(traces), asked.member)
+    behind = [one.otherwise.low_pass for one in traces]
+    lags = [
+        low and low.lag / (one.otherwise.speed or 1.0) for low, one in zip(behind, traces, strict=True)
+    ]  # fmt: skip
+    if not one_filter(lags):
+        traces = [replace(one, otherwise=replace(one.otherwise, low_pass=None)) for one in traces]
+    return MeasuredErrorData(traces, asked.member)
 
 
 def _mesh_orders(seen: Seen) -> list[Mark]:

@@ -10,12 +10,13 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.gauges import Gauge, place_gauge
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve, turns_along
+from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
 from fegear.contact.fitted_line import FITTED
 from fegear.contact.mains_hum import mains_hum
 from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.trace_alternatives import alternatives
 from fegear.contact.trace_low_pass import low_pass
+from fegear.contact.turns import turns_along
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
 from fegear.engine.sheet.each import Each
@@ -154,16 +155,17 @@ def compared(gauge: Gauge, angle: Array, strain: Array, speed: float | None = No
         return None
     try:
         found = fit_curve(measured.angle, measured.strain, angle, strain, measured.fit)
-        wave = once_per_turn(measured.angle, measured.strain, turns_along(measured.angle), found.shift, angle)
+        turns = turns_along(measured.angle)
+        wave = once_per_turn(measured.angle, measured.strain, turns, found.shift, angle)
         if wave is not None and measured.runout:
             less = measured.strain - wave.at(measured.angle)
             found = fit_curve(measured.angle, less, angle, strain, measured.fit, found.step)
         found = replace(found, wave=wave, wave_less=measured.runout)
-        hum = mains_hum(measured.angle, measured.strain, speed, found.shift, angle)
+        hum = mains_hum(measured.angle, measured.strain, turns, speed, found.shift, angle)
         if hum is None:
             return found
         # whether torque and gauge were steady shows without it
-        less = measured.strain - hum.at(measured.angle)
+        less = measured.strain - hum.at(turns)
         steady = fit_curve(measured.angle, less, angle, strain, measured.fit, found.step)
         return replace(found, hum=hum, turn_gains=steady.turn_gains)
     except NothingToCompareError:

@@ -17,8 +17,9 @@ from fegear.base.notes import Note, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.measured_strain import turns_of
-from fegear.contact.fitted_curve import DRIFT_TURNS, NothingToCompareError, fit_curve, turns_along
+from fegear.contact.fitted_curve import DRIFT_TURNS, NothingToCompareError, fit_curve
 from fegear.contact.once_per_turn import once_per_turn
+from fegear.contact.turns import turns_along
 
 if TYPE_CHECKING:
     from fegear.case.built.gauges import Gauge
