@@ -212,3 +212,26 @@ def test_values_computed_at_once_ahead_are_those_that_are_asked_for():
     assert np.array_equal(found.coefficients, alone.coefficients)
     s = np.linspace(0.301, 0.999, 500)
     assert np.max(np.abs(found(s) - 2.0 * np.sqrt(s + 1e-4))) < 1e-8
+
+
+def test_pieces_that_are_asked_for_in_one_array_are_those_asked_for_one_by_one():
+    calls = []
+
+    def function(s):
+        calls.append(s.size)
+        return np.abs(np.sin(7.0 * s)) ** 0.5 + (s > 0.3)
+
+    cuts = [0.3, *(k * np.pi / 7.0 for k in range(1, 3))]
+    fits = [Periodic.fit(function, cuts, tolerance=1e-6, shortest=1e-4, pointwise=pointwise) for pointwise in (0, 1)]
+    assert fits[0].breaks.size > 20
+    assert np.array_equal(fits[0].breaks, fits[1].breaks)
+    assert np.array_equal(fits[0].coefficients, fits[1].coefficients)
+    one_by_one = calls.count(min(calls))
+    assert len(calls) - one_by_one < 0.5 * one_by_one
+
+
+def test_the_stiffness_of_all_pairs_together_is_fitted_once():
+    mesh = MeshExcitation((SQUARE.plus(3.0), SQUARE.plus(4.0)), (Periodic.constant(0.0),) * 2)
+    assert mesh.total_stiffness() is mesh.total_stiffness()
+    assert mesh.total_stiffness()(0.1) == pytest.approx(9.0)
+    assert mesh.widened(2.0).total_stiffness()(0.1) == pytest.approx(18.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -198,6 +199,11 @@ class MeshExcitation:
 
     def total_stiffness(self) -> Periodic:
         """Stiffness of all slots in contact together [N/m]."""
+        return self._total
+
+    @cached_property
+    def _total(self) -> Periodic:
+        """Fitted once: mean compliance and back flanks, speed after speed, ask for it."""
         return combine(self.stiffness, lambda *k: np.sum(k, axis=0))
 
     def mean_compliance(self) -> float:
@@ -245,6 +251,7 @@ class MeshExcitation:
             cuts / pitches,
             tolerance=tolerance,
             pitches=pitches,
+            pointwise=True,
         )
 
     def contact_changes(self, load: float) -> list[float]:

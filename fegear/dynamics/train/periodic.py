@@ -78,13 +78,14 @@ class Periodic:
         shortest: float = 0.0,
         scale: float = 0.0,
         ahead: Callable[[list[Array]], None] | None = None,
+        pointwise: bool = False,
     ) -> Periodic:
         """Fit a vectorised function of the period fraction s, smooth between `breaks`, halving pieces as needed.
 
         Parameters
         ----------
         function : callable
-            Takes an array of s in (0, 1), one piece at a time and never a break point itself.
+            Takes an array of s in (0, 1), one piece at a time unless it is `pointwise`, never a break point itself.
         breaks : iterable of float
             Where the function or a derivative jumps, in (0, 1); 0 and 1 are always break points.
         degree : int
@@ -99,6 +100,8 @@ class Periodic:
             Size relative to which errors count where the function itself is smaller: a difference of things so large.
         ahead : callable, optional
             Takes the places of all pieces that the function is asked for next, to compute them at once.
+        pointwise : bool
+            Whether a value depends on its own place only: the function is then asked for many pieces in one array.
 
         Raises
         ------
@@ -122,7 +125,10 @@ class Periodic:
             at = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b, _ in pieces]
             if ahead is not None:
                 ahead(at)
-            found = [np.asarray(function(s), dtype=float) for s in at]
+            if pointwise:
+                found = list(np.reshape(np.asarray(function(np.concatenate(at)), dtype=float), (len(at), places.size)))
+            else:
+                found = [np.asarray(function(s), dtype=float) for s in at]
             scale = max(scale, *(float(np.max(np.abs(values))) for values in found))
             for (a, b, least), values in zip(pieces, found, strict=True):
                 row, h = to_power @ values[: degree + 1], b - a
@@ -241,7 +247,8 @@ class Periodic:
         jumps = np.abs(starts - np.roll(ends, 1)) > _SEEN * tolerance * scale
         kinks = np.abs(rise[0] - np.roll(rise[1], 1)) > _BENT * scale
         cuts = self.breaks[:-1][jumps | kinks]
-        few = Periodic.fit(lambda s: self(s * self.pitches), cuts, tolerance=tolerance, pitches=self.pitches)
+        few = Periodic.fit(lambda s: self(s * self.pitches), cuts, tolerance=tolerance, pitches=self.pitches,
+                           pointwise=True)  # fmt: skip
         return few if few.breaks.size < self.breaks.size else self
 
     def breaks_over(self, pitches: int) -> Array:
@@ -263,7 +270,7 @@ def combine(
 ) -> Periodic:
     """Fit ``rule(part_1(phase), part_2(phase), ...)`` over the common period of all parts.
 
-    `extra_breaks` are phases in base pitches where the rule itself has kinks.
+    `extra_breaks` are phases in base pitches where the rule itself has kinks. The rule is one of single values.
     """
     pitches = math.lcm(*(part.pitches for part in parts))
     cuts = np.unique(np.concatenate([*(part.breaks_over(pitches) for part in parts), np.array([*extra_breaks])]))
@@ -275,6 +282,7 @@ def combine(
         pitches=pitches,
         shortest=shortest,
         scale=scale,
+        pointwise=True,
     )
 
 
