@@ -65,5 +65,8 @@ def without_dead_material(cut: beam.Sections, tip: tuple[float, float]) -> beam.
     x, y = tip
     left = np.where(cut.height > y, 0.5 * (cut.half_thickness + np.minimum(cut.half_thickness, x)), cut.half_thickness)
     if not left.min() > 0.0:
-        raise RangeError("depth", x, "must leave material in every beam section", "reduce the depth of the crack")
+        raise RangeError(
+            "crack", f"(tip {abs(x):.4g} modules beyond the centre line of the tooth)",
+            "must leave material in every beam section", "reduce the depth of the crack",
+        )  # fmt: skip
     return beam.Sections(cut.height, left, cut.weight)

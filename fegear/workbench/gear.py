@@ -20,6 +20,9 @@ from fegear.workbench.results import Results
 from fegear.workbench.run import run_scene
 from fegear.workbench.signature import takes_keys_of
 
+#: Bodies of a single tooth, of which it has one.
+_BODIES = ("crack", "missing", "broken_at", "tip_diameter", "hole", "keyway")
+
 
 class Described:
     """A part of a case by its keys, with what has been solved for it; it never changes."""
@@ -114,7 +117,7 @@ class Gear(Described):
         Parameters
         ----------
         tooth : int
-            Its number in meshing order; one that differs already gets the new crack instead.
+            Its number in meshing order; a tooth with a crack already gets the new one instead, its pits stay.
         **crack
             Keys of ``[[gear.NAME.odd_tooth]] crack`` of a case file: ``depth`` or ``depth_ratio``, ``angle``,
             ``tangent_angle`` or another start, ``fillet``.
@@ -136,7 +139,7 @@ class Gear(Described):
         Parameters
         ----------
         tooth : int
-            Number of the tooth in meshing order; one that differs already has the hole instead.
+            Number of the tooth in meshing order; a tooth with another body already has the hole instead.
         **hole
             Keys of ``[[gear.NAME.odd_tooth]] hole`` of a case file: ``diameter``, ``position_radius`` and ``angle``
             about the gear axis from the tooth centre line, positive towards the loaded flank.
@@ -158,7 +161,7 @@ class Gear(Described):
         Parameters
         ----------
         tooth : int
-            Number of the tooth in meshing order; one that differs already has the keyway instead.
+            Number of the tooth in meshing order; a tooth with another body already has the keyway instead.
         **keyway
             Keys of ``[[gear.NAME.odd_tooth]] keyway`` of a case file: ``width``, ``depth`` (by default those of
             DIN 6885-1 for the bore) and ``angle``.
@@ -180,8 +183,8 @@ class Gear(Described):
         Parameters
         ----------
         tooth : int
-            Number of the tooth in meshing order; a tooth that has pits already gets one more, one that differs
-            otherwise has the pit instead.
+            Number of the tooth in meshing order; a tooth that has pits already gets one more, a cracked one is
+            cracked and pitted.
         **pit
             Keys of ``[[gear.NAME.odd_tooth]] pits`` of a case file: ``diameter`` or ``radius`` (from, to),
             ``face_share``, ``depth``, and for 3D pairs ``face_position``.
@@ -195,16 +198,23 @@ class Gear(Described):
         --------
         >>> pitted = pinion.with_pit(tooth=0, diameter=["59 mm", "61 mm"], face_share=0.4)
         """
-        given = self.keys.get("odd_tooth", [])
-        teeth = [given] if isinstance(given, dict) else given
-        pits = [pit for one in teeth if one.get("tooth", 0) == tooth for pit in one.get("pits", [])]
+        pits = [one for tooth_keys in self._odd_teeth if tooth_keys.get("tooth", 0) == tooth
+                for one in tooth_keys.get("pits", [])]  # fmt: skip
         return self._with_odd_tooth(tooth, pits=[*pits, pit])
 
-    def _with_odd_tooth(self, tooth: int, **what: Any) -> Gear:
-        """A gear of which one tooth is another one."""
+    @property
+    def _odd_teeth(self) -> list[dict[str, Any]]:
+        """The teeth that differ already, a table each."""
         given = self.keys.get("odd_tooth", [])
-        others = [one for one in ([given] if isinstance(given, dict) else given) if one.get("tooth", 0) != tooth]
-        return self.changed(odd_tooth=[*others, {"tooth": tooth, **what}])
+        return [given] if isinstance(given, dict) else list(given)
+
+    def _with_odd_tooth(self, tooth: int, **what: Any) -> Gear:
+        """A gear of which one tooth differs in this way, too; another body replaces its body, not its flank."""
+        apart = _BODIES if what.keys() & set(_BODIES) else ("missing",)
+        had = {key: value for one in self._odd_teeth if one.get("tooth", 0) == tooth
+               for key, value in one.items() if key not in apart}  # fmt: skip
+        others = [one for one in self._odd_teeth if one.get("tooth", 0) != tooth]
+        return self.changed(odd_tooth=[*others, {**had, "tooth": tooth, **what}])
 
     def document(self) -> dict[str, Any]:
         """It as the tables of a case file."""

@@ -373,11 +373,19 @@ def test_a_gear_gets_a_crack_in_python():
 
 
 def test_a_gear_gets_pits_in_python():
-    """One after the other on a tooth, in place of its crack."""
+    """One after the other on a tooth, beside its crack; another crack leaves them, a hole takes the crack's place."""
     first, second = {"diameter": ["49 mm", "50 mm"], "face_share": 0.4}, {"radius": ["25 mm", "26 mm"], "depth": "1 mm"}
     gear = fegear.Gear(25, "2 mm", face_width="20 mm", name="a").with_crack(tooth=2, depth="0.5 mm")
     pitted = gear.with_pit(tooth=2, **first).with_pit(tooth=2, **second).with_pit(**first)
-    assert pitted.keys["odd_tooth"] == [{"tooth": 2, "pits": [first, second]}, {"tooth": 0, "pits": [first]}]
+    crack, deeper = {"depth": "0.5 mm"}, {"depth": "0.8 mm"}
+    other = {"tooth": 0, "pits": [first]}
+    assert pitted.keys["odd_tooth"] == [{"tooth": 2, "crack": crack, "pits": [first, second]}, other]
+    again = pitted.with_crack(tooth=2, **deeper).keys["odd_tooth"]
+    assert again == [other, {"tooth": 2, "pits": [first, second], "crack": deeper}]
+    keyed = pitted.changed(bore_radius="10 mm").with_keyway(tooth=2).keys["odd_tooth"]
+    assert keyed == [other, {"tooth": 2, "pits": [first, second], "keyway": {}}]
+    gone = fegear.Gear(25, "2 mm", face_width="20 mm", odd_tooth={"tooth": 2, "missing": True})
+    assert gone.with_pit(tooth=2, **first).keys["odd_tooth"] == [{"tooth": 2, "pits": [first]}]
     with pytest.raises(InputError, match=r"depth = .*: is required with face_share = 1"):
         gear.with_pit(diameter=["49 mm", "50 mm"])
 

@@ -115,6 +115,10 @@ def test_other_formulas_and_bodies_are_refused():
     cracked = GEARS[0].with_crack(tooth=5, depth_ratio=0.4, angle="65 deg")
     with pytest.raises(fegear.InputError, match="potential-energy-simplified"):
         fegear.mesh_stiffness_revolution(fegear.Pair(cracked, GEARS[1], compliance="cornell"), torque="90 N*m")
+    deep = fegear.Pair(GEARS[0].with_crack(depth_ratio=0.9, angle="75 deg"), GEARS[1], compliance=NAME)
+    with pytest.raises(fegear.InputError, match=r"beyond the centre line of the tooth\): must leave material") as said:
+        fegear.mesh_stiffness_revolution(deep, torque="90 N*m")
+    assert said.value.key == "gear.z22.odd_tooth.crack"
     holed = GEARS[0].with_hole(tooth=0, diameter="2 mm", position_radius="22 mm")
     with pytest.raises(fegear.InputError, match=r"odd_tooth\[0\]\.hole"):
         fegear.mesh_stiffness_revolution(fegear.Pair(holed, GEARS[1], compliance=NAME), torque="90 N*m")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import InputError
 from fegear.base.notes import assuming, neglecting
 from fegear.case.built.odd_gears import odd_gears_of, reshaped_gears
 from fegear.case.built.odd_teeth import check_left_contact, check_odd_gear, check_plane_pits, odd_teeth_in
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.contact.plane.odd_formula_compliance import GearByFormula
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.pair import Member
 
@@ -80,16 +82,29 @@ def _compute(asked: AskedOfOddTeeth, upstream: Upstream, work: Work) -> LoadedPa
 
     spec = asked.spec
     if spec.compliance != "fe":
-        from fegear.contact.plane.odd_formula_compliance import odd_formula_compliance  # late: all formulas
-
-        sources = tuple(
-            odd_formula_compliance(spec.pair.gear(member), spec.compliance, dict(tips))
-            for member, tips in zip(MEMBERS, asked.tips, strict=True)
-        )
-        return load_plane(spec, sources, estimates=asked.estimates)  # a formula is no content of a key
+        return load_plane(spec, _by_formula(asked), estimates=asked.estimates)  # a formula is no content of a key
     solved = {task.subject: gear for task, gear in upstream.items()}
     gears = tuple(solved[gear] for gear in asked.spec.gears)
     return load_plane(asked.spec, gears, cache=work.cache, estimates=asked.estimates)
+
+
+def _by_formula(asked: AskedOfOddTeeth) -> tuple[GearByFormula, ...]:
+    """Both gears by the formula of their pair.
+
+    Raises
+    ------
+    InputError
+        Under the key of the gear, if a crack leaves nothing of a section.
+    """
+    from fegear.contact.plane.odd_formula_compliance import odd_formula_compliance  # late: all formulas
+
+    found = []
+    for member, flank, tips in zip(MEMBERS, asked.spec.both, asked.tips, strict=True):
+        try:
+            found.append(odd_formula_compliance(asked.spec.pair.gear(member), asked.spec.compliance, dict(tips)))
+        except InputError as error:
+            raise error.under(f"{flank.prefix}.odd_tooth") from None
+    return tuple(found)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -99,6 +114,8 @@ def _check(scene: Scene, name: str) -> None:
         check_odd_gear(scene, gear)
     check_left_contact(scene, name)
     check_plane_pits(scene, name)
+    if scene.case.pair[name].compliance.source != "fe":
+        _by_formula(_inputs(scene, name))
     if scene.case.effects.relief:
         for gear in odd_gears_of(scene, name):
             member: Member = "driver" if gear == scene.case.pair[name].driver else "driven"
