@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.shown import shown, shows
 from fegear.geometry.pair import MEMBERS
+from fegear.results.gear.formula_names import COMPLIANCES, ROOT_FORMULAS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,19 +17,6 @@ if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
     from fegear.formulas.iso6336.part1_stiffness import Stiffness
     from fegear.results.gear.crosscheck_rows import Extremes, SingleContactRows
-
-#: Formulas of root stress as people name them, in the order in which an answer has them.
-ROOT_FORMULAS = {
-    "iso-6336-3": "ISO 6336-3", "agma-908": "AGMA 908", "cornell": "Cornell", "cornell-trochoid": "Cornell (trochoid)",
-    "heywood": "Heywood", "dolan-broghamer": "Dolan and Broghamer",
-}  # fmt: skip
-
-
-#: The same of compliance.
-COMPLIANCES = {
-    "potential-energy": "potential energy", "potential-energy-simplified": "potential energy (no fillet)",
-    "weber-banaschek": "Weber and Banaschek", "cornell": "Cornell",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
-from fegear.results.gear.crosscheck_answer import COMPLIANCES
+from fegear.results.gear.formula_names import COMPLIANCES, formula_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -140,7 +140,7 @@ CYCLE_CHART = Chart(
             (
                 Line("fe.stiffness", "finite elements", "finite elements", look={"width": 2.6}),
                 Line("uncoupled.stiffness", "finite elements, uncoupled", "finite elements", look={"dash": "dash"}),
-                Line("stiffness", each=Family("formulas", most=None)),
+                Line("stiffness", each=Family("formulas", formula_called, most=None)),
             ),
             options={"zero": True}, marks=_iso,
         ),

@@ -11,7 +11,7 @@ from fegear.engine.sheet.chart import Bundle, Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
-from fegear.results.gear.crosscheck_answer import COMPLIANCES
+from fegear.results.gear.formula_names import COMPLIANCES, formula_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -149,7 +149,7 @@ ODD_CHART = Chart(
                     look={"dash": "dash", "width": 2.0},
                 ),
                 Bundle(
-                    Family("formulas", most=None),
+                    Family("formulas", formula_called, most=None),
                     (Line("odd", "{key}, {one.what}"), Line("ordinary", "{key}, ordinary", look={"dash": "dash"})),
                 ),
             ),

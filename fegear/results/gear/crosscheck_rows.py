@@ -14,6 +14,7 @@ from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Columns, Off
+from fegear.results.gear.formula_names import formula_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -433,7 +434,7 @@ def comparison(name: str, title: Text, what: str, where: str, x: str, *, stress:
     stress : bool
         Whether it is root stress.
     """
-    formulas = Family(f"{where}.formulas", most=None)
+    formulas = Family(f"{where}.formulas", formula_called, most=None)
 
     def first(seen: Seen) -> Compared:
         return next(iter(seen.find(where).formulas.values()))

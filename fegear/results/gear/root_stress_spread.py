@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import percent
 from fegear.base.shown import shown
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark, Zone
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.seen import Seen, Text
-from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
 from fegear.results.gear.crosscheck_rows import HIGH
+from fegear.results.gear.formula_names import ROOT_FORMULAS, formula_called
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -145,7 +147,7 @@ class Population:
 
 def spread_chart(
     name: str, title: str, caption: Text, quantity: str, error: Callable[[Seen], float],
-    limits: tuple[float, float] = _SHOWN,
+    limits: Callable[[Seen], tuple[float, float]],
 ) -> Chart:  # fmt: skip
     """Cumulative distributions of formula over finite elements, of what has `SomeLoads` as ``loads``: a panel each.
 
@@ -157,29 +159,45 @@ def spread_chart(
         Name of the axis of ratios.
     error : callable
         Relative error of the finite elements.
-    limits : tuple of float
-        Of the axis of ratios, within 0.5 to 1.5.
+    limits : callable
+        Of the axis of ratios (`spread_limits`).
     """
 
     def marks(seen: Seen) -> tuple[Zone | Mark, ...]:
         off = error(seen)
         return Zone("x", 1.0 - off, 1.0 + off), Mark("x", 1.0), Mark("y", 50.0)
 
-    line = Line("share", x="ratio", each=Family("spreads", most=None), look={"dash": "steps", "markers": False})
+    line = Line(
+        "share", x="ratio", each=Family("spreads", formula_called, most=None), look={"dash": "steps", "markers": False}
+    )
     panel = Over(
-        Axis(quantity, limits=limits), (line,),
+        lambda seen: Axis(quantity, limits=limits(seen)), (line,),
         Axis("fraction of points with a smaller ratio", "%", limits=(0.0, 100.0)), marks, title="{one.title}",
         each="loads",
     )  # fmt: skip
     return Chart(name, title, caption, (panel,), columns=2)
 
 
+def spread_limits(ratio: Array) -> tuple[float, float]:
+    """Axis about 1 and all known ratios, in whole tenths, within what a spread shows."""
+    known = ratio[np.isfinite(ratio)]
+    low, high = min(1.0, *known, _SHOWN[1]), max(1.0, *known, _SHOWN[0])
+    return max(_SHOWN[0], math.floor(10.0 * low - 0.2) / 10.0), min(_SHOWN[1], math.ceil(10.0 * high + 0.2) / 10.0)
+
+
+def _beyond(table: Mapping[str, Array]) -> str:
+    """What is said of points that lie beyond the axis."""
+    ratio = _number(table, "ratio_to_fe")
+    return f" Points below {_SHOWN[0]:g} are counted where curves begin." if np.any(ratio < _SHOWN[0]) else ""
+
+
 _FIGURE = spread_chart(
     "root_stress_spread", "Distribution of the errors of the root-stress formulas",
-    lambda seen: f"{seen.data.about} (share of the roll angle). Left of 1: stress underestimated (unsafe). The steeper "
-    "the curve, the better a constant correction factor works. Grey, and narrower than the dotted line where it is not "
-    f"seen: estimated error of the finite elements, {100.0 * fe_error(seen.data.table):.2g} % at 95 % of the points.",
+    lambda seen: f"{seen.data.about} (share of the roll angle). Left of 1: stress underestimated (unsafe). "
+    f"The steeper the curve, the better a constant correction factor works.{_beyond(seen.data.table)} Estimated error "
+    f"of the finite elements (grey band about 1): {percent(fe_error(seen.data.table))} at 95 % of the points.",
     "root stress, formula / FE", lambda seen: fe_error(seen.data.table),
+    limits=lambda seen: spread_limits(_number(seen.data.table, "ratio_to_fe")),
 )  # fmt: skip
 
 

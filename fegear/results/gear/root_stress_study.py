@@ -26,8 +26,8 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import RING, ROOT_STRESS_FORMULAS
-from fegear.results.gear.crosscheck_answer import ROOT_FORMULAS
 from fegear.results.gear.crosscheck_rows import HIGH
+from fegear.results.gear.formula_names import ROOT_FORMULAS, formula_called
 from fegear.results.gear.root_stress_spread import WORDS, fe_error, sentences, spread_figure
 from fegear.results.gear.root_stress_varied import ratios_figure, tiles_figure
 
@@ -271,6 +271,13 @@ def _of_formula(rows: StudyRows, name: str, *, of_drawn: bool) -> OfFormula:
     return OfFormula(shares, ratio, edges, np.append(count, 0))
 
 
+def _binned(ratio: Array) -> tuple[float, float]:
+    """Axis about 1 and all known ratios, in whole steps of the histogram with an empty one at either end."""
+    known = np.clip(ratio[np.isfinite(ratio)], 0.0, _WIDEST)
+    low, high = min(1.0, *known), max(1.0, *known)
+    return max(0.0, _BIN * (math.floor(low / _BIN) - 1)), min(_WIDEST, _BIN * (math.ceil(high / _BIN) + 1))
+
+
 def _about(seen: Seen) -> str:
     """What all gears have in common, and how exact the finite elements are."""
     base, off = seen.asked.base, fe_error(seen.data.rows.read())
@@ -335,7 +342,11 @@ def _remarks(seen: Seen) -> tuple[str, ...]:
         "stress and plane strain."
     )
     drawn_gears = sentences(seen.data.rows.read()) if seen.data.drawn else ()
-    return about, *drawn_gears, *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values())
+    return (
+        about,
+        *drawn_gears,
+        *(f"{ROOT_FORMULAS.get(s.name, s.name)} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()),
+    )
 
 
 def _answers(_seen: Seen) -> type:
@@ -374,10 +385,10 @@ _SHEET = Sheet(
             f"Distribution of the ratio formula / FE over the points of the study, in steps of {_BIN:g}.",
             (
                 Over(
-                    Axis("formula / FE"),
+                    lambda seen: Axis("formula / FE", limits=_binned(seen.data.rows.ratio_to_fe)),
                     (
                         Line(
-                            "count", x="edge", each=Family("formulas", most=None),
+                            "count", x="edge", each=Family("formulas", formula_called, most=None),
                             look={"dash": "steps", "markers": False},
                         ),
                     ),

@@ -15,6 +15,7 @@ from fegear.engine.figure.items import HeatMap, Mark
 from fegear.engine.figure.panel import Panel
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.seen import Seen
+from fegear.results.gear.formula_names import ROOT_FORMULAS, formula_called
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,11 +89,11 @@ def varied(table: Mapping[str, NDArray[Any]]) -> tuple[Varied, ...]:
         aside = _IN_LANE * lane * ((order.ravel() + 0.5) / others.size - 0.5)
         formulas = {}
         for number, name in enumerate(names):
-            own = table["formula"] == name
+            own, called = table["formula"] == name, ROOT_FORMULAS.get(name, name)
             shift = lane * (number - 0.5 * (len(names) - 1))
             columns = {one: table[one][own] for one in _VARIED}
             notes = tuple(
-                f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load position {p:.3g}"
+                f"{called}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load position {p:.3g}"
                 for z, x, r, p in zip(*columns.values(), strict=True)
             )
             formulas[name] = Ratios(notes, place.ravel()[own] + aside[own] + shift, table["ratio_to_fe"][own])
@@ -108,7 +109,7 @@ _RATIOS = Chart(
             lambda seen: seen.one.axis,
             (
                 Line(
-                    "ratio", x="place", kind="points", each=Family("formulas", most=None),
+                    "ratio", x="place", kind="points", each=Family("formulas", formula_called, most=None),
                     look=lambda seen: {"size": 4.5, "notes": seen.one.notes},
                 ),
             ),
@@ -153,12 +154,13 @@ def tiles_figure(table: Mapping[str, NDArray[Any]], about: str) -> Figure:
     ratios = table["ratio_to_fe"].reshape(len(gears), len(names), len(positions))
     across, down = np.arange(len(positions)), np.arange(len(gears))[::-1]
     height = max(_TILE * len(gears), _LETTER * len(label))
+    called = [ROOT_FORMULAS.get(name, name) for name in names]
     views = tuple(
         View(name if np.isfinite(ratios[:, i]).all() else f"{name} (×: not applicable)", (Panel(
             *axes, (HeatMap(across, down, ratios[:, i], "formula / FE", centre=(1.0, _FULL), numbers=True),),
             marks, height=height,
         ),))
-        for i, name in enumerate(names)
+        for i, name in enumerate(called)
     )  # fmt: skip
     of_rows = " Rack tip radius in modules." if "rack_tip_radius" in keys and len(keys) > 1 else ""
     return Figure(

@@ -22,8 +22,8 @@ from fegear.engine.sheet.sheet import Sheet
 from fegear.engine.stage import Forecast, Stage, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING
-from fegear.results.gear.crosscheck_answer import COMPLIANCES
-from fegear.results.gear.root_stress_spread import SomeLoads, spread, spread_chart
+from fegear.results.gear.formula_names import COMPLIANCES
+from fegear.results.gear.root_stress_spread import SomeLoads, spread, spread_chart, spread_limits
 from fegear.results.gear.root_stress_study import StudyInputs, check_study, study_inputs
 
 if TYPE_CHECKING:
@@ -224,28 +224,22 @@ def _closest(seen: Seen) -> Iterator[str]:
         )
 
 
-def _limits(ratio: Array) -> tuple[float, float]:
-    """Axis about 1 and all known ratios, in whole tenths, within what a spread shows."""
-    known = ratio[np.isfinite(ratio)]
-    low, high = min(1.0, float(known.min())), max(1.0, float(known.max()))
-    return max(0.5, math.floor(10.0 * low - 0.2) / 10.0), min(1.5, math.ceil(10.0 * high + 0.2) / 10.0)
-
-
 def _spread(seen: Seen) -> tuple[Figure, ...]:
     off = seen.data.fe_error
     chart = spread_chart(
         "stiffness_spread", "Distribution of the errors of the stiffness formulas",
         f"{seen.data.pairs} random pairs at {seen.asked.line_load * 1e-3:.6g} N/mm. Right of 1: stiffness "
-        f"overestimated. Grey: estimated error of the finite elements, {percent(off)} at 95 % of the pairs.",
-        "stiffness, formula / FE", lambda _seen: off, limits=_limits(seen.data.rows.ratio_to_fe),
+        f"overestimated. Estimated error of the finite elements (grey band about 1): {percent(off)} at 95 % of the "
+        "pairs.",
+        "stiffness, formula / FE", lambda _seen: off, lambda _seen: spread_limits(seen.data.rows.ratio_to_fe),
     )  # fmt: skip
     return tuple(chart.figures(seen))
 
 
 def _remarks(seen: Seen) -> tuple[str, ...]:
     silent = [
-        f"Study of stiffness: {name} gives no value for {percent(float(np.isnan(ratio).mean()), whole=True)} of the "
-        "pairs (column reason)."
+        f"Study of stiffness: {_FORMULAS.get(name, name)} gives no value for "
+        f"{percent(float(np.isnan(ratio).mean()), whole=True)} of the pairs (column reason)."
         for name in dict.fromkeys(map(str, seen.data.rows.formula))
         if np.isnan(ratio := seen.data.ratios("single_stiffness", name)).any()
     ]
