@@ -56,6 +56,16 @@ class Check(NamedTuple):
         """Whether the rule is kept."""
         return self.value >= self.limit - self.slack
 
+    @property
+    def rank(self) -> tuple[int, float]:
+        """How bad a broken rule is, the smallest the worst: what cannot run, what is cut away, what is unusual."""
+        ratio = self.rule.endswith("contact ratio")
+        if self.value < 1.0 if ratio else (self.limit == 0.0 and self.rule != "undercut"):
+            return 0, 0.0 if ratio else 1.0
+        if self.rule == "undercut":
+            return 1, 0.0
+        return 2, self.value / self.limit if self.limit else 0.0
+
 
 def tip_thickness(gear: Gear) -> float:
     """Normal tooth thickness on the circle where the involute ends [m]."""

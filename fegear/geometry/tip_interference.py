@@ -49,8 +49,16 @@ class Interference:
         if self.fillet_gap < 0.0:
             return f"{tip} interferes with the mating fillet by {-self.fillet_gap * 1e3:.4g} mm"
         if self.below_form_circle:
-            return f"{tip} contacts the mating flank below the root form circle; the path of contact is shortened"
+            return below_form_sentence(self.tip_of)
         return ""
+
+
+def below_form_sentence(tip_of: Member) -> str:
+    """What is said of a tip that would touch the mate below the start of its involute, of geometry and under load."""
+    return (
+        f"the tip of the {MEMBER_WORDS[tip_of]} reaches below the root form circle of the mating gear (interference); "
+        "the path of contact ends there, without corner contact at that end"
+    )
 
 
 #: The other gear of a pair.

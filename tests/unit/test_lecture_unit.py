@@ -15,12 +15,12 @@ from fegear.window.on_gears import gears_in_mesh
 from fegear.window.order import HarrisMaps
 
 
-def scene_of(*, teeth=14, shift=0.0, torque="400 N*m", results=("geometry",)):
+def scene_of(*, teeth=14, shift=0.0, torque="400 N*m", results=("geometry",), **effects):
     gear = {"module": "5 mm", "face_width": "50 mm"}
     gears = {name: {"teeth": z, "profile_shift": x, **gear} for name, z, x in (("p", teeth, shift), ("w", 37, -shift))}
     pair = {"driver": "p", "driven": "w", "torque": torque, "compliance": {"source": "weber-banaschek"}}
     document = {"title": "a lecture", "results": list(results), "gear": gears, "pair": {"I": pair}}
-    return build_scene({**document, "effects": {"hertz": "load-dependent"}}, "lecture", Path())
+    return build_scene({**document, "effects": {"hertz": "load-dependent", **effects}}, "lecture", Path())
 
 
 def run(scene):
@@ -58,6 +58,19 @@ def test_an_exercise_has_the_transmission_error_at_half_the_torque():
         expected = next(value for value in one.values if value.name == "I.te_peak_to_peak")
         assert found[key] == pytest.approx(expected.value, rel=5e-3)
     assert found["half"] < 0.9 * found["full"]
+
+
+def test_of_broken_rules_the_one_that_stops_the_motion_is_named():
+    found = run(scene_of(teeth=8, results=["tooth-geometry-check"])).outcomes[Task("tooth-geometry-check", "")]
+    (said,) = found.answer.sentences
+    assert " rules not met, the worst: I: transverse contact ratio is 0." in said
+    found = run(scene_of(results=["tooth-geometry-check"])).outcomes[Task("tooth-geometry-check", "")]
+    assert " of 10 rules not met: p: undercut is " in found.answer.sentences[0]
+
+
+def test_a_tip_below_the_form_circle_is_said_once():
+    found = run(scene_of(teeth=8, results=["geometry", "load-sharing"], corner_contact=True))
+    assert len([one for one in found.remarks if "reaches below the root form circle" in str(one)]) == 1
 
 
 @pytest.mark.parametrize(("teeth", "interrupted"), [(8, True), (14, False)])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.base.notes import failing, neglecting
 from fegear.case.built.members import gear_name
 from fegear.case.built.table_ends import table_end_notes
-from fegear.geometry.pair import MEMBER_WORDS, MEMBERS
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible_flanks import heavy_load
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _odd_teeth(scene: Scene, gear: str, *, wide: bool) -> list[str]:
 def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
     """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
     from fegear.case.built.rated_duty import bore_remarks, width_remarks
-    from fegear.geometry.tip_interference import below_form_circle
+    from fegear.geometry.tip_interference import below_form_circle, below_form_sentence
 
     notes: list[str] = []
     effects = scene.case.effects
@@ -102,10 +102,7 @@ def effect_notes(scene: Scene, name: str) -> tuple[str, ...]:
         notes.append(failing(f"Pair {name}: {sentence}"))
     if effects.corner_contact:
         notes += [
-            failing(
-                f"Pair {name}: tip of the {MEMBER_WORDS[member]} reaches below the root form circle of the mating gear "
-                "(interference); the path of contact ends there and no corner contact is computed at that end."
-            )
+            failing(f"Pair {name}: {below_form_sentence(member)}.")
             for member in MEMBERS
             if below_form_circle(pair, member)
         ]

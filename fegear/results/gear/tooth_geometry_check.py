@@ -127,8 +127,8 @@ class Checked:
 
     @property
     def broken(self) -> tuple[CheckRow, ...]:
-        """Those that do not hold."""
-        return tuple(row for row in self.rows if not row.check.holds)
+        """Those that do not hold, the worst first."""
+        return tuple(sorted((row for row in self.rows if not row.check.holds), key=lambda row: row.check.rank))
 
     @property
     @shows("", "number of applicable rules")
@@ -182,7 +182,8 @@ def _verdict(seen: Seen) -> Iterator[str]:
     if not broken:
         yield "Design check: the one rule is met." if count == 1 else f"Design check: all {count} rules are met."
         return
-    yield f"Design check: {len(broken)} of {count} rules not met, first {broken[0].sentence}"
+    which = ": " if len(broken) == 1 else ", the worst: "
+    yield f"Design check: {len(broken)} of {count} rules not met{which}{broken[0].sentence}"
 
 
 _TITLE = "Design check (rules of thumb)"
