@@ -185,8 +185,19 @@ def _contact_ratio(pair: GearPair) -> Exercise:
     if _same(by_tips, pair.contact_ratio):
         overlap = f"; overlap ratio {pair.overlap_ratio:.3f}" if pair.overlap_ratio else ""
         return Exercise("Geometry", question, f"{formula}{overlap}.{below}")
-    why = "because undercut, a form circle or a tip rounding ends the path of contact before a tip circle"
-    return Exercise("Geometry", question, f"{formula}; fegear: {ratio}, {why}.{below}")
+    return Exercise("Geometry", question, f"{formula}; fegear: {ratio}, because {_shortened_by(pair)}.{below}")
+
+
+def _shortened_by(pair: GearPair) -> str:
+    """What ends the path of contact before the tip circles do."""
+    found = []
+    for member, verb, x in zip(MEMBERS, ("begins", "ends"), (pair.x_start, pair.x_end), strict=True):
+        gear = pair.gear(member)
+        if abs(x - float(pair.x_of_radius(gear.form_radius, member))) < 1e-9 * pair.base_pitch:
+            undercut = undercut_of(gear)
+            cut = ", which is undercut" if undercut is not None and undercut.lost > 0.0 else ""
+            found.append(f"the path of contact {verb} at the root form circle of the {member} gear{cut}")
+    return " and ".join(found) or "the involute ends below the tip circle"
 
 
 def _sliding(mesh: _Mesh) -> Exercise:

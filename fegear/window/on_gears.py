@@ -36,6 +36,11 @@ if TYPE_CHECKING:
 _POINTS = 25
 
 
+#: The scale of root stress ends at this times the largest tension: where a path of contact begins at a root form circle
+#: the end of the fillet has the stress below the load.
+_BEYOND = 2.0
+
+
 #: Largest number of sixteen bits.
 _MOST = 32767
 
@@ -83,6 +88,8 @@ def _stress(data: StressInMeshData) -> dict[str, Any]:
             at, values = (places, gear.stress[side]) if data.z.size else _along(places, gear.stress[side])
             fillets.append({"member": member, "places": millimetres(at), "stress": packed(values * 1e-6)})
     limit = max(float(np.nanmax(np.abs(s))) for gear in data.gears.values() for s in gear.stress.values())
+    if largest.value > 0.0:
+        limit = min(limit, _BEYOND * largest.value)
     return {
         "roll": _rolled(data.roll, start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
         "limit": limit * 1e-6, "z": millimetres(data.z),

@@ -98,7 +98,9 @@ def test_undercut_has_the_rule_of_textbooks_beside_that_of_the_rack():
 def test_a_shortened_path_and_thinner_teeth_are_said_beside_the_formula():
     shaved = {"teeth": 11, "thickness_allowance": "90 um"}
     found = exercises_of_pair(pair_scene(shaved, {"teeth": 35}), "I")
-    assert "; fegear: " in answer(found, "contact ratio")
+    assert "because the path of contact begins at the root form circle of the driver gear, which is undercut." in (
+        answer(found, "contact ratio")
+    )
     assert "(fegear: " in answer(found, "tip circle")
     assert f"thinner teeth give {0.09 * math.cos(ALPHA):.4g} mm" in answer(found, "centre distance")
 

@@ -215,6 +215,7 @@ def test_what_the_page_is_sent_is_small_and_keeps_the_largest_value(ran):
     data = ran.outcomes[STRESS].data
     assert stress["largest"]["value"] == pytest.approx(data.largest.value * 1e-6)
     assert stress["limit"] >= stress["largest"]["value"]
+    assert stress["limit"] <= 2.0 * stress["largest"]["value"]
     assert stress["largest"]["at"] in stress["roll"]
     values = np.stack([_unpacked(one["stress"]) for one in stress["fillets"]])
     assert values.shape[1:3] == (len(stress["roll"]), len(stress["pairs"]))
