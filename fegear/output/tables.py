@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -135,13 +136,23 @@ def row_lines(table: Table) -> list[str]:
 
 
 def printed_lines(tables: Sequence[Table]) -> list[str]:
-    """Lines for the terminal of several tables; of the same ones for several pairs each has its title above it."""
+    """Lines for the terminal of several tables; of the same ones for several pairs each has its title above it.
+
+    Estimated errors are left to the files.
+    """
+    tables = [_without_errors(table) for table in tables]
     kinds = [tuple(column.head for column in table.columns[:2]) for table in tables]  # further ones are errors, or none
     return [
         line
         for table, kind in zip(tables, kinds, strict=True)
         for line in (*((f"{table.title}:",) if kinds.count(kind) > 1 else ()), *sheet_lines(table))
     ]
+
+
+def _without_errors(table: Table) -> Table:
+    """The same without estimated errors of its other columns."""
+    errors = {f"{column.name}_error" for column in table.columns}
+    return replace(table, columns=tuple(column for column in table.columns if column.name not in errors))
 
 
 def write_table(folder: Path, table: Table) -> Path:

@@ -140,8 +140,11 @@ def test_the_equal_reliefs_named_for_comparison_have_the_minimum_of_what_is_stat
     chart = ReliefChart(amounts, lengths, loads, 2e-3, effective, peaks)
     tip = SimpleNamespace(relief=SimpleNamespace(amount=1e-6), member="driver")
     pair = SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(base_radius=0.1)))
-    asked = SimpleNamespace(said_by_relief=True, part=SimpleNamespace(shape="linear"))
-    (said,) = _optimum_in_words(Seen(SimpleNamespace(chart=chart, tips=[tip], pair=pair), asked, "I"))
+    asked = SimpleNamespace(said_by_relief=False, part=SimpleNamespace(shape="linear"), metric="peak_to_peak")
+    data = SimpleNamespace(chart=chart, tips=[tip], pair=pair, left=lambda _metric: 2e-6)
+    _, said = _optimum_in_words(Seen(data, asked, "I"))
+    asked.said_by_relief = True  # the design states better ones, one for each gear
+    assert list(_optimum_in_words(Seen(data, asked, "I"))) == []
     assert said == (
         "Pair I: for comparison, equal linear tip relief on both gears, 3 µm over 2 mm, gives 4 µm at 10 N m, 1 µm at "
         "5 N m, peak to peak."

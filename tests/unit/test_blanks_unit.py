@@ -39,6 +39,12 @@ def test_the_terminal_has_the_digits_that_a_person_reads():
     assert [line.split()[-1] for line in sheet_lines(table)] == ["2.1681", "605.4", "176.8659"]
 
 
+def test_the_terminal_leaves_errors_of_other_columns_to_the_files():
+    names = ("amount", "amount_error", "spacing_error")
+    table = Table("ground", tuple(Column(name, np.array([1e-6]), "um") for name in names))
+    assert [line.split()[0] for line in printed_lines([table])] == ["amount", "spacing_error"]
+
+
 def test_equal_tables_of_several_pairs_have_their_titles_in_the_terminal():
     """Two blocks of safety factors followed each other without a word of whose they were."""
     one, two = (Table(f"lives_{name}", TABLE.columns, f"Lives of pair {name}") for name in ("I", "II"))

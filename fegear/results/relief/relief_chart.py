@@ -57,11 +57,13 @@ class MarkedReliefs:
     Parameters
     ----------
     best_amount, best_length : ndarray, shape (1,)
-        The optimum for all loads.
+        The optimum for all loads, by A_e.
     near_amounts, near_lengths : ndarray, shape (N,)
         Boundary of those that are equally good, nan between its parts.
     present_amounts, present_lengths : ndarray, shape (M,)
         Tip reliefs of the case inside the chart, each gear on its own.
+    peak_amount, peak_length : ndarray, shape (1,)
+        The optimum of the chart's own points for all loads by the peak-to-peak value.
     """
 
     best_amount: Array
@@ -70,6 +72,8 @@ class MarkedReliefs:
     near_lengths: Array
     present_amounts: Array
     present_lengths: Array
+    peak_amount: Array
+    peak_length: Array
 
 
 @dataclass(frozen=True)
@@ -190,7 +194,8 @@ class ReliefChartData:
         amount, length = self.finer.best()
         boundary = self.finer.boundary()
         present = np.array([one for one in self._present if _inside(chart, *one)]).reshape(-1, 2).T
-        return MarkedReliefs(np.array([amount]), np.array([length]), *boundary, *present)
+        peak = (np.array([one]) for one in chart.best("peak_to_peak"))
+        return MarkedReliefs(np.array([amount]), np.array([length]), *boundary, *present, *peak)
 
     @property
     def _present(self) -> Iterator[tuple[float, float]]:
@@ -279,6 +284,8 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
             f"Pair {seen.name}: optimum for all loads: {amounts} ({microns(seen.data.left(seen.asked.metric))} µm "
             "remain at the maximum load)."
         )
+    if seen.asked.said_by_relief:  # its answer states better ones, one for each gear
+        return
     i, j = chart.best_point("peak_to_peak")  # what the sentence states, and the design minimises
     length = figures(chart.lengths[j] * chart.unit_length * 1e3, 2)
     torque = chart.loads * seen.data.pair.pair.driver.base_radius
@@ -320,8 +327,9 @@ CHART_SHEET = Sheet(
             "relief_chart_{name}", "Tip relief chart of pair {name}",
             lambda seen: seen.said(
                 "Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White with grey "
-                "edges: length with minimum A_e for each amount; star: optimum for all loads (relative to load); "
-                "dashed: within 10 % of it; diamonds: tip reliefs of the case. Dotted: "
+                "edges: length with minimum A_e for each amount; star: optimum for all loads (relative to load) by "
+                "A_e, square: by the peak-to-peak value, as designs are; dashed: within 10 % of A_e; diamonds: tip "
+                "reliefs of the case. Dotted: "
             ) + f"{seen.data.unit_words} at {load_words(seen.data.pair.nominal)}, {seen.said('{d.delta:.4g}')}.",
             (
                 Over(
@@ -345,8 +353,13 @@ CHART_SHEET = Sheet(
                             look={"width": 2.2, "markers": False},
                         ),
                         Line(
-                            "chart.amounts", "optimum for all loads", "orange", si="marked.best_amount",
-                            x_si="marked.best_length", kind="points", look={"symbol": "star", "size": 13.0},
+                            "chart.amounts", lambda _: "optimum for all loads by A_{e}", "orange",
+                            si="marked.best_amount", x_si="marked.best_length", kind="points",
+                            look={"symbol": "star", "size": 13.0},
+                        ),
+                        Line(
+                            "chart.amounts", "by peak to peak", "sky", si="marked.peak_amount",
+                            x_si="marked.peak_length", kind="points", look={"symbol": "square", "size": 8.0},
                         ),
                         Line(
                             "chart.amounts", "present relief of each gear", "red", si="marked.present_amounts",

@@ -117,8 +117,15 @@ def left_over_range(
             finer=design.finer if label == best else 0, decisive=design.decisive if label == best else (),
             share=shares, rounded=rounded.get(label),
         )
-        for label, found in design.over_range.items()
+        for label, found in _best_first(design).items()
     }  # fmt: skip
+
+
+def _best_first(design: ReliefDesign) -> dict[str, tuple[TransmissionError, ...]]:
+    """What is left without relief, with the present one, with those to grind, the best first, and with the others."""
+    shapes = [f"{shape} tip relief" for shape in design.shapes] if design.ground else []
+    order = dict.fromkeys(("no relief", "present relief", *shapes, "designed", *design.over_range))
+    return {label: design.over_range[label] for label in order if label in design.over_range}
 
 
 def _errors(

@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
 #: Views of the Harris map in their order; others stand behind.
 _VIEWS = ("designed", "linear tip relief", "parabolic tip relief", "no relief", "diagonal only")
+#: Reliefs by theory, in words.
+_WORDS = {"designed": "exact relief by theory", "diagonal only": "exact relief without tooth coupling"}
 #: A transmission error below this is written as none [um].
 _NOTHING = 1e-6
 
@@ -231,6 +233,11 @@ class ReliefShown:
         design = self.data.design
         return float(design.rounded[design.shapes[0]][self.at_design_load]) if design.rounded else None
 
+    @property
+    def rounded_error(self) -> float | None:
+        """Of this: that of the relief itself [m]."""
+        return next(iter(self.best_first.values())).error.peak_to_peak
+
     @cached_property
     def over_range(self) -> dict[str, LeftOverRange]:
         """What each relief leaves at each torque."""
@@ -304,7 +311,7 @@ def _key(seen: Seen) -> str:
 
 def _meant(seen: Seen) -> str:
     """What a relief is, in words."""
-    return "exact relief by theory, for the design load only" if seen.key == "designed" else seen.key
+    return _WORDS.get(seen.key, seen.key)
 
 
 def _is_taken_away(seen: Seen) -> bool:
@@ -399,7 +406,7 @@ RELIEF_SHEET = Sheet(
                meaning="maximum of both gears, design load"),
         Number("hertz_pressure", of="least_stress", name="design_hertz_pressure"),
         tip_numbers("best_tips", "{one.shape}_tip_"),
-        Number("te.peak_to_peak", of="left.designed", si="rounded", name="te_peak_to_peak.as_rounded",
+        Number("te.peak_to_peak", "rounded_error", of="left.designed", si="rounded", name="te_peak_to_peak.as_rounded",
                meaning="relief to grind with the rounded numbers of the grinding table, design load"),
         Each(
             "best_first",
