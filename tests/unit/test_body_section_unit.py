@@ -106,6 +106,9 @@ def test_every_dimension_is_as_long_as_it_says(drawn):
         tip, vertex, foot = line[:, :3].T
         (x, y), (u, v) = tip - vertex, foot - vertex
         assert math.degrees(math.atan2(x, -y) - math.atan2(u, -v)) == pytest.approx(size)
+        half_way = 0.55 * (vertex[1] - said.get("hub_radius", said["bore_radius"]))  # of the web, on a circle about it
+        away = np.hypot(*(line - vertex[:, None]))
+        assert away[np.isfinite(away) & (away > 0.0)] == pytest.approx(half_way)
 
 
 @given(bodies())
