@@ -93,12 +93,25 @@ def test_a_shaft_between_two_stages_gets_no_torque_from_rounded_ones():
     )
 
 
-def test_a_yield_strength_that_is_not_written_is_said():
+def test_yield_strengths_come_back_and_a_required_safety_is_said_to_be_lost():
     document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
-    document["shaft"]["mid"]["yield_strength"] = "700 MPa"
-    _, remarks = there_and_back(build_scene(document, "box", Path()))
-    (said,) = (one for one in remarks if one.startswith("Shaft "))
-    assert said == "Shaft mid: yield_strength not written to REXS."
+    document["shaft"]["mid"] |= {"yield_strength": "700 MPa", "safety_yield": 1.5}
+    scene = build_scene(document, "box", Path())
+    again, remarks = there_and_back(scene)
+    assert [one for one in remarks if one.startswith("Shaft ")] == ["Shaft mid: safety_yield not written to REXS."]
+    assert same(again.case.shaft["mid"].yield_strength, 700e6)
+    written = {name for name, one in again.case.shaft.items() if "yield_strength" in one.model_fields_set}
+    assert written == {"mid"}  # what is assumed is not written as if it were known
+
+
+@pytest.mark.parametrize(("material", "kept"), [("through-hardened-alloy-steel", True), ("case-hardened-steel", False)])
+def test_a_yield_strength_of_teeth_comes_back_where_their_rating_asks_for_it(material, kept):
+    document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    gear = next(iter(document["gear"]))
+    hardness = {"hardness": "320 HV"} if kept else {}
+    document["gear"][gear]["strength"] = {"material": material, "yield_strength": "700 MPa", **hardness}
+    again, _ = there_and_back(build_scene(document, "box", Path()))
+    assert again.case.gear[gear].strength.yield_strength == (pytest.approx(700e6) if kept else None)
 
 
 def test_what_has_no_attribute_is_said_and_a_case_without_pairs_refused():

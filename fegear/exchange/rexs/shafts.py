@@ -182,6 +182,8 @@ def shaft_table(
         keys.append(Key("rigid", "true", f"elastic_modulus of {found[0].said} (rigid body)"))
     elif elastic:
         keys.append(Key("material", inline(**elastic), found[0].said))
+    if found and (limit := said.number(found[0], "stress", "yield_strength")):
+        keys.append(Key("yield_strength", quantity(limit, "MPa"), found[0].said))
     if on.gears:
         places = listed(inline(gear=text(gear), at=along(at)) for gear, at in on.gears)
         keys.append(Key("gears", places, "mid-face"))

@@ -349,6 +349,7 @@ def material_keys(said: Said, gear: Component) -> list[Key]:
         one, "stress", "nominal_stress_number_tooth_root_iso_6336_2016",
         "nominal_stress_number_tooth_root_iso_6336_2003", "endurance_limit_root",
     )  # fmt: skip
+    limit = said.number(one, "stress", "yield_strength")
     cased = kind.startswith(("case", "induction", "nitr"))
     strength = inline(
         material=text(kind),
@@ -357,6 +358,7 @@ def material_keys(said: Said, gear: Component) -> list[Key]:
         core_hardness=text(f"{core[0]:g} {core[1]}") if core and cased else None,
         contact=quantity(contact, "MPa") if contact else None,
         bending=quantity(bending, "MPa") if bending else None,
+        yield_strength=quantity(limit, "MPa") if limit and not cased else None,
     )
     return [
         Key("material", inline(**keys), f"{one.said} {designation}"),

@@ -33,7 +33,7 @@ _GEAR = frozenset(
         "over_pins", "chordal_thickness", "chordal_height",
     }
 )  # fmt: skip
-_STRENGTH = frozenset({"material", "steel", "hardness", "core_hardness", "contact", "bending"})
+_STRENGTH = frozenset({"material", "steel", "hardness", "core_hardness", "contact", "bending", "yield_strength"})
 _RELIEF = frozenset({"tip", "root", "crowning"})
 _LEAD = frozenset({"crowning", "slope", "end_relief"})
 #: What a rim is where nothing is said of it [modules]; so much of a module is round-off.
@@ -211,6 +211,7 @@ def _material(written: Written, name: str, part: GearPart, gear: Part) -> None:
         "stress",
         allowable_stress_number_contact_iso_6336_2016=_or_none(strength.contact),
         nominal_stress_number_tooth_root_iso_6336_2016=_or_none(strength.bending),
+        yield_strength=_or_none(strength.yield_strength),
     )
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _BEARING = frozenset({"radial", "axial", "tilting", "fixed", "radial_clearance", "elements", "life",
                       "designation", "catalogue"})  # fmt: skip
 _SHAFT = frozenset({"axis", "start", "sections", "material", "rigid", "gears", "bearings", "coupling", "loads",
-                    "clockwise"})  # fmt: skip
+                    "clockwise", "yield_strength"})  # fmt: skip
 #: Stiffness of a body that does not bend [Pa]: the import takes it for rigid.
 _RIGID = 1e16
 #: Every shaft lies along u; where v begins does not matter.
@@ -65,7 +65,9 @@ def write_shaft(
         material.say("stress", elastic_modulus=_RIGID)
     else:
         write_elasticity(material, part.material)
-    if part.rigid or part.material.model_fields_set:
+    yields = "yield_strength" in part.model_fields_set
+    material.say("stress", yield_strength=part.yield_strength if yields else None)
+    if part.rigid or yields or part.material.model_fields_set:
         written.relate("reference", origin=made, referenced=material)
     else:
         written.parts.remove(material)
