@@ -47,18 +47,18 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="gear, pair, relief, helical, gearbox, two-stage-gearbox, train, planetary, ring, rack or study. "
-            "Default: from the numbers of teeth; a gearbox of four has two stages.",
+            help="gear, pair, relief, helical, gearbox, two-stage-gearbox, three-stage-gearbox, train, planetary, "
+            "ring, rack or study. Default: from the numbers of teeth; a gearbox of four has two stages, of six three.",
             autocompletion=complete_kinds,
         ),
     ] = None,
     teeth: Annotated[
         list[str] | None,
-        typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four."),
+        typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four, of three all six."),
     ] = None,
     ratio: Annotated[
         str | None,
-        typer.Option("--ratio", help="Total ratio in place of --teeth, e.g. 14; of a gearbox above 6 by two stages."),
+        typer.Option("--ratio", help="Total ratio in place of --teeth, e.g. 14; of a gearbox above 6 by two stages, above 36 by three."),
     ] = None,
     module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
@@ -67,7 +67,7 @@ def new(
         typer.Option(
             "--profile-shift",
             metavar="X [X]",
-            help="Profile shift coefficients of driver and driven gear; of two stages two (of each) or all four.",
+            help="Profile shift coefficients of driver and driven gear; of several stages two (for each) or all.",
         ),
     ] = None,
     rack: Annotated[str | None, typer.Option("--rack", metavar="A..D", help="Basic rack of ISO 53.")] = None,

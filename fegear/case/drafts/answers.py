@@ -12,14 +12,14 @@ from fegear.base.errors import InputError
 from fegear.base.unit_text import plain_number
 from fegear.base.units import to_si
 from fegear.case.drafts.first_size import face_for, module_for
-from fegear.case.drafts.kinds import KINDS, TWO_STAGES
+from fegear.case.drafts.kinds import KINDS, STAGES, THREE_STAGES, TWO_STAGES
 from fegear.case.nearest import nearest
 from fegear.geometry.rack import BasicRack
 
 #: Line load that is assumed where no torque is given [N/m]: what case-hardened gears carry for ever.
 _LINE_LOAD = 200e3
-#: Share of it on the first of two stages: the second one has about as much as one of a single stage.
-_FIRST_STAGE = 0.5
+#: Share of it on the first stage of each kind: the last one has about as much as one of a single stage.
+_FIRST_STAGE = {TWO_STAGES: 0.5, THREE_STAGES: 0.35}
 
 
 #: Face width that is assumed, in modules.
@@ -27,7 +27,7 @@ _FACE = 10.0
 
 
 #: Kinds whose gears are helical.
-HELICAL = ("helical", "gearbox", TWO_STAGES)
+HELICAL = ("helical", *STAGES)
 
 
 #: Kinds whose driven gear may be a ring gear.
@@ -75,7 +75,12 @@ class Question(NamedTuple):
 
 
 #: How the module is asked for, where that is of one stage only.
-_MODULES = {TWO_STAGES: "Normal module of the first stage"}
+_MODULES = dict.fromkeys((TWO_STAGES, THREE_STAGES), "Normal module of the first stage")
+#: Teeth of gearboxes of several stages that are asked for.
+_TEETH = {
+    TWO_STAGES: ("Teeth of both pinions and wheels", "21 53 19 61"),
+    THREE_STAGES: ("Teeth of all pinions and wheels", "21 101 20 63 21 52"),
+}
 
 #: Speed of the pinion that is assumed, also for the torque of a power.
 ASSUMED_SPEED = "1500 rpm"
@@ -163,13 +168,18 @@ class Answers:
     @property
     def sized(self) -> bool:
         """Whether module and face width follow from a given torque."""
-        return self.kind in ("gearbox", TWO_STAGES) and self.assumed("module") and not self.assumed("torque")
+        return self.kind in STAGES and self.assumed("module") and not self.assumed("torque")
+
+    @property
+    def rounded(self) -> bool:
+        """Whether profile shifts make centre distances whole: of a gearbox for a torque, where none are given."""
+        return self.kind in STAGES and self.assumed("profile_shift") and not self.assumed("torque")
 
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: two are those of each stage, else the last one is repeated."""
         found, gears = _split(self[name]), len(KINDS[self.kind].gears)
-        if self.kind == TWO_STAGES and len(found) == 2:
-            found *= 2
+        if len(found) == 2:
+            found *= STAGES.get(self.kind, 1)
         return (found + found[-1:] * gears)[:gears]
 
     def si(self, name: str) -> float:
@@ -220,8 +230,10 @@ def kind_of(kind: str | None, given: Mapping[str, str]) -> str:
         Answers by the name of their question.
     """
     gears = len(_split(given.get("teeth", "")))
-    if kind in (None, "gearbox") and gears == len(KINDS[TWO_STAGES].gears):
-        return TWO_STAGES
+    if kind in (None, "gearbox"):
+        for several in (TWO_STAGES, THREE_STAGES):
+            if gears == len(KINDS[several].gears):
+                return several
     return kind or ("helical" if given.get("helix_angle") else "gear" if gears == 1 else "pair")
 
 
@@ -246,8 +258,8 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             *(
                 ("Teeth of sun and planet", "25 29")
                 if kind == "planetary"
-                else ("Teeth of both pinions and wheels", "21 53 19 61")
-                if kind == TWO_STAGES
+                else _TEETH[kind]
+                if kind in _TEETH
                 else ("Teeth of pinion and wheel", "21 53")
                 if several
                 else ("Teeth", "60" if kind == "ring" else "28")
@@ -278,19 +290,19 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
             prompt, default, dimension = _ALL[name]
             default = _NONE if name == "helix_angle" and kind not in HELICAL else default
             plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
-            plural = "s of all four gears" if plural and kind == TWO_STAGES else plural
+            plural = "s of all gears" if plural and STAGES.get(kind, 1) > 1 else plural
             found.append(Question(name, prompt + plural, default, dimension))
     return found
 
 
 def _line_load(kind: str) -> float:
-    return (_FIRST_STAGE if kind == TWO_STAGES else 1.0) * _LINE_LOAD
+    return _FIRST_STAGE.get(kind, 1.0) * _LINE_LOAD
 
 
 def _module(kind: str, given: Mapping[str, str]) -> str:
     """The module that is assumed: of a gearbox that for its torque, where there is one."""
     torque = _readable(given.get("torque", ""), "torque")
-    if kind not in ("gearbox", TWO_STAGES) or not torque > 0.0:
+    if kind not in STAGES or not torque > 0.0:
         return "3 mm"
     teeth = plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0
     return f"{module_for(torque, int(teeth)) * 1e3:.6g} mm"
@@ -299,7 +311,7 @@ def _module(kind: str, given: Mapping[str, str]) -> str:
 def _face(kind: str, given: Mapping[str, str], module: float) -> float:
     """The face width that is assumed [m]: of a gearbox whose module follows from its torque what that needs."""
     torque = _readable(given.get("torque", ""), "torque")
-    if kind not in ("gearbox", TWO_STAGES) or "module" in given or not torque > 0.0:
+    if kind not in STAGES or "module" in given or not torque > 0.0:
         return _FACE * module
     teeth = plain_number((_split(given.get("teeth", "21")) or ["21"])[0]) or 21.0
     return face_for(torque, int(teeth), module)

@@ -31,8 +31,10 @@ _LOADED = (*_TOOTH, "torque", "speed")
 
 _RELIEVED = (*_LOADED, "tip_relief", "relief_length")
 
-#: What a gearbox of two stages is called.
-TWO_STAGES = "two-stage-gearbox"
+#: What gearboxes of several stages are called.
+TWO_STAGES, THREE_STAGES = "two-stage-gearbox", "three-stage-gearbox"
+#: Stages of each kind of gearbox.
+STAGES: Mapping[str, int] = MappingProxyType({"gearbox": 1, TWO_STAGES: 2, THREE_STAGES: 3})
 
 #: Kinds by name.
 KINDS: Mapping[str, Kind] = MappingProxyType({
@@ -46,6 +48,10 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "life")),
     "two-stage-gearbox": Kind("gearbox of two helical stages: three shafts, six bearings by designation, rating",
                               ("pinion_1", "wheel_1", "pinion_2", "wheel_2"), ("helix_angle", *_RELIEVED, "life")),
+    "three-stage-gearbox": Kind(
+        "gearbox of three helical stages: four shafts, eight bearings by designation, rating",
+        ("pinion_1", "wheel_1", "pinion_2", "wheel_2", "pinion_3", "wheel_3"), ("helix_angle", *_RELIEVED, "life"),
+    ),
     "train": Kind("drive train dynamics: motor, gear pair, driven machine; resonances, dynamic factor",
                   ("pinion", "wheel"), _RELIEVED),
     "planetary": Kind("planetary gear set: planet load sharing, phasing, modes, vibration", ("sun", "planet"),

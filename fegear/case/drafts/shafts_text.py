@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fegear.base.units import from_si
-from fegear.case.drafts.two_stages import ChosenBearing, LaidOut, PlacedShaft
+from fegear.case.drafts.placed_shafts import ChosenBearing, PlacedShaft
+from fegear.case.drafts.stages import LaidOut, gears_on_shafts
 from fegear.case.text_file import toml_string
 
+#: Names of shafts by the number of stages.
+_SHAFTS = {
+    1: ("input", "output"), 2: ("input", "middle", "output"), 3: ("input", "middle_1", "middle_2", "output"),
+}  # fmt: skip
 _SHAFT = """\
 [shaft.{name}]{note}
 {axis}sections = [
@@ -45,9 +50,14 @@ def amount(value: float, unit: str) -> str:
     return f"{float(f'{value * from_si(unit):.2g}'):g} {unit}"
 
 
-def shafts_text(found: LaidOut, names: Sequence[str], gears: Sequence[str], on: Sequence[tuple[int, ...]]) -> str:
-    """Shafts of these names with their gears, `on` each, and bearings."""
-    shafts = "\n".join(_placed_shaft(found, n, names, [(gears[at], at // 2) for at in own]) for n, own in enumerate(on))
+def shafts_text(found: LaidOut, gears: Sequence[str]) -> str:
+    """Shafts with their gears, by names in order of stages, and bearings."""
+    stages = len(found.stages)
+    names = _SHAFTS[stages]
+    shafts = "\n".join(
+        _placed_shaft(found, n, names, [(gears[2 * stage + member], stage) for stage, member in own])
+        for n, own in enumerate(gears_on_shafts(stages))
+    )
     bearings = "\n".join(
         _bearing(f"{name}_{role}", role, bearing, lasts=one.lasts)
         for name, one in zip(names, found.shafts, strict=True)

@@ -13,9 +13,10 @@ from string import Template
 
 from fegear.base.errors import GeometryError
 from fegear.case.drafts.answers import HELICAL, Answers, ends
-from fegear.case.drafts.kinds import KINDS, TWO_STAGES
+from fegear.case.drafts.kinds import KINDS, STAGES
 from fegear.case.drafts.shafts_text import amount, length, shafts_text
-from fegear.case.drafts.two_stages import LaidOut, centre_distance, laid_out, two_stages, with_room
+from fegear.case.drafts.stage_sizes import centre_distance
+from fegear.case.drafts.stages import LaidOut, laid_out, staged, with_room
 from fegear.case.text_file import toml_string
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import USUAL_RING_RIM
@@ -163,13 +164,13 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         TOML with comments.
     """
     kind = KINDS[answers.kind]
-    if answers.kind in ("gearbox", TWO_STAGES):
+    if answers.kind in STAGES:
         answers = with_room(answers)
     file = f"{stem}.toml"
     teeth = "/".join(answers.numbers("teeth"))
-    stages = two_stages(answers) if answers.kind == TWO_STAGES else None
+    stages = staged(answers) if STAGES.get(answers.kind, 1) > 1 else None
     modules = [answers["module"]] if stages is None else [one["module"] for one in stages.stages]
-    module = " and ".join(dict.fromkeys(modules))
+    module = ", ".join(dict.fromkeys(modules)).replace(", ", " and ") if len(set(modules)) < 3 else _in_turn(modules)
     head = _HEAD.format(
         about=kind.about[0].upper() + kind.about[1:],
         file=file,
@@ -184,7 +185,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "gears": "" if stages else "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
         "pair": ""
         if stages or "torque" not in kind.asks or len(kind.gears) < 2
-        else _pair(answers, _placed(answers) if _whole(answers, answers) else None),
+        else _pair(answers, _placed(answers, answers) if answers.kind == "gearbox" else None),
         "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
         if answers.has("lead_error")
         else _NO_LINE_ERROR,
@@ -195,7 +196,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         **(_train(answers) if answers.kind == "train" else {}),
         **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_gearbox(answers) if answers.kind == "gearbox" else {}),
-        **(_two_stages(answers, stages) if stages else {}),
+        **(_several_stages(answers, stages) if stages else {}),
         **(_study(answers) if answers.kind == "study" else {}),
         **(_rack(answers) if answers.kind == "rack" else {}),
     }
@@ -204,7 +205,15 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
     return hint + "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
 
 
+def _in_turn(modules: list[str]) -> str:
+    """Modules of all stages, as 2, 2.5 and 4 mm."""
+    *first, last = modules
+    return f"{', '.join(one.removesuffix(' mm') for one in first)} and {last}"
+
+
 def _template(answers: Answers) -> str:
+    if STAGES.get(answers.kind, 1) > 1:
+        return "stages.toml"
     return "relief_helical.toml" if answers.kind == "relief" and answers.helical else f"{answers.kind}.toml"
 
 
@@ -327,13 +336,16 @@ def _pair(answers: Answers, other: Mapping[str, str] | None = None) -> str:
     return _PAIR.format(**{**own, **(other or {})})
 
 
-def _placed(stage: Answers) -> dict[str, str]:
-    """Centre distance in whole millimetres, and backlash, of a stage whose profile shifts make them so."""
-    distance = f"{centre_distance(stage) * 1e3:.0f} mm"
+def _placed(answers: Answers, stage: Answers) -> dict[str, str]:
+    """Centre distance of a stage of a gearbox, in whole millimetres where its profile shifts make it so; backlash."""
+    distance = length(centre_distance(stage))
+    line = f"# centre_distance = {toml_string(distance)}     # default: that of the profile shifts"
+    if _whole(answers, stage):
+        distance = f"{centre_distance(stage) * 1e3:.0f} mm"
+        line = f"centre_distance = {toml_string(distance)}     # assumed; profile shifts make it so"
     backlash = amount(_BACKLASH_OF_GEARBOX * stage.si("module"), "um")
     return {
-        "centre_distance": f"centre_distance = {toml_string(distance)}     # assumed; profile shifts make it so\n"
-        f"normal_backlash = {toml_string(backlash)}     # assumed: thinner teeth of both gears"
+        "centre_distance": f"{line}\nnormal_backlash = {toml_string(backlash)}     # assumed: thinner teeth of both gears"
     }
 
 
@@ -393,15 +405,14 @@ def _gearbox(answers: Answers) -> Mapping[str, str]:
     found, names = laid_out((answers,)), KINDS["gearbox"].gears
     gears = [_gear(answers, n, _bored(found, n)) for n in range(len(found.holes))]
     return {
-        "gears": "\n".join(gears), "shafts": shafts_text(found, ("input", "output"), names, ((0,), (1,))),
-        "operated": _operated(answers),
+        "gears": "\n".join(gears), "shafts": shafts_text(found, names), "operated": _operated(answers),
     }  # fmt: skip
 
 
 def _whole(answers: Answers, stage: Answers) -> bool:
     """Whether the centre distance of a stage is whole millimetres by assumed profile shifts."""
     distance = 1e3 * centre_distance(stage)
-    return answers.sized and "profile_shift" in answers.suited and abs(distance - round(distance)) < _ROUNDED_MM
+    return answers.rounded and "profile_shift" in answers.suited and abs(distance - round(distance)) < _ROUNDED_MM
 
 
 def _bored(found: LaidOut, at: int) -> dict[str, str]:
@@ -412,9 +423,9 @@ def _bored(found: LaidOut, at: int) -> dict[str, str]:
     return texts
 
 
-def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
-    """Gears, pairs, shafts and bearings of two stages."""
-    names, hands = KINDS[TWO_STAGES].gears, ("right", "left", "left", "right")
+def _several_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
+    """Gears, pairs, shafts and bearings of several stages."""
+    names, hands = KINDS[answers.kind].gears, ("right", "left", "left", "right")
     gears, pairs = [], []
     for stage, own in enumerate(found.stages):
         grown = {"module_note": "     # assumed: grows as the cube root of the torque",
@@ -424,26 +435,21 @@ def _two_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
         if answers.sized:
             grown = {"module_note": _SIZED if answers.assumed("module") else "",
                      "face_width_note": _SIZED if answers.assumed("face_width") else ""}  # fmt: skip
-        grown["profile_shift_note"] = _note(answers, "profile_shift")
+        grown["profile_shift_note"], before = _note(answers, "profile_shift"), "I" * stage
         for member in range(2):
             at = 2 * stage + member
-            other = {"name": names[at], "hand": hands[at], **_bored(found, at), **grown}
+            other = {"name": names[at], "hand": hands[at % 4], **_bored(found, at), **grown}
             gears.append(_gear(own, member, other))
         follows = {
-            "load": f"torque = {toml_string(own['torque'])}     # that of pair I times its ratio",
-            "speed_note": "     # that of pair I over its ratio",
+            "load": f"torque = {toml_string(own['torque'])}     # that of pair {before} times its ratio",
+            "speed_note": f"     # that of pair {before} over its ratio",
         } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
-        placed = _placed(own) if _whole(answers, own) else {}
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
         pairs.append(
-            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **placed})
+            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **_placed(answers, own)})
             + _operated(answers)
         )
-    on = ((0,), (1, 2), (3,))
-    return {
-        "gears": "\n".join(gears), "pairs": "\n".join(pairs),
-        "shafts": shafts_text(found, ("input", "middle", "output"), names, on),
-    }  # fmt: skip
+    return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": shafts_text(found, names)}
 
 
 def _planetary(answers: Answers) -> Mapping[str, str]:
