@@ -54,11 +54,16 @@ def new(
     ] = None,
     teeth: Annotated[
         list[str] | None,
-        typer.Option("--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four, of three all six."),
+        typer.Option(
+            "--teeth", metavar="N [N]", help="Of driver and driven gear, of two stages all four, of three all six."
+        ),
     ] = None,
     ratio: Annotated[
         str | None,
-        typer.Option("--ratio", help="Total ratio in place of --teeth, e.g. 14; of a gearbox above 6 by two stages, above 36 by three."),
+        typer.Option(
+            "--ratio",
+            help="Total ratio in place of --teeth, e.g. 14; of a gearbox above 6 by two stages, above 36 by three.",
+        ),
     ] = None,
     module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
     pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,

@@ -43,7 +43,10 @@ JOBS = {
     "face": Job(
         "Helical and wide gears", "Load over the face width, K_Hbeta, misalignment, lead modifications", ("helical",)
     ),
-    "gearbox": Job("Gearboxes", "Shafts, bearings and their meshes together", ("gearbox", "two-stage-gearbox", "three-stage-gearbox")),
+    "gearbox": Job(
+        "Gearboxes", "Shafts, bearings and their meshes together",
+        ("gearbox", "two-stage-gearbox", "three-stage-gearbox"),
+    ),
     "train": Job("Vibration of drive trains", "Natural frequencies, resonances, dynamic factor", ("train",)),
     "planetary": Job("Planetary sets", "Planet load sharing, phases, modes, vibration", ("planetary",)),
 }  # fmt: skip

@@ -18,13 +18,14 @@ import pytest
 import fegear.cli
 from fegear.base.errors import InputError
 from fegear.case import examples
+from fegear.case.built.bearing_room import said_of_room
 from fegear.case.built.design_range import design_range
 from fegear.case.built.shafts import gearbox_of
 from fegear.case.drafts.answers import HELICAL, Answers, kind_of, questions
 from fegear.case.drafts.first_size import face_for, module_for, with_teeth_of_ratio
-from fegear.case.drafts.kinds import KINDS, TWO_STAGES
+from fegear.case.drafts.kinds import KINDS, THREE_STAGES, TWO_STAGES
+from fegear.case.drafts.stage_sizes import centre_distance, preferred_distance
 from fegear.case.drafts.text import draft
-from fegear.case.drafts.two_stages import centre_distance
 from fegear.case.reading import build_scene, read_scene
 from fegear.contact.wide.on_shafts import EvenForces, load_gearbox
 from fegear.engine.plan import make_plan
@@ -122,14 +123,17 @@ def test_bearings_of_a_drafted_gearbox_are_chosen_for_its_life(say, tmp_path):
     assert rated["500 h"] < rated["100000 h"]
 
 
-@pytest.mark.parametrize(("ratio", "stages"), [("2.5", 1), ("6", 1), ("6.5", 2), ("14", 2), ("14:1", 2), ("36", 2)])
+@pytest.mark.parametrize(
+    ("ratio", "stages"),
+    [("2.5", 1), ("6", 1), ("6.5", 2), ("14:1", 2), ("36", 2), ("37", 3), ("60", 3), ("216", 3)],
+)
 def test_a_gearbox_for_a_ratio_has_hunting_teeth(say, tmp_path, ratio, stages):
     code, out, _ = say("new", "x", "--kind", "gearbox", "--ratio", ratio, "--power", "2.9 kW", "--no-schema")
     assert code == 0
     gears = [part.teeth for part in read_scene(tmp_path / "x.toml").case.gear.values()]
     assert len(gears) == 2 * stages
     made = math.prod(gears[1::2]) / math.prod(gears[::2])
-    assert made == pytest.approx(float(ratio.removesuffix(":1")), rel=0.002 if stages == 2 else 0.02)
+    assert made == pytest.approx(float(ratio.removesuffix(":1")), rel=0.002 if stages > 1 else 0.02)
     assert f"Teeth {'/'.join(map(str, gears))}: ratio {made:.5g}" in out
     assert all(math.gcd(*gears[k : k + 2]) == 1 for k in range(0, len(gears), 2))
 
@@ -153,7 +157,7 @@ def test_a_given_module_that_leaves_no_room_is_said(say):
     given = ("--kind", "gearbox", "--teeth", "17", "17", "--torque", "49.4 N m", "--no-schema")
     code, out, err = say("new", "x", *given, "--module", "2.5 mm")
     assert code == 0
-    assert re.search(r"intersect: radii \d+ mm, axes of shafts input and output 45.23 mm apart", out + err)
+    assert re.search(r"intersect: radii \d+ mm, axes of shafts input and output 46 mm apart", out + err)
     code, out, err = say("new", "y", *given)  # without it the module is larger
     assert code == 0
     assert "intersect" not in out + err
@@ -177,6 +181,43 @@ def test_stages_of_a_power_have_their_own_module_and_face_whole_centre_distances
             "profile_shift": f"{pinion['profile_shift']} {wheel['profile_shift']}",
         }))  # fmt: skip
         assert of_shifts == pytest.approx(scene.pairs[name].centre_distance, abs=1e-6)
+
+
+def test_a_torque_with_a_given_module_has_whole_centre_distances_and_backlash_too():
+    """They were those of no profile shift, without backlash."""
+    given = {"teeth": "19 71", "torque": "200 N*m", "module": "3 mm", "helix_angle": "14 deg"}
+    pair = tomllib.loads(draft(Answers("gearbox", given), "case"))["pair"]["I"]
+    assert (pair["centre_distance"], pair["normal_backlash"]) == ("140 mm", "120 um")  # R 20; 139.13 mm without shifts
+    drawn = tomllib.loads(draft(Answers("gearbox", {**given, "profile_shift": "0.2 0.1"}), "case"))["pair"]["I"]
+    assert "centre_distance" not in drawn  # that of the shifts of the drawing
+    assert drawn["normal_backlash"] == "120 um"
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "wanted"),
+    [(137.2, 141.0, 140.0), (141.2, 146.0, 145.0), (141.2, 144.9, 142.0), (142.0, 142.1, 142.0), (11.1, 11.3, 12.0),
+     (899.5, 905.0, 900.0), (901.0, 1003.0, 1000.0)],
+)  # fmt: skip
+def test_a_centre_distance_is_of_the_series_r_20_else_a_multiple_of_5_mm_else_whole(least, most, wanted):
+    assert preferred_distance(least * 1e-3, most * 1e-3) == pytest.approx(wanted * 1e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [40.0, 60.0, 100.0, 160.0])
+def test_three_stages_divide_a_ratio_so_that_their_gears_have_about_the_least_volume(ratio):
+    """Volume of the gears of a stage over its torque, at equal K factor: 1 + 1/u + u + u^2; no stage above 6."""
+
+    def volume(first, second):
+        torques = 1.0, first, first * second
+        stages = zip(torques, (first, second, ratio / first / second), strict=True)
+        return sum(torque * (1.0 + 1.0 / u + u + u**2) for torque, u in stages)
+
+    _, found, _ = with_teeth_of_ratio("gearbox", {"ratio": f"{ratio}"})
+    teeth = list(map(int, found["teeth"].split()))
+    own = [wheel / pinion for pinion, wheel in zip(teeth[::2], teeth[1::2], strict=True)]
+    assert max(own) <= 6.0
+    tried = [0.05 * n for n in range(30, 121)]
+    every = [volume(one, other) for one in tried for other in tried if ratio / one / other <= 6.0]
+    assert volume(*own[:2]) < 1.04 * min(every)
 
 
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 3.0, 4.4])
@@ -230,14 +271,21 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--kind", "pair", "--lead-error", "9 um"), 'is not used for a case of kind "pair"'),
         (
             ("x", "--kind", "bevel"),
-            "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, train, two-stage-gearbox",
+            "gear, gearbox, helical, pair, planetary, rack, relief, ring, study, three-stage-gearbox, train, ",
         ),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": is not used for a case of kind "gear"'),
         (("x", "--torque", "5 kW"), 'is a power; use --power "5 kW"'),
         (("x", "--torque", "5 N m", "--power", "5 kW"), "contradicts --torque"),
         (("x", "--power", "5 N m"), "is not a power"),
         (("x", "--power", "0 kW"), "must be positive"),
-        (("x", "--ratio", "50"), '--ratio = "50": is outside 3 to 36'),
+        (
+            ("x", "--ratio", "217"),
+            '--ratio = "217": is outside 10 to 216; draft three stages, at most 6 each, and type',
+        ),
+        (("x", "--ratio", "50", "--kind", "two-stage-gearbox"), "is outside 3 to 36; use --kind gearbox"),
+        (("x", "--ratio", "9", "--kind", "three-stage-gearbox"), "is outside 10 to 216; use --kind gearbox"),
+        (("x", "--ratio", "0.5", "--kind", "gearbox"), "is outside 1 to 6; choose another ratio, or specify"),
+        (("x", "--kind", "gearbox", "--teeth", *"2345678"), "must be 2, 4 or 6 numbers"),
         (("x", "--ratio", "13", "--kind", "pair"), "is outside 1 to 12"),
         (("x", "--ratio", "abc"), "must be a number"),
         (("x", "--ratio", "3", "--kind", "planetary"), "is not used"),
@@ -397,8 +445,9 @@ COARSE = ("--set", "accuracy.tolerance=2e-2")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0
-    # Flanks of two stages are dear: their shafts and rating under even loads.
-    some = ("--results", "shaft-deflection,rating", "--set", "effects.misalignment=false") if kind == TWO_STAGES else ()
+    # Flanks of several stages are dear: their shafts and rating under even loads.
+    even = ("--results", "shaft-deflection,rating", "--set", "effects.misalignment=false")
+    some = even if kind in (TWO_STAGES, THREE_STAGES) else ()
     cheap = CHEAP if kind in HELICAL else COARSE if kind == "study" else ()
     assert say("run", "case.toml", "-q", *cheap, *some)[0] == 0
     assert (tmp_path / "results" / "case" / "report.html").is_file()
@@ -528,7 +577,7 @@ def test_helical_gears_have_relief_and_crowning_unless_the_drawing_has_others_or
     """Line load and pressure at sharp edges stood on fresh reports with errors of 14 and 6 %."""
     for kind in HELICAL:
         for given, tip, crowning in (
-            ({}, "5 um", "1.5 um") if kind == TWO_STAGES else ({}, "10 um", "3 um"),
+            ({}, *{TWO_STAGES: ("5 um", "1.5 um"), THREE_STAGES: ("3.5 um", "1.1 um")}.get(kind, ("10 um", "3 um"))),
             ({"torque": "95 N m", "module": "3 mm"}, "5.1 um", "1.5 um"),
             ({"tip_relief": "20 um", "relief_length": "4 mm"}, "20 um", None),
             ({"tip_relief": "none", "relief_length": "none"}, None, None),
@@ -553,6 +602,7 @@ def test_shafts_of_a_drafted_gearbox_suit_its_gears():
     for shaft, gear, teeth in (("input", "pinion", 20), ("output", "wheel", 80)):
         one, hole = case["shaft"][shaft], mm(case["gear"][gear]["bore_radius"])
         thick, root = mm(one["sections"][1]["outer"]), teeth / turn - 2.5
+        root -= 0.04 / (2.0 * np.sin(np.radians(20.0)))  # the cutter goes deeper for half of the backlash
         assert hole == pytest.approx(min(0.5 * thick, 0.65 * root), rel=1e-5)
         length = sum(mm(part["length"]) for part in one["sections"])
         at, seats = mm(one["gears"][0]["at"]), [mm(place["at"]) for place in one["bearings"]]
@@ -635,6 +685,30 @@ def test_bearings_of_two_drafted_stages_last_and_hold_what_fits_them(given):
             rolls = bearing.rating.revolutions(np.hypot(*force[:2]), force[2])
             assert rolls * 2.0 * np.pi / speed > 20e3 * 3600.0
             assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
+
+
+def test_three_drafted_stages_have_each_the_torque_of_the_one_before_and_bearings_that_last():
+    given = {"teeth": "21 125 20 73 21 58", "torque": "49 N*m", "speed": "1460 rpm"}
+    assert kind_of("gearbox", given) == kind_of(None, given) == THREE_STAGES
+    scene = build_scene(tomllib.loads(draft(Answers(THREE_STAGES, given), "case")), "case", Path())
+    case, box, pairs = scene.case, gearbox_of(scene), list(scene.pairs.values())
+    distances = [one.centre_distance for one in pairs]
+    assert all(one * 1e3 == pytest.approx(round(one * 1e3)) for one in distances)
+    assert [shaft.axis[0] for shaft in case.shaft.values()] == pytest.approx([0.0, *np.cumsum(distances)])
+    ratios = np.cumprod([1.0, *(one.driven.teeth / one.driver.teeth for one in pairs)])
+    parts = list(case.pair.values())
+    assert [one.torque for one in parts] == pytest.approx(49.0 * ratios[:3], rel=1e-5)
+    for wheel, pinion in (("wheel_1", "pinion_2"), ("wheel_2", "pinion_3")):
+        assert case.gear[wheel].hand == case.gear[pinion].hand  # axial forces against each other
+    modules = [case.gear[f"pinion_{n}"].normal_module for n in (1, 2, 3)]
+    assert modules == sorted(modules)
+    assert not said_of_room(scene)
+    even = [EvenForces(mesh.even / mesh.load) for mesh in box.meshes]
+    (state,) = load_gearbox(box, even, [1.0])
+    for shaft, bent, speed in zip(case.shaft.values(), state.bent, parts[0].speed / ratios, strict=True):
+        for place, force in zip(shaft.bearings, bent.bearing_forces, strict=True):
+            rolls = case.bearing[place.bearing].rating.revolutions(np.hypot(*force[:2]), force[2])
+            assert rolls * 2.0 * np.pi / speed > 20e3 * 3600.0
 
 
 @pytest.mark.parametrize(

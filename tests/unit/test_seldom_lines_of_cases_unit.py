@@ -11,9 +11,9 @@ from fegear.case.built import compound as built_compound
 from fegear.case.built.odd_teeth import keyway_of
 from fegear.case.built.tip_tolerances import flank_tolerance, tip_tolerances
 from fegear.case.compound import CompoundPart, CompoundPlanetPart
-from fegear.case.drafts import two_stages
+from fegear.case.drafts import stages
 from fegear.case.drafts.first_size import MODULES
-from fegear.case.drafts.two_stages import TWO_STAGES
+from fegear.case.drafts.kinds import THREE_STAGES, TWO_STAGES
 from fegear.case.odd_tooth import KeywayPart
 from fegear.case.reading import build_scene
 from fegear.case.sizing import SizingPart
@@ -206,17 +206,36 @@ def test_a_second_stage_takes_the_first_module_of_the_series_that_has_room(monke
     """Where none has any, it is that of its torque."""
     tried = []
 
-    def laid(stages):
-        tried.append(stages[1])
-        return SimpleNamespace(stages=(stages[0], SimpleNamespace(si=lambda _name: stages[1] * 1e-3)), module=stages[1])
+    def laid(both):
+        tried.append(both[1])
+        return SimpleNamespace(stages=(both[0], SimpleNamespace(si=lambda _name: both[1] * 1e-3)), module=both[1])
 
-    monkeypatch.setattr(two_stages, "_first", lambda _answers: "first")
-    monkeypatch.setattr(two_stages, "_second", lambda _answers, _first, least: max(least, begins))
-    monkeypatch.setattr(two_stages, "laid_out", laid)
-    monkeypatch.setattr(two_stages, "_beside", lambda draft, stage: stage == 1 and draft.module >= room)
-    found = two_stages.two_stages(None)
+    monkeypatch.setattr(stages, "_first", lambda _answers: "first")
+    monkeypatch.setattr(stages, "_next", lambda _answers, _before, _number, least: max(least, begins))
+    monkeypatch.setattr(stages, "laid_out", laid)
+    monkeypatch.setattr(stages, "_beside", lambda draft, stage: stage == 1 and draft.module >= room)
+    found = stages.staged(SimpleNamespace(kind=TWO_STAGES))
     assert tried == [one for one in MODULES if begins <= one <= room]
     assert found.module == (begins if room > MODULES[-1] else room)
+
+
+def test_of_three_stages_the_one_without_room_grows_and_the_last_one_with_it(monkeypatch):
+    """Stage 2 needs 4 mm, stage 3 then 6 mm: each step is the next module of the series for the first without room."""
+    tried = []
+
+    def laid(modules):
+        tried.append(modules)
+        return SimpleNamespace(stages=[SimpleNamespace(si=lambda _name, m=one: m * 1e-3) for one in modules])
+
+    monkeypatch.setattr(stages, "_first", lambda _answers: 2.0)
+    monkeypatch.setattr(stages, "_next", lambda _answers, before, _number, least: max(before, least))
+    monkeypatch.setattr(stages, "laid_out", laid)
+    needed = {1: 4.0, 2: 6.0}
+    monkeypatch.setattr(stages, "_beside", lambda draft, n: draft.stages[n].si("module") >= needed[n] * 1e-3)
+    stages.staged(SimpleNamespace(kind=THREE_STAGES))
+    assert tried == [
+        (2.0, 2.0, 2.0), (2.0, 2.5, 2.5), (2.0, 3.0, 3.0), (2.0, 4.0, 4.0), (2.0, 4.0, 5.0), (2.0, 4.0, 6.0),
+    ]  # fmt: skip
 
 
 def test_axes_have_room_for_bearings_and_the_wheel_beside_the_shaft(monkeypatch):
@@ -231,30 +250,32 @@ def test_axes_have_room_for_bearings_and_the_wheel_beside_the_shaft(monkeypatch)
             shafts=shafts, distances=distances, stages=[SimpleNamespace(si=lambda _name: 2e-3)] * len(distances)
         )
 
-    monkeypatch.setattr(two_stages, "_tips", lambda _stage: (0.02, 0.095))
-    gap = two_stages._APART * 2e-3
+    monkeypatch.setattr(stages, "tip_radii", lambda _stage: (0.02, 0.095))
+    gap = stages._APART * 2e-3
     assert gap > 0.0
     for first, second, apart in (
         (0.0701, 0.1151, True), (0.0699, 0.1151, False), (0.0701, 0.1149, False), (0.2, 0.2, True)
     ):  # fmt: skip
-        assert two_stages._apart(laid((first + gap, second + gap))) is apart
-    assert two_stages._apart(laid((0.0701 + gap,)))
+        assert stages._apart(laid((first + gap, second + gap))) is apart
+    assert stages._apart(laid((0.0701 + gap,)))
     shorter = [laid((0.2, 0.0801 + gap)), laid((0.2, 0.0799 + gap))]  # bearings of 80 mm on both
-    monkeypatch.setattr(two_stages, "_tips", lambda _stage: (0.02, 0.01))
-    assert [two_stages._apart(one) for one in shorter] == [True, False]
+    monkeypatch.setattr(stages, "tip_radii", lambda _stage: (0.02, 0.01))
+    assert [stages._apart(one) for one in shorter] == [True, False]
 
 
 @pytest.mark.parametrize("kind", [TWO_STAGES, "gearbox"])
-@pytest.mark.parametrize("sized", [True, False])
+@pytest.mark.parametrize("rounded", [True, False])
 @pytest.mark.parametrize(
     ("given", "room", "module"), [(None, 2.5, 2.5), (None, 2.0, 2.0), (None, 99.0, 2.0), (2.0, 99.0, 2.0)]
 )
-def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypatch, kind, given, room, module, sized):
+def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(
+    monkeypatch, kind, given, room, module, rounded
+):
     @dataclass(frozen=True)
     class Given:
         kind: str
         suited: dict
-        sized: bool
+        rounded: bool
         whole: bool = False
 
         def assumed(self, _name):
@@ -266,15 +287,13 @@ def test_a_gearbox_takes_the_first_module_with_room_unless_one_is_given(monkeypa
         def __getitem__(self, name):
             return {"torque": "50 N*m"}[name]
 
-    laid = {TWO_STAGES: lambda answers: answers, "gearbox": lambda answers: answers[0]}
-    monkeypatch.setattr(two_stages, "two_stages", laid[TWO_STAGES] if kind == TWO_STAGES else None)
-    monkeypatch.setattr(two_stages, "laid_out", laid["gearbox"] if kind != TWO_STAGES else None)
-    monkeypatch.setattr(two_stages, "_apart", lambda one: one.si("module") >= (room - 1e-6) * 1e-3)
-    monkeypatch.setattr(two_stages, "with_whole_distances", lambda one: replace(one, whole=True))
-    start = Given(kind, {"module": "2 mm"}, sized)
-    found = two_stages.with_room(start)
+    monkeypatch.setattr(stages, "staged", lambda answers: answers)
+    monkeypatch.setattr(stages, "_apart", lambda one: one.si("module") >= (room - 1e-6) * 1e-3)
+    monkeypatch.setattr(stages, "with_whole_distances", lambda one: replace(one, whole=True))
+    start = Given(kind, {"module": "2 mm"}, rounded)
+    found = stages.with_room(start)
     assert found.si("module") == pytest.approx(module * 1e-3)
-    assert found.whole is (sized and given is None)  # distances are whole where nobody has given a size
+    assert found.whole is rounded
     assert (found.suited is start.suited) == (module == 2.0)
     assert module == 2.0 or found.suited["torque"] == "50 N*m"
 

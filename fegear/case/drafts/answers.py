@@ -76,8 +76,9 @@ class Question(NamedTuple):
 
 #: How the module is asked for, where that is of one stage only.
 _MODULES = dict.fromkeys((TWO_STAGES, THREE_STAGES), "Normal module of the first stage")
-#: Teeth of gearboxes of several stages that are asked for.
+#: Teeth that are asked for where there are more than those of a pinion and its wheel.
 _TEETH = {
+    "planetary": ("Teeth of sun and planet", "25 29"),
     TWO_STAGES: ("Teeth of both pinions and wheels", "21 53 19 61"),
     THREE_STAGES: ("Teeth of all pinions and wheels", "21 101 20 63 21 52"),
 }
@@ -127,7 +128,7 @@ class Answers:
                 raise InputError(
                     _option(name), f'"{text}"', f'is not used for a case of kind "{self.kind}"', "remove it"
                 )
-            check(asked[name], len(KINDS[self.kind].gears), text)
+            check(asked[name], len(KINDS[self.kind].gears), text, stages=self.kind == "gearbox")
         if self.has("lead_error") and not self.helical:
             told = f'"{self["lead_error"]}"'
             raise InputError("--lead-error", told, "requires a helical pair", "specify --helix-angle, or remove it")
@@ -256,11 +257,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
         Question(
             "teeth",
             *(
-                ("Teeth of sun and planet", "25 29")
-                if kind == "planetary"
-                else _TEETH[kind]
-                if kind in _TEETH
-                else ("Teeth of pinion and wheel", "21 53")
+                _TEETH.get(kind, ("Teeth of pinion and wheel", "21 53"))
                 if several
                 else ("Teeth", "60" if kind == "ring" else "28")
             ),
@@ -326,7 +323,12 @@ def ends(text: str) -> tuple[str, str] | None:
     return (f"{first} {last.lstrip('+-.0123456789eE').strip()}".strip() if _number(first) else first), last
 
 
-def check(question: Question, gears: int, text: str) -> None:
+def _numbers(gears: int, stages: bool) -> str:
+    """How many numbers of teeth a case takes; of gearboxes by stages."""
+    return "2, 4 or 6 numbers (one to three stages)" if stages else f"{gears} number{'s' * (gears > 1)}"
+
+
+def check(question: Question, gears: int, text: str, *, stages: bool = False) -> None:
     """Refuse an answer that cannot be read.
 
     Parameters
@@ -335,6 +337,8 @@ def check(question: Question, gears: int, text: str) -> None:
     gears : int
         How many gears the case has.
     text : str
+    stages : bool, optional
+        Whether more gears are those of more stages.
 
     Raises
     ------
@@ -350,7 +354,7 @@ def check(question: Question, gears: int, text: str) -> None:
         if not all(re.fullmatch(r"[0-9]{1,9}", part) for part in (*others, last)):
             raise InputError(key, f'"{text}"', "must be whole numbers", "for example 21 53")
         if len(_split(text)) != gears:
-            raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, one for each gear")
+            raise InputError(key, f'"{text}"', f"must be {_numbers(gears, stages)}, one for each gear")
     elif question.dimension == "numbers":
         if not 1 <= len(_split(text)) <= gears or not all(_number(part) for part in _split(text)):
             raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "for example 0.3")

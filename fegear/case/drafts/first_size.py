@@ -66,7 +66,8 @@ def with_teeth_of_ratio(kind: str | None, given: Mapping[str, str]) -> tuple[str
     told = f'"{text}"'
     if "teeth" in found:
         raise InputError("--ratio", told, "contradicts --teeth", "remove one of them")
-    if kind not in (None, *_LEAST) and (kind not in KINDS or len(KINDS[kind].gears) != 2 or kind == "planetary"):
+    several = kind is None or kind in _LEAST
+    if not several and (kind not in KINDS or len(KINDS[kind].gears) != 2 or kind == "planetary"):
         raise InputError("--ratio", told, f'is not used for a case of kind "{kind}"', "remove it")
     if not re.fullmatch(r"[0-9]+\.?[0-9]*(:1)?", text.strip()):
         raise InputError("--ratio", told, "must be a number", "for example 14")
@@ -76,7 +77,9 @@ def with_teeth_of_ratio(kind: str | None, given: Mapping[str, str]) -> tuple[str
     stages = STAGES.get(kind or "gearbox", 0)
     least, most = _LEAST.get(kind or "", 1.0), _STAGE**stages if stages else _PAIR
     if not least <= ratio <= most:
-        raise InputError("--ratio", told, f"is outside {figures(least)} to {figures(most)}", _instead(kind, ratio, most))
+        raise InputError(
+            "--ratio", told, f"is outside {figures(least)} to {figures(most)}", _instead(kind, ratio, most)
+        )
     teeth = {2: _two_stages, 3: _three_stages}.get(stages, _one_stage)(ratio)
     made = math.prod(teeth[1::2]) / math.prod(teeth[::2])
     off = percent(made / ratio - 1.0, signed=True)
@@ -134,7 +137,9 @@ def _two_stages(ratio: float) -> tuple[int, ...]:
 
 def _three_stages(ratio: float) -> tuple[int, ...]:
     split = min(max(_SPLIT_OF_THREE * ratio ** (4.0 / 7.0), ratio ** (1.0 / 3.0)), _STAGE)
-    found = [(pinion, wheel) for pinion, wheel in _stages(split) if _hunting(pinion, wheel) and wheel <= _STAGE * pinion]
+    found = [
+        (pinion, wheel) for pinion, wheel in _stages(split) if _hunting(pinion, wheel) and wheel <= _STAGE * pinion
+    ]
 
     def judged(teeth: tuple[int, int]) -> tuple[int, float, tuple[int, int]]:
         return abs(teeth[0] - _USUAL), abs(teeth[1] / teeth[0] / split - 1.0), teeth

@@ -11,6 +11,8 @@ from fegear.geometry.rack import BasicRack
 
 #: Least and largest sum of profile shifts, about, and what the difference of both follows from.
 _SHIFTED, _MOST, _SHARE = 0.1, 0.7, 0.6
+#: Normal backlash of a gearbox's mesh, assumed [modules].
+BACKLASH = 0.04
 #: Preferred numbers of the series R 20 (ISO 3), of which ISO 497 has the rounded ones, too.
 _R20 = (100, 112, 125, 140, 160, 180, 200, 224, 250, 280, 315, 355, 400, 450, 500, 560, 630, 710, 800, 900)
 #: Multiples that centre distances have where none of the series is near [mm].
@@ -76,8 +78,9 @@ def pitch_radii(stage: Answers) -> tuple[float, float]:
 
 
 def root_radii(stage: Answers) -> Iterator[float]:
-    """Root radii [m]."""
+    """Root radii, by the cutter that goes deeper for the backlash, half of it in each gear [m]."""
     turn, dedendum = math.cos(stage.si("helix_angle")), BasicRack.named(stage["rack"]).dedendum
+    dedendum += 0.25 * BACKLASH / math.sin(stage.si("pressure_angle"))
     for z, x in zip(stage.numbers("teeth"), stage.numbers("profile_shift"), strict=True):
         yield stage.si("module") * (0.5 * int(z) / turn - dedendum + float(x))
 

@@ -16,7 +16,6 @@ from fegear.case.drafts.first_size import MODULES, face_for, module_for
 from fegear.case.drafts.kinds import STAGES
 from fegear.case.drafts.placed_shafts import PlacedShaft, placed_shaft
 from fegear.case.drafts.stage_sizes import (
-    centre_distance,
     mesh_forces,
     pitch_radii,
     ratio_of,
@@ -140,7 +139,7 @@ def _apart(laid: LaidOut) -> bool:
 
 
 def _beside(laid: LaidOut, stage: int) -> bool:
-    """Whether the shafts of a stage have room for bearings, the driven one also beside the wheel of the stage before."""
+    """Whether shafts of a stage have room for bearings, the driven one also beside the wheel of the stage before."""
     ends = zip(laid.shafts[stage].bearings.values(), laid.shafts[stage + 1].bearings.values(), strict=True)
     needed = max(0.5 * (one.outside + other.outside) for one, other in ends)
     if stage:

@@ -15,7 +15,7 @@ from fegear.base.errors import GeometryError
 from fegear.case.drafts.answers import HELICAL, Answers, ends
 from fegear.case.drafts.kinds import KINDS, STAGES
 from fegear.case.drafts.shafts_text import amount, length, shafts_text
-from fegear.case.drafts.stage_sizes import centre_distance
+from fegear.case.drafts.stage_sizes import BACKLASH, centre_distance
 from fegear.case.drafts.stages import LaidOut, laid_out, staged, with_room
 from fegear.case.text_file import toml_string
 from fegear.geometry.external_tooth import Tooth
@@ -138,8 +138,6 @@ _STEEL = 7850.0
 _BACKLASH = 0.05
 #: Rounded profile shifts make whole centre distances to so much [mm].
 _ROUNDED_MM = 2e-3
-#: Normal backlash of a gearbox's mesh, assumed [modules].
-_BACKLASH_OF_GEARBOX = 0.04
 #: Radius at which a gear body is fixed, over its root radius, and its rim at least, over the tooth depth; half a
 #: contact's width [modules]: as a case without them.
 _BORE, _RIM, _HALF_WIDTH = 0.5, 1.21, 0.02
@@ -343,10 +341,9 @@ def _placed(answers: Answers, stage: Answers) -> dict[str, str]:
     if _whole(answers, stage):
         distance = f"{centre_distance(stage) * 1e3:.0f} mm"
         line = f"centre_distance = {toml_string(distance)}     # assumed; profile shifts make it so"
-    backlash = amount(_BACKLASH_OF_GEARBOX * stage.si("module"), "um")
-    return {
-        "centre_distance": f"{line}\nnormal_backlash = {toml_string(backlash)}     # assumed: thinner teeth of both gears"
-    }
+    backlash = amount(BACKLASH * stage.si("module"), "um")
+    thinner = f"normal_backlash = {toml_string(backlash)}     # assumed: thinner teeth of both gears"
+    return {"centre_distance": f"{line}\n{thinner}"}
 
 
 def _operated(answers: Answers) -> str:
@@ -446,7 +443,9 @@ def _several_stages(answers: Answers, found: LaidOut) -> Mapping[str, str]:
         } if stage else {"load": _load(answers), "speed_note": _note(answers, "speed")}  # fmt: skip
         first, second = map(json.dumps, names[2 * stage : 2 * stage + 2])
         pairs.append(
-            _pair(own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **_placed(answers, own)})
+            _pair(
+                own, {"pair": "I" * (stage + 1), "first": first, "second": second, **follows, **_placed(answers, own)}
+            )
             + _operated(answers)
         )
     return {"gears": "\n".join(gears), "pairs": "\n".join(pairs), "shafts": shafts_text(found, names)}

@@ -53,6 +53,8 @@ class MeshAtGlance:
         Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
     present : tuple of float
         Present slope and crowning of the driver [m].
+    corrected : bool
+        Whether `lead` is that of `lead-correction`, for all loads; else it is an estimate.
     """
 
     safety: Safety | None
@@ -75,6 +77,7 @@ class MeshAtGlance:
     levelled: Safety | None = None
     remaining: float = math.nan
     present: tuple[float, float] = (0.0, 0.0)
+    corrected: bool = False
 
     @property
     def main_cause(self) -> int:

@@ -45,6 +45,8 @@ class Change:
         The part with its value and the required one, in as few words as there are, where it falls short.
     brief : str
         The remedy in as few words.
+    beside : str
+        The finding without the value that the verdict has; empty where the verdict has none of it.
     """
 
     margin: float
@@ -54,6 +56,7 @@ class Change:
     urgent: bool = True
     verdict: str = ""
     brief: str = ""
+    beside: str = ""
 
     @property
     def fails(self) -> bool:
@@ -71,7 +74,7 @@ def shortest_life(one: BearingAtGlance, required_hours: float) -> Change:
     return Change(
         one.margin, f"bearing {one.bearing} of shaft {one.shaft}",
         f"life {figures(hours)} h, required {figures(required_hours / 3600.0)} h: minimum reserve of bearings",
-        remedy, urgent=False,
+        remedy, urgent=False, beside="minimum reserve of bearings",
     )  # fmt: skip
 
 
@@ -162,16 +165,20 @@ def change_of_failure(note: Note) -> Change:
 
 
 def change_of_mesh(one: MeshAtGlance) -> Change | None:
-    """What is wrong with a mesh: a safety below its minimum, else load that is far from even."""
-    if one.margin < 1.0 and one.safety is not None:
-        return _too_weak(one, one.safety)
+    """What a mesh falls short of: a safety below its minimum."""
+    return _too_weak(one, one.safety) if one.margin < 1.0 and one.safety is not None else None
+
+
+def change_of_load(one: MeshAtGlance) -> Change | None:
+    """What evens out the load over the face, where that gains or the load is far from even."""
     uneven = one.face_load_factor if math.isfinite(one.face_load_factor) else 1.0
-    if uneven <= _WORTH:
+    gains = gain_of_lead(one) > WORTH_A_LEAD
+    if not gains and uneven <= _WORTH:
         return None
-    middle = abs(one.peak) < _MIDDLE
+    middle = not gains and abs(one.peak) < _MIDDLE
     return Change(
         1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, {place_of_peak(one)}",
-        "less lead crowning C_β" if middle else _against_tilt(one),
+        "less lead crowning C_β" if middle else _against_tilt(one), urgent=False,
     )  # fmt: skip
 
 
@@ -195,9 +202,8 @@ def levelled_lead(one: MeshAtGlance, *, gained: bool = True) -> str:
         amounts.append(f"crowning C_β {figures(crowning * 1e6) if crowning > _NONE else 0} µm")
     whole = ", in place of its present lead" if any(one.present) else ""
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
-    return (
-        f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain}; estimate, grind that of lead-correction)"
-    )
+    estimate = "" if one.corrected else "; estimate, lead-correction computes it"
+    return f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain}{estimate})"
 
 
 def end_of_slope(slope: float) -> str:
@@ -221,11 +227,10 @@ def least_safe(one: MeshAtGlance, safety: Safety) -> Change:
         remedy = f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors: {symbol} about {wider:.2f}"
     else:
         remedy = levelled_lead(one) + _rated(one, safety)
+    load = f"minimum safety: {percent(one.margin, whole=True)} of the load"
     return Change(
-        one.margin, f"pair {one.pair}",
-        f"{symbol} {value:.2f} of {figures(least)} ({what}), minimum safety: {percent(one.margin, whole=True)} of the "
-        "load",
-        remedy, urgent=False,
+        one.margin, f"pair {one.pair}", f"{symbol} {value:.2f} of {figures(least)} ({what}), {load}", remedy,
+        urgent=False, beside=load,
     )  # fmt: skip
 
 
@@ -250,13 +255,16 @@ def _against_tilt(one: MeshAtGlance, rated: str = "", *, gained: bool = True) ->
 def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     """A safety below its minimum: an even load where that helps, more face width where that does not suffice."""
     symbol, what, value, least, _ = limit_of(one, safety)
-    finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {percent(one.margin, whole=True)} of the load"
+    load = f"{percent(one.margin, whole=True)} of the load"
+    finding = f"{symbol} {value:.2f} of {figures(least)} ({what}), {load}"
     verdict = f"pair {one.pair} {what} {symbol} {value:.2f} ({figures(least)} required)"
     level = max(_CORRECTED, one.lead.after) if one.lead is not None and gain_of_lead(one) > WORTH_A_LEAD else _CORRECTED
     after = one.levelled
     if after is None and not (safety.face_load_factor > max(_WORTH, level) and one.over_face):
         remedy = _wider(one.margin)
-        return Change(one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=_width(one.margin))
+        return Change(
+            one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=_width(one.margin), beside=load
+        )
     # without its rating nothing says that a lead correction suffices: manufacturing deviations remain
     remedy, brief = _against_tilt(one, _rated(one, safety), gained=False), "lead correction"
     left = one.margin if after is None else min(after.margins)
@@ -266,7 +274,7 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     elif left < 1.0:
         remedy += f"; with the lead correction still {_wider(left)}"
         brief += f" and {_width(left)}"
-    return Change(one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=brief)
+    return Change(one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=brief, beside=load)
 
 
 def _wider(margin: float) -> str:

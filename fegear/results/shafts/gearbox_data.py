@@ -13,17 +13,15 @@ from fegear.results.shafts.at_glance import BearingAtGlance, MeshAtGlance
 from fegear.results.shafts.checked_shafts import CheckedShaft
 from fegear.results.shafts.drawn_gearbox import DrawnGearbox
 from fegear.results.shafts.gearbox_changes import (
-    WORTH_A_LEAD,
     Change,
     change_of_failure,
     change_of_life,
+    change_of_load,
     change_of_mesh,
     change_of_shaft,
     change_of_tilt,
     gain_of_lead,
     least_safe,
-    levelled_lead,
-    place_of_peak,
     shortest_life,
 )
 
@@ -59,7 +57,7 @@ class GearboxData:
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:
-        """What cannot be built and all that fails; up to three with what wastes load, then what limits it.
+        """What cannot be built and all that fails; up to three with what limits the load, then what evens it out.
 
         Of what fails, the weakest mesh, shaft and bearing come before a second one of their kind: three short-lived
         bearings would hide what a mesh needs.
@@ -69,15 +67,15 @@ class GearboxData:
             _in_order(map(change_of_mesh, self.meshes)), _in_order(map(change_of_shaft, self.checked)),
             _in_order((*map(change_of_tilt, self.bearings), *lives)),
         )  # fmt: skip
-        ranked = [(not one.fails, n, one) for kind in kinds for n, one in enumerate(kind)]
-        urgent = [one for _, _, one in sorted(ranked, key=lambda found: (found[0], found[1], found[2].margin))]
+        ranked = [(n, one) for kind in kinds for n, one in enumerate(kind)]
+        urgent = [one for _, one in sorted(ranked, key=lambda found: (found[0], found[1].margin))]
         named = {one.part for one in urgent}
         found = [*map(change_of_failure, self.failures), *urgent]
         for one in self._improvements():
             if one.part not in named:
                 found.append(one)
                 named.add(one.part)
-        return tuple(found[: max(_FIRST, len(self.failures) + sum(one.fails for one in urgent))])
+        return tuple(found[: max(_FIRST, len(self.failures) + len(urgent))])
 
     def said_of_lives(self) -> Iterator[Note]:
         """Bearings whose life is too short, the least margin first, with what to change."""
@@ -92,12 +90,8 @@ class GearboxData:
         yield from (least_safe(one, one.safety) for one in rated[:1] if one.safety is not None)
         lasting = [one for one in self.bearings if math.isfinite(one.margin)]
         yield from (shortest_life(one, self.required_hours) for one in lasting[:1])
-        levelled = [one for one in self.meshes if gain_of_lead(one) > WORTH_A_LEAD]
-        for one in sorted(levelled, key=gain_of_lead, reverse=True):
-            yield Change(
-                one.margin, f"pair {one.pair}", f"K_Hβ {one.face_load_factor:.2f}, {place_of_peak(one)}",
-                levelled_lead(one), urgent=False,
-            )  # fmt: skip
+        loads = map(change_of_load, sorted(self.meshes, key=gain_of_lead, reverse=True))
+        yield from (one for one in loads if one is not None)
 
 
 def _in_order(changes: Iterable[Change | None]) -> list[Change]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING
 
 from fegear.base.printed import figures
@@ -17,24 +18,27 @@ if TYPE_CHECKING:
 
 #: Linear gap [m] that modifications change by less is that of the shafts.
 _MODIFIED = 0.1e-6
+#: A gap below is zero but for round-off [m].
+_ZERO = 1e-12
 #: Parts that the verdict names, and changes with a line each.
 _NAMED, _LINES = 4, 3
 
 
 def sentences(seen: Seen) -> Iterator[str]:
-    """Whether it passes, what to change first or to improve where all suffices, then its weakest parts."""
+    """Whether it passes, then its weakest parts and what to change; what fails is changed before."""
     data: GearboxData = seen.data
     changes = list(_changes(data.changes))
     state = [f"Cannot be built: {data.changes[0].finding}."] if data.failures else []
-    rated, misaligned, weakest = _states(data)
+    verdict = _verdict(data)
+    rated, misaligned, weakest = _states(data, " ".join(verdict))
     if data.failures or any(one.fails for one in data.changes):
         # an answer has five sentences, fewer beside another result's: changes are lines of the second one
-        first, *others = *state, *_verdict(data), *weakest, *rated, *([] if state else misaligned)
+        first, *others = *state, *verdict, *weakest, *rated, *([] if state else misaligned)
         yield first
         yield "\n".join(changes)
         yield from others
     else:
-        yield from (*_verdict(data), *rated, *misaligned, *weakest)
+        yield from (*verdict, *rated, *misaligned, *weakest)
         if changes:
             yield "\n".join(changes)
 
@@ -68,33 +72,40 @@ def _verdict(data: GearboxData) -> list[str]:
 def _changes(changes: Sequence[Change]) -> Iterator[str]:
     """A line for each of the first, one in short words for all others."""
     for number, one in enumerate(changes[:_LINES], 1):
-        yield f"{'Change' if one.urgent else 'Improve'} {number}, {one.part}: {one.finding}; {one.remedy}."
+        yield f"Change {number}, {one.part}: {one.beside or one.finding}; {one.remedy}."
     if others := changes[_LINES:]:
         numbers = f"Change {_LINES + 1}" if len(others) == 1 else f"Changes {_LINES + 1} to {len(changes)}"
         yield f"{numbers}: {'; '.join(f'{one.part}: {one.brief}' for one in others)}."
 
 
-def _states(data: GearboxData) -> tuple[list[str], list[str], list[str]]:
-    """Sentences on the safeties and the misalignment of the weakest mesh, and on the weakest bearing and shaft."""
+def _states(data: GearboxData, verdict: str) -> tuple[list[str], list[str], list[str]]:
+    """Sentences on the weakest mesh, its safeties and its misalignment, and on the weakest bearing and shaft.
+
+    What the verdict has is not said again.
+    """
     safety: list[str] = []
     first = data.meshes[0]
     many = f", the weakest of {len(data.meshes)}" if len(data.meshes) > 1 else ""
     known, rated = [], first.safety is not None and math.isfinite(first.safety.face_load_factor)
     if math.isfinite(first.margin):
-        known += [
-            f"{symbol} {value:.2f} (minimum {figures(minimum)})"
+        known = [
+            f"{symbol} {value:.2f} ({figures(minimum)} required)"
             for symbol, value, minimum in (
                 ("S_H", first.contact, first.contact_required), ("S_F", first.bending, first.bending_required)
             )
+            if not _has(verdict, f"pair {first.pair}", symbol)
         ]  # fmt: skip
         said = ", ".join(known)
         if rated and first.safety is not None:
-            said += f" at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
+            said += (
+                f"; S_H and S_F at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
+            )
         safety.append(f"Pair {first.pair}{many}: {said}.")
         known, many = [], ""
     modified = ""
     if abs(first.remaining - first.over_face) > _MODIFIED:
-        modified = f" (linear gap with the flank modifications {figures(first.remaining * 1e6, 2)} µm)"
+        left = first.remaining if abs(first.remaining) > _ZERO else 0.0
+        modified = f" (linear gap with the flank modifications {figures(left * 1e6, 2)} µm)"
     known.append(f"misaligned by {figures(first.over_face * 1e6)} µm{modified}")
     if math.isfinite(first.face_load_factor):
         known.append(
@@ -102,17 +113,22 @@ def _states(data: GearboxData) -> tuple[list[str], list[str], list[str]]:
         )
     if math.isfinite(first.te_peak_to_peak):
         known.append(f"transmission error {figures(first.te_peak_to_peak * 1e6)} µm peak to peak")
-    weakest = "; ".join(one for one in (_weakest_bearing(data), _weakest_shaft(data)) if one)
+    weakest = "; ".join(one for one in (_weakest_bearing(data, verdict), _weakest_shaft(data, verdict)) if one)
     return (
         safety, [f"Pair {first.pair}{many}: {', '.join(known)}."],
         [f"{weakest[0].upper()}{weakest[1:]}."] if weakest else [],
     )  # fmt: skip
 
 
-def _weakest_bearing(data: GearboxData) -> str:
+def _has(verdict: str, part: str, what: str) -> bool:
+    """Whether the verdict has this value of a part."""
+    return re.search(rf"\b{re.escape(part)} [^,:]*{re.escape(what)} ", verdict) is not None
+
+
+def _weakest_bearing(data: GearboxData, verdict: str) -> str:
     """Of those with a life: the first in order, which has the least margin or the shortest life."""
     lives = [one for one in data.bearings if math.isfinite(one.life)]
-    if not lives:
+    if not lives or _has(verdict, f"bearing {lives[0].bearing}", "life"):
         return ""
     first = lives[0]
     life = (
@@ -124,8 +140,8 @@ def _weakest_bearing(data: GearboxData) -> str:
     return f"bearing {first.bearing} of shaft {first.shaft}{many}: basic rating life {life}{required}"
 
 
-def _weakest_shaft(data: GearboxData) -> str:
-    if not data.checked:
+def _weakest_shaft(data: GearboxData, verdict: str) -> str:
+    if not data.checked or _has(verdict, f"shaft {data.checked[0].shaft}", "S_yield"):
         return ""
     one, many = data.checked[0], len(data.checked)
     of = f", the weakest of {many}" if many > 1 else ""
