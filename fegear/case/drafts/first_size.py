@@ -66,8 +66,8 @@ def with_teeth_of_ratio(kind: str | None, given: Mapping[str, str]) -> tuple[str
     told = f'"{text}"'
     if "teeth" in found:
         raise InputError("--ratio", told, "contradicts --teeth", "remove one of them")
-    several = kind is None or kind in _LEAST
-    if not several and (kind not in KINDS or len(KINDS[kind].gears) != 2 or kind == "planetary"):
+    single = kind is not None and kind not in _LEAST
+    if kind is not None and single and (kind not in KINDS or len(KINDS[kind].gears) != 2 or kind == "planetary"):
         raise InputError("--ratio", told, f'is not used for a case of kind "{kind}"', "remove it")
     if not re.fullmatch(r"[0-9]+\.?[0-9]*(:1)?", text.strip()):
         raise InputError("--ratio", told, "must be a number", "for example 14")
