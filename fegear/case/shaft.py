@@ -160,7 +160,9 @@ class _ShaftPart(Part):
         default=[], description="External forces and moments."
     )
     clockwise: bool = Field(
-        default=False, description="Direction of rotation seen from +z; that of driven shafts follows from it."
+        default=False,
+        description="Direction of rotation seen from +z; that of driven shafts follows from it. The other direction "
+        "loads the coast flanks and reverses axial forces.",
     )
 
     @model_validator(mode="after")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from fegear.base.notes import NoteClass, failing
+from fegear.case.built.shafts import gearbox_of
 from fegear.case.reading import build_scene
 from fegear.design.flanks.lead_correction import LevelLead
 from fegear.engine.plan import make_plan
@@ -24,6 +25,13 @@ from fegear.results.shafts.gearbox_changes import CAUSE_WORDS, change_of_load, c
 from fegear.results.shafts.gearbox_data import GearboxData
 from fegear.results.shafts.gearbox_scheme import apart, scheme, unrolled
 from fegear.results.shafts.gearbox_sentences import sentences
+from fegear.results.shafts.other_direction import (
+    lives_under_uniform_load,
+    other_direction,
+    said_of_other_direction,
+    shares_of_life,
+)
+from fegear.shafts.life import LifeRating
 
 CASES = Path(__file__).parents[2] / "cases"
 RATED = {"strength": {"material": "case-hardened-steel"}, "tolerance_class": 6, "roughness": {"flank_rz": "4 um",
@@ -151,7 +159,9 @@ def mesh(peak=0.9, factor=1.5, margin=math.nan, over=12e-6, by=(10e-6, 1e-6, 3e-
 def test_the_answer_names_both_face_load_factors_and_what_flank_modifications_leave_of_the_misalignment():
     def said(remaining):
         one = replace(mesh(margin=0.8), remaining=remaining)
-        data = types.SimpleNamespace(meshes=(one,), bearings=(), changes=(), failures=(), checked=())
+        data = types.SimpleNamespace(
+            meshes=(one,), bearings=(), changes=(), failures=(), checked=(), required_hours=math.nan, turned_by=()
+        )
         return " ".join(sentences(types.SimpleNamespace(data=data)))
 
     assert said(12e-6) == (
@@ -315,3 +325,45 @@ def test_the_end_of_a_helix_slope_is_that_with_more_removal(slope, end):
     low, high = HelixSlope(slope, 0.02).removal(0.0, np.array([-0.01, 0.01]))
     assert bool(high > low) is (end == "II")
     assert end_of_slope(slope) == f"more removal at end {end}"
+
+
+def test_the_other_direction_is_the_mirror_image_with_the_other_hand():
+    """Mirrored in the plane of its axes a gearbox turns the other way with gears of the other hand."""
+    document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    scene, hands = build_scene(document, "box", CASES), {"right": "left", "left": "right"}
+    mirrored = copy.deepcopy(document)
+    for gear in mirrored["gear"].values():
+        if "hand" in gear:
+            gear["hand"] = hands[gear["hand"]]
+    rated = [
+        [LifeRating(40e3, "ball", radial_factor=0.56, axial_factor=1.6, limit=0.3)] * len(one.bearings)
+        for one in scene.case.shaft.values()
+    ]
+    other = other_direction(scene)
+    assert other.changes == ("shaft.in.clockwise=true",)
+    turned = lives_under_uniform_load(other.gearbox, rated)
+    flat = [np.array([one for row in lives for one in row]) for lives in (
+        turned, lives_under_uniform_load(gearbox_of(build_scene(mirrored, "box", CASES)), rated),
+        lives_under_uniform_load(gearbox_of(scene), rated),
+    )]  # fmt: skip
+    np.testing.assert_allclose(flat[0], flat[1], rtol=1e-6)
+    assert np.abs(flat[0] / flat[2] - 1.0).max() > 0.1  # axial forces find other bearings
+    (shares,) = [shares_of_life(gearbox_of(scene), other, rated)]
+    np.testing.assert_allclose([one for row in shares for one in row], flat[0] / flat[2], rtol=1e-9)
+
+
+def test_spur_gears_in_a_row_last_the_same_in_both_directions_and_nothing_is_said():
+    document = tomllib.loads((CASES / "two_stage_shafts.toml").read_text(encoding="utf-8"))
+    for gear in document["gear"].values():
+        if gear.pop("hand", None):
+            gear["module"] = gear.pop("normal_module")
+            del gear["helix_angle"]
+    document["pair"]["I"]["centre_distance"] = "108.75 mm"
+    scene = build_scene(document, "box", CASES)
+    rated = [[LifeRating(40e3, "ball")] * len(one.bearings) for one in scene.case.shaft.values()]
+    assert shares_of_life(gearbox_of(scene), other_direction(scene), rated) is None
+    assert not said_of_other_direction((bearing("A", 1e9, 1.5),), 1.8e7, ("shaft.in.clockwise=true",))
+    turned = (replace(bearing("A", 1e9, 1.5), other=1.7e7), replace(bearing("B", 1e9, 1.5), other=9e7))
+    (said,) = said_of_other_direction(turned, 1.8e7, ("shaft.in.clockwise=true",))
+    assert "minimum life 4720 h, bearing A (fails, 5000 h required); " in said
+    assert said.endswith("run with --set shaft.in.clockwise=true.")

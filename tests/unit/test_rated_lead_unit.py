@@ -17,7 +17,7 @@ from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.results.rating.rating import given, rated
 from fegear.results.shafts.at_glance import MeshAtGlance, Safety
 from fegear.results.shafts.gearbox_overview import _levelled
-from fegear.results.shafts.lead_correction import _ground_lead, leads_to_grind
+from fegear.results.shafts.lead_correction import _ground_lead, _leads
 from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 
 LEADS = ((0.0, 3e-6), (-4e-6, 0.0), (-4e-6, 3e-6), (0.0, 0.0))
@@ -104,7 +104,7 @@ def test_the_table_has_the_amounts_and_factors_of_the_lead_to_grind():
     found = LeadCorrection(-4e-6, 0.0, one, 1.2 * one, 1.05 * one, 0.0 * one, 1.15 * one)
     lead = rated_lead(scene_of(drafted()), "I")
     for asked, crowning, after in ((lead, 3e-6, 1.15), (None, 0.0, 1.05)):
-        leads = leads_to_grind("I", found, (0.0, 3e-6), asked)
+        leads = _leads("I", found, (0.0, 3e-6), asked)
         ground = _ground_lead("I", 0.05, found, "pinion", 3e-6, leads)
         assert (ground.slope, ground.crowning, ground.after[0]) == (-4e-6, crowning, after)
         assert [row.amount for row in ground.grinding][:2] == [-4e-6, crowning]
@@ -116,10 +116,10 @@ def test_the_design_with_the_higher_safety_factor_is_first():
     found = LeadCorrection(-4e-6, 0.0, one, 1.2 * one, 1.05 * one, 0.0 * one, 1.15 * one)
     lead = rated_lead(scene_of(drafted()), "I")
     kept = "lead correction, present crowning"
-    designs = [row.design for row in leads_to_grind("I", found, (0.0, 3e-6), lead)]
+    designs = [row.design for row in _leads("I", found, (0.0, 3e-6), lead)]
     assert designs == ["present", kept, "lead correction"]  # f_ma counts for half with crowning
-    unrated = leads_to_grind("I", found, (0.0, 3e-6), None)
+    unrated = _leads("I", found, (0.0, 3e-6), None)
     assert [row.design for row in unrated] == ["present", "lead correction", kept]
     assert [row.flanks for row in unrated] == [1.2, 1.05, 1.15]
     assert all(math.isnan(row.contact) for row in unrated)
-    assert len(leads_to_grind("I", found, (0.0, 0.0), lead)) == 2
+    assert len(_leads("I", found, (0.0, 0.0), lead)) == 2

@@ -33,6 +33,7 @@ _STIFF = """\
 [bearing.{name}]
 radial = {radial}     # with its seat, assumed: pinion too small for tabulated designations
 {fixed}"""
+_TURNED = "# clockwise = true     # other direction of rotation: coast flanks, axial forces on other bearings\n"
 #: What a bearing is rated by, and what is said of one that does not last.
 _RATED_BY = {"floating": "C"}
 _SHORT = "; shorter life: none within the root circle lasts as long"
@@ -92,7 +93,7 @@ def _placed_shaft(found: LaidOut, n: int, names: Sequence[str], gears: Sequence[
     left, right = one.bearings
     away = sum(found.distances[:n])
     note = "" if n else "     # distances along it from its left end; places and sizes are assumed"
-    coupling = "" if n else 'coupling = "0 mm"     # where the torque enters\n'
+    coupling = "" if n else 'coupling = "0 mm"     # where the torque enters\n' + _TURNED
     if n == len(names) - 1:
         coupling = f'coupling = "{length(found.length)}"\n'
     return _SHAFT.format(

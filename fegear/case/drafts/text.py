@@ -168,7 +168,8 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
     teeth = "/".join(answers.numbers("teeth"))
     stages = staged(answers) if STAGES.get(answers.kind, 1) > 1 else None
     modules = [answers["module"]] if stages is None else [one["module"] for one in stages.stages]
-    module = ", ".join(dict.fromkeys(modules)).replace(", ", " and ") if len(set(modules)) < 3 else _in_turn(modules)
+    *others, last = dict.fromkeys(modules)
+    module = f"{', '.join(others)} and {last}" if others else last
     head = _HEAD.format(
         about=kind.about[0].upper() + kind.about[1:],
         file=file,
@@ -201,12 +202,6 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
     template = files("fegear.case.drafts").joinpath("templates", _template(answers)).read_text("utf-8")
     hint = f"#:schema ./{schema}\n" if schema else ""
     return hint + "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
-
-
-def _in_turn(modules: list[str]) -> str:
-    """Modules of all stages, as 2, 2.5 and 4 mm."""
-    *first, last = modules
-    return f"{', '.join(one.removesuffix(' mm') for one in first)} and {last}"
 
 
 def _template(answers: Answers) -> str:

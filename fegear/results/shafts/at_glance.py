@@ -53,8 +53,6 @@ class MeshAtGlance:
         Linear part of the gap with the modifications of both flanks, as `over_face` without [m].
     present : tuple of float
         Present slope and crowning of the driver [m].
-    corrected : bool
-        Whether `lead` is that of `lead-correction`, for all loads; else it is an estimate.
     """
 
     safety: Safety | None
@@ -77,7 +75,6 @@ class MeshAtGlance:
     levelled: Safety | None = None
     remaining: float = math.nan
     present: tuple[float, float] = (0.0, 0.0)
-    corrected: bool = False
 
     @property
     def main_cause(self) -> int:
@@ -104,6 +101,8 @@ class BearingAtGlance:
     designation: str = shown("", "designation", default="")
     larger: str = shown("", "bearing that reaches the required life, with its bore", name="change_to", default="")
     change: BearingChange | None = None
+    other: float = shown("h", "basic rating life L_10h in the other direction of rotation (coast flanks loaded)",
+                         name="life_hours_reverse", default=math.nan)  # fmt: skip
     seat: BearingSeat = field(default_factory=BearingSeat)
 
     @property
@@ -129,6 +128,7 @@ def bearings_at_glance(
     checks: ShaftChecks,
     required: float,
     seats: Sequence[Sequence[BearingSeat]],
+    others: Sequence[Sequence[float]] | None = None,
 ) -> tuple[BearingAtGlance, ...]:
     """Every bearing, the least load margin first, then the shortest life.
 
@@ -141,11 +141,15 @@ def bearings_at_glance(
     required : float
         Life [s].
     seats : sequence of sequence of BearingSeat
+    others : sequence of sequence of float, optional
+        Life in the other direction of rotation over that in this one.
     """
     found = []
+    if others is None:
+        others = [[math.nan] * len(row) for row in lives]
     tilts = tilted_bearings(checks, data.nominal.bent)
-    every = zip(data.nominal.bent, lives, speeds, designations, tilts, seats, strict=True)
-    for bent, of_lives, of_speeds, of_designations, of_tilts, of_seats in every:
+    every = zip(data.nominal.bent, lives, speeds, designations, tilts, seats, others, strict=True)
+    for bent, of_lives, of_speeds, of_designations, of_tilts, of_seats, of_others in every:
         loads = bent.bearing_loads(tuple(of_lives))
         for k, tilted in enumerate(of_tilts):
             rating = of_lives[k]
@@ -156,7 +160,8 @@ def bearings_at_glance(
             permissible = math.nan if tilted.permissible is None else tilted.permissible.high
             found.append(BearingAtGlance(
                 tilted.bearing, tilted.shaft, radial, axial, float(loads.life[k]), duration, margin, exponent,
-                tilted.tilt, permissible, tilted, of_designations[k], seat=of_seats[k],
+                tilted.tilt, permissible, tilted, of_designations[k], other=duration * of_others[k],
+                seat=of_seats[k],
             ))  # fmt: skip
     ordered = sorted(found, key=lambda one: (one.least, last_of(one.margin), last_of(one.duration), last_of(one.life)))
     first = next((one for one in ordered if math.isfinite(one.margin)), None)

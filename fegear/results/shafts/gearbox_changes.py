@@ -47,6 +47,8 @@ class Change:
         The remedy in as few words.
     beside : str
         The finding without the value that the verdict has; empty where the verdict has none of it.
+    told : str
+        The remedy without amounts that another result computes; empty where it has none.
     """
 
     margin: float
@@ -57,6 +59,7 @@ class Change:
     verdict: str = ""
     brief: str = ""
     beside: str = ""
+    told: str = ""
 
     @property
     def fails(self) -> bool:
@@ -176,9 +179,10 @@ def change_of_load(one: MeshAtGlance) -> Change | None:
     if not gains and uneven <= _WORTH:
         return None
     middle = not gains and abs(one.peak) < _MIDDLE
+    remedy, told = ("less lead crowning C_β", "") if middle else _against_tilt(one)
     return Change(
-        1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, {place_of_peak(one)}",
-        "less lead crowning C_β" if middle else _against_tilt(one), urgent=False,
+        1.0 + 1.0 / uneven, f"pair {one.pair}", f"K_Hβ {uneven:.2f}, {place_of_peak(one)}", remedy, urgent=False,
+        told=told,
     )  # fmt: skip
 
 
@@ -202,8 +206,17 @@ def levelled_lead(one: MeshAtGlance, *, gained: bool = True) -> str:
         amounts.append(f"crowning C_β {figures(crowning * 1e6) if crowning > _NONE else 0} µm")
     whole = ", in place of its present lead" if any(one.present) else ""
     gain = f": K_Hβ of the loaded flanks {one.lead.before:.2f} -> {one.lead.after:.2f}" if gained else ""
-    estimate = "" if one.corrected else "; estimate, lead-correction computes it"
-    return f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain}{estimate})"
+    return (
+        f"lead correction ({' and '.join(amounts)} on the driver{whole}{gain}; estimate, lead-correction computes it)"
+    )
+
+
+def lead_to_compute(one: MeshAtGlance, *, gained: bool = True) -> str:
+    """A lead correction without its amounts; if `gained`, with K_Hbeta before and after it."""
+    if one.lead is None or gain_of_lead(one) <= WORTH_A_LEAD:
+        return "lead correction"
+    gain = f"K_Hβ of the loaded flanks {one.lead.before:.2f} -> about {one.lead.after:.2f}; " if gained else ""
+    return f"lead correction ({gain}amounts by lead-correction)"
 
 
 def end_of_slope(slope: float) -> str:
@@ -223,14 +236,14 @@ def least_safe(one: MeshAtGlance, safety: Safety) -> Change:
     """The safety factor with the least margin, and what raises it."""
     symbol, what, value, least, power = limit_of(one, safety)
     if gain_of_lead(one) <= WORTH_A_LEAD:
-        wider = value * _MORE**power
+        wider, told = value * _MORE**power, ""
         remedy = f"{percent(_MORE - 1.0, whole=True)} more face width at equal K factors: {symbol} about {wider:.2f}"
     else:
-        remedy = levelled_lead(one) + _rated(one, safety)
+        remedy, told = (lead + _rated(one, safety) for lead in (levelled_lead(one), lead_to_compute(one)))
     load = f"minimum safety: {percent(one.margin, whole=True)} of the load"
     return Change(
         one.margin, f"pair {one.pair}", f"{symbol} {value:.2f} of {figures(least)} ({what}), {load}", remedy,
-        urgent=False, beside=load,
+        urgent=False, beside=load, told=told,
     )  # fmt: skip
 
 
@@ -244,12 +257,17 @@ def _rated(one: MeshAtGlance, safety: Safety) -> str:
     return f": {symbol} {value:.2f} at {factors}"
 
 
-def _against_tilt(one: MeshAtGlance, rated: str = "", *, gained: bool = True) -> str:
-    """What evens out the load of a misaligned mesh, with what the lead correction makes of the rating."""
+def _against_tilt(one: MeshAtGlance, rated: str = "", *, gained: bool = True) -> tuple[str, str]:
+    """What evens out the load of a misaligned mesh, with what the lead correction makes of the rating.
+
+    With the amounts of the lead and without.
+    """
     cause = CAUSES[one.main_cause]
     share, every = figures(one.by_cause[one.main_cause] * 1e6), figures(one.over_face * 1e6)
     of_all = f"{CAUSE_WORDS[cause]} {share} µm, all causes {every} µm"
-    return f"{levelled_lead(one, gained=gained)}{rated}, or {REMEDIES[cause]} ({of_all})"
+    with_amounts, without = (made(one, gained=gained) for made in (levelled_lead, lead_to_compute))
+    others = f"{rated}, or {REMEDIES[cause]} ({of_all})"
+    return with_amounts + others, without + others
 
 
 def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
@@ -266,15 +284,18 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
             one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=_width(one.margin), beside=load
         )
     # without its rating nothing says that a lead correction suffices: manufacturing deviations remain
-    remedy, brief = _against_tilt(one, _rated(one, safety), gained=False), "lead correction"
+    (remedy, told), brief, more = _against_tilt(one, _rated(one, safety), gained=False), "lead correction", ""
     left = one.margin if after is None else min(after.margins)
     if after is None:
-        remedy += f", against K_Hβ {safety.face_load_factor:.2f} of the rating; or {_wider(left)}"
+        more = f", against K_Hβ {safety.face_load_factor:.2f} of the rating; or {_wider(left)}"
         brief += f" or {_width(left)}"
     elif left < 1.0:
-        remedy += f"; with the lead correction still {_wider(left)}"
+        more = f"; with the lead correction still {_wider(left)}"
         brief += f" and {_width(left)}"
-    return Change(one.margin, f"pair {one.pair}", finding, remedy, verdict=verdict, brief=brief, beside=load)
+    return Change(
+        one.margin, f"pair {one.pair}", finding, remedy + more, verdict=verdict, brief=brief, beside=load,
+        told=told + more,
+    )  # fmt: skip
 
 
 def _wider(margin: float) -> str:

@@ -45,6 +45,8 @@ class GearboxData:
         Why the gearbox cannot be built, the worst first: bodies that cut each other, bores that are not their shaft's.
     checked : tuple of CheckedShaft
         Shafts against yielding, the weakest first.
+    turned_by : tuple of str
+        Keys of the case that turn it the other way.
     """
 
     shafts: LoadedShafts
@@ -54,6 +56,7 @@ class GearboxData:
     required_hours: float
     failures: tuple[Note, ...] = ()
     checked: tuple[CheckedShaft, ...] = ()
+    turned_by: tuple[str, ...] = ()
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:

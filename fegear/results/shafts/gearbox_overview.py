@@ -15,7 +15,7 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
 from fegear.contact.wide.on_shafts import FlankForces
-from fegear.design.flanks.lead_correction import LevelLead, level_lead
+from fegear.design.flanks.lead_correction import level_lead
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import DeferredFigure
 from fegear.engine.sheet.answer import Answer
@@ -41,16 +41,15 @@ from fegear.results.shafts.gearbox_changes import CAUSE_WORDS
 from fegear.results.shafts.gearbox_data import GearboxData
 from fegear.results.shafts.gearbox_scheme import scheme
 from fegear.results.shafts.gearbox_sentences import sentences
-from fegear.results.shafts.lead_correction import leads_to_grind
 from fegear.results.shafts.loaded_shafts import (
     LOADED_SHAFTS_TASK,
-    fed_pairs,
     inputs_of_shafts,
     loaded_shafts,
     mesh_forces,
     needs_gears_of_meshes,
     shafts_of,
 )
+from fegear.results.shafts.other_direction import other_direction, shares_of_life
 from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 from fegear.results.shafts.shaft_deflection import overlooked
 from fegear.shafts.designations import designation_of
@@ -63,20 +62,19 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.shaft import BearingPart
     from fegear.contact.wide.on_shafts import LoadedShafts
+    from fegear.design.flanks.lead_correction import LevelLead
     from fegear.engine.sheet.seen import Seen
     from fegear.engine.stage import Upstream, Work
     from fegear.results.pair.transmission_error import TransmissionErrorData
     from fegear.results.shafts.drawn_gearbox import DrawnGearbox
-    from fegear.results.shafts.lead_correction import LeadData
     from fegear.results.shafts.loaded_shafts import LoadedShaftsInputs
+    from fegear.results.shafts.other_direction import OtherDirection
     from fegear.results.shafts.rated_lead import RatedLead
     from fegear.shafts.bearing_seat import BearingSeat
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
 
 
-#: What the leads of the changes are of where it is requested, too.
-_LEADS = Task("lead-correction", "all")
 #: A cause with less of the sum of all is none: seats that are rigid leave round-off.
 _ROUND_OFF = 1e-12
 
@@ -107,8 +105,8 @@ class GearboxInputs:
         Of every bearing by shafts.
     why : tuple of str
         Why something is missing.
-    corrected : bool
-        Whether `lead-correction` is requested, too: its leads are those of the changes then.
+    other : OtherDirection or None
+        With the other direction of rotation.
     """
 
     shafts: LoadedShaftsInputs
@@ -125,7 +123,7 @@ class GearboxInputs:
     required: float
     seats: tuple[tuple[BearingSeat, ...], ...]
     why: tuple[str, ...]
-    corrected: bool = False
+    other: OtherDirection | None = None
 
 
 def _refused(check: object, scene: Scene, pair: str) -> str:
@@ -179,12 +177,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         tuple(present_lead(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         lives, speeds, tuple(tuple(_designation(part[one]) for one in row) for row in names), checks_of(scene),
-        required, seats_of(scene), tuple(why), _is_corrected(scene),
+        required, seats_of(scene), tuple(why), other_direction(scene),
     )  # fmt: skip
-
-
-def _is_corrected(scene: Scene) -> bool:
-    return "lead-correction" in scene.case.results and bool(fed_pairs(scene))
 
 
 def _designation(part: BearingPart) -> str:
@@ -222,20 +216,31 @@ def _against(spins: dict[str, float], shaft: str, around: str | None) -> float:
 def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxData:
     shafts = loaded_shafts(upstream)
     states = shafts.gearbox.misalignment(shafts.nominal.bent, shafts.nominal.forces)
-    leads = _corrected(inputs, upstream) if inputs.corrected else _leads(inputs, upstream, shafts, work)
-    found = [
-        replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n], corrected=inputs.corrected)
-        for n, state in enumerate(states)
-    ]
+    leads = _leads(inputs, upstream, shafts, work)
+    found = [replace(_mesh(inputs, upstream, shafts, n, state), lead=leads[n]) for n, state in enumerate(states)]
     meshes = [
         replace(one, levelled=_levelled(one, releaded)) for one, releaded in zip(found, inputs.releaded, strict=True)
     ]
     bearings = bearings_at_glance(
-        shafts, inputs.lives, inputs.speeds, inputs.designations, inputs.checks, inputs.required, inputs.seats
+        shafts,
+        inputs.lives,
+        inputs.speeds,
+        inputs.designations,
+        inputs.checks,
+        inputs.required,
+        inputs.seats,
+        shares_of_life(inputs.shafts.gearbox, inputs.other, inputs.lives),
     )
     checked = checked_shafts(inputs.checks, shafts.nominal.bent)
     return GearboxData(
-        shafts, inputs.drawn, meshes_in_order(meshes), bearings, inputs.required, _failures(inputs), checked
+        shafts,
+        inputs.drawn,
+        meshes_in_order(meshes),
+        bearings,
+        inputs.required,
+        _failures(inputs),
+        checked,
+        () if inputs.other is None else inputs.other.changes,
     )
 
 
@@ -251,19 +256,6 @@ def _leads(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, work
         level_lead(one, shafts.gaps_of(mesh.pair), mesh.load) if isinstance(one, FlankForces) else None
         for one, mesh in zip(meshes, inputs.shafts.gearbox.meshes, strict=True)
     ]
-
-
-def _corrected(inputs: GearboxInputs, upstream: Upstream) -> list[LevelLead | None]:
-    """Of every mesh what `lead-correction` recommends to grind, besides the present lead."""
-    data = cast("LeadData", upstream[_LEADS])
-    found: list[LevelLead | None] = []
-    for pair, lead, present, rated in zip(data.pairs, data.found, inputs.leads, inputs.releaded, strict=True):
-        if lead is None:
-            found.append(None)
-            continue
-        present_one, best, *_ = leads_to_grind(pair, lead, present, rated)
-        found.append(LevelLead(best.slope - present[0], present_one.flanks, best.flanks, best.crowning - present[1]))
-    return found
 
 
 def _levelled(one: MeshAtGlance, releaded: RatedLead | None) -> Safety | None:
@@ -325,7 +317,7 @@ def _safety(asked: PairToRate | None, upstream: Upstream, pair: str) -> Safety |
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    found = [LOADED_SHAFTS_TASK, *needs_gears_of_meshes(scene, name), *([_LEADS] if _is_corrected(scene) else ())]
+    found = [LOADED_SHAFTS_TASK, *needs_gears_of_meshes(scene, name)]
     for mesh in mesh_places(scene):
         if not _why_not_rated(scene, mesh.pair):
             found.append(Task("rating", mesh.pair))
@@ -369,8 +361,8 @@ def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
 
 #: Which of two leads of one mesh is to be ground.
 _ESTIMATED = (
-    "Gearbox: leads of its changes are estimates under nominal load, slope and crowning in place of the present ones; "
-    "request lead-correction for those to grind, computed for all loads."
+    "Gearbox: leads in gearbox_changes are estimates under nominal load, slope and crowning in place of the present "
+    "ones; request lead-correction for those to grind, computed for all loads."
 )
 #: What the safety of shafts lacks.
 _NOTCHES = (
@@ -401,7 +393,7 @@ _SHEET = Sheet(
             "gearbox_bearings", "Bearings of the gearbox, the weakest first",
             (
                 "bearing", "shaft", "radial", "axial",
-                *(_known(key, "bearings") for key in ("life", "duration", "margin", "tilt", "permissible")),
+                *(_known(key, "bearings") for key in ("life", "duration", "other", "margin", "tilt", "permissible")),
                 Cell("larger", lambda seen: _changes_to(seen.data.bearings)),
             ),
             of="bearings", when="bearings",
@@ -422,9 +414,7 @@ _SHEET = Sheet(
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
         lambda _seen: [neglecting(_NOTCHES)],
-        lambda seen: (
-            [_ESTIMATED] if any(one.lead is not None and not one.corrected for one in seen.data.meshes) else []
-        ),
+        lambda seen: [_ESTIMATED] if any(one.lead is not None for one in seen.data.meshes) else [],
         lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),
         lambda seen: seen.data.said_of_lives(),
         lambda seen: overlooked(seen.asked.checks.bearings, seen.asked.lives, seen.data.shafts.nominal.bent),

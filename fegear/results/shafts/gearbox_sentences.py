@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.printed import figures
 from fegear.results.shafts.gearbox_changes import limit_of
+from fegear.results.shafts.other_direction import said_of_other_direction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,16 +32,15 @@ def sentences(seen: Seen) -> Iterator[str]:
     state = [f"Cannot be built: {data.changes[0].finding}."] if data.failures else []
     verdict = _verdict(data)
     rated, misaligned, weakest = _states(data, " ".join(verdict))
+    turned = said_of_other_direction(data.bearings, data.required_hours, data.turned_by)
+    # an answer has five sentences, fewer beside another result's: changes are lines of the second one
+    first, *others = *state, *verdict, *rated, *misaligned, *weakest
     if data.failures or any(one.fails for one in data.changes):
-        # an answer has five sentences, fewer beside another result's: changes are lines of the second one
         first, *others = *state, *verdict, *weakest, *rated, *([] if state else misaligned)
-        yield first
+    yield first
+    if changes:
         yield "\n".join(changes)
-        yield from others
-    else:
-        yield from (*verdict, *rated, *misaligned, *weakest)
-        if changes:
-            yield "\n".join(changes)
+    yield from (*turned, *others)
 
 
 def _verdict(data: GearboxData) -> list[str]:
@@ -72,7 +72,7 @@ def _verdict(data: GearboxData) -> list[str]:
 def _changes(changes: Sequence[Change]) -> Iterator[str]:
     """A line for each of the first, one in short words for all others."""
     for number, one in enumerate(changes[:_LINES], 1):
-        yield f"Change {number}, {one.part}: {one.beside or one.finding}; {one.remedy}."
+        yield f"Change {number}, {one.part}: {one.beside or one.finding}; {one.told or one.remedy}."
     if others := changes[_LINES:]:
         numbers = f"Change {_LINES + 1}" if len(others) == 1 else f"Changes {_LINES + 1} to {len(changes)}"
         yield f"{numbers}: {'; '.join(f'{one.part}: {one.brief}' for one in others)}."

@@ -130,7 +130,7 @@ def _ground(data: LeadData, asked: LeadInputs) -> list[GroundLead]:
         data.pairs, data.radii, data.found, asked.drivers, asked.slopes, asked.crownings, asked.rated, strict=True
     )
     made = [
-        _ground_lead(pair, radius, one, gear, crowning, leads_to_grind(pair, one, (slope, crowning), lead))
+        _ground_lead(pair, radius, one, gear, crowning, _leads(pair, one, (slope, crowning), lead))
         for pair, radius, one, gear, slope, crowning, lead in rows
         if one is not None
     ]
@@ -148,7 +148,7 @@ def _ground_lead(
     )
 
 
-def leads_to_grind(
+def _leads(
     pair: str, found: LeadCorrection, present: tuple[float, float], rated: RatedLead | None
 ) -> tuple[SafetyOfLead, ...]:
     """The present lead and those that can be ground, the one with the higher safety factor for pitting first."""
