@@ -137,4 +137,9 @@ def test_a_crosscheck_has_the_odd_tooth_as_the_revolution_has_it():
     loss = found.values["I_z22_5.mesh_stiffness_loss.potential-energy-simplified"].value
     assert loss == pytest.approx(found.values["I_z22_5.mesh_stiffness_loss.fe"].value, abs=6.0)
     assert found.answer.sentences[0].startswith("Pair I, tooth 5 of gear z22 cracked: minimum mesh stiffness")
-    assert found.figures["crosscheck_odd_tooth_I_z22_5"].panels[0].items
+    curves = found.figures["crosscheck_odd_tooth_I_z22_5"].panels[0].items
+    assert {curve.dash or "solid" for curve in curves if curve.name.endswith("cracked")} == {"solid"}
+    assert {curve.dash for curve in curves if curve.name.endswith("ordinary")} == {"dash"}
+    assert len(curves) in (4, 6)
+    own = [key for key in found.values.keys() if key.startswith("I")]  # noqa: SIM118  (of names, not of values)
+    assert own[0] == "I_z22_5.mesh_stiffness_loss.fe"

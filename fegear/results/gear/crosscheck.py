@@ -355,6 +355,7 @@ _SHEET = Sheet(
         Each("gears", SECTION_TABLE, when="cornell"),
     ),
     values=(
+        Each("passages", passage_values),
         Each("pairs", at_single_contact_values),
         Each("gears", extremes("root_stress", "root_stress"), extremes("compliance", "compliance")),
         Each(
@@ -373,7 +374,6 @@ _SHEET = Sheet(
             Number("ratio_to_fe", owner="{key}"),
         ),
         Each("cycles", cycle_values),
-        Each("passages", passage_values),
         Each("gears", *SECTION_VALUES, when="cornell"),
     ),
     figures=(

@@ -150,7 +150,10 @@ ODD_CHART = Chart(
                 ),
                 Bundle(
                     Family("formulas", formula_called, most=None),
-                    (Line("odd", "{key}, {one.what}"), Line("ordinary", "{key}, ordinary", look={"dash": "dash"})),
+                    (  # dashes of their own: those of families tell formulas apart where colours do not
+                        Line("odd", "{key}, {one.what}", look={"dash": "solid"}),
+                        Line("ordinary", "{key}, ordinary", look={"dash": "dash"}),
+                    ),
                 ),
             ),
             options={"zero": True},
