@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -122,7 +123,14 @@ def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) ->
     if kind == "model_type":
         return InputError(key, _show(value), _KINDS[kind], of_value(key, value) or _as_table(loc, value))
     rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
-    return InputError(key, _show(value), rule[0].lower() + rule[1:], of_value(key, value))
+    remedy = of_value(key, value) or (_as_share(value) if kind == "float_type" else "")
+    return InputError(key, _show(value), rule[0].lower() + rule[1:], remedy)
+
+
+def _as_share(value: object) -> str:
+    """How a percentage is written where a number is wanted; empty for all else."""
+    found = re.fullmatch(r"\s*(\d+(?:\.\d*)?)\s*%\s*", value) if isinstance(value, str) else None
+    return f"write it as a share, {float(found[1]) / 100.0:g}" if found else ""
 
 
 #: A table with more keys than these is not written out in a remedy.

@@ -267,3 +267,13 @@ def test_a_body_of_gears_may_have_nothing_besides_and_one_of_nothing_may_not():
     with pytest.raises(InputError, match=r'must be greater than zero; replace it by gears = \["a"\]') as refused:
         build_scene(case, "case", Path())
     assert refused.value.key == "train.body.m.inertia"
+
+
+def test_a_percentage_is_answered_with_the_share():
+    pit = {"diameter": ["71 mm", "72 mm"], "face_share": "20 %"}
+    case = {"results": ["geometry"], "gear": {"a": {"teeth": 24, "module": "3 mm", "odd_tooth": [{"pits": [pit]}]}}}
+    with pytest.raises(InputError, match=r"must be a number; write it as a share, 0\.2\."):
+        build_scene(case, "case", Path())
+    pit["face_share"] = "a fifth"
+    with pytest.raises(InputError, match=r"must be a number\.$"):
+        build_scene(case, "case", Path())
