@@ -151,8 +151,8 @@ ODD_CHART = Chart(
                 Bundle(
                     Family("formulas", formula_called, most=None),
                     (  # dashes of their own: those of families tell formulas apart where colours do not
-                        Line("odd", "{key}, {one.what}", look={"dash": "solid"}),
-                        Line("ordinary", "{key}, ordinary", look={"dash": "dash"}),
+                        Line("odd", lambda seen: f"{formula_called(seen)}, {seen.one.what}", look={"dash": "solid"}),
+                        Line("ordinary", lambda seen: f"{formula_called(seen)}, ordinary", look={"dash": "dash"}),
                     ),
                 ),
             ),
