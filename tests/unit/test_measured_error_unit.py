@@ -16,6 +16,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
+from fegear.results.pair.measured_error_data import counted
 
 TEETH, PITCH, TURN = 23, 9e-3, 2.0 * np.pi
 X = np.linspace(-2e-3, -2e-3 + PITCH, 181)
@@ -76,6 +77,15 @@ def test_eccentricity_of_the_mating_gear_is_no_part_of_the_orders_of_the_shaft()
     assert measured_error(*trace(1.2), TEETH, 61).mate_order == 0.0
     assert measured_error(angle, te, TEETH, TEETH).mate_order == 0.0
     np.testing.assert_array_equal(measured_error(angle, te, TEETH, TEETH).spectrum.order, plain.spectrum.order)
+
+
+@pytest.mark.parametrize("turns", [4.0, 4.6, 5.0])
+def test_an_encoder_that_counts_twice_or_half_is_known_by_the_mesh_order(turns):
+    angle, te = trace(turns, a_tooth=90.0, noise=0.1e-6)
+    assert counted(measured_error(angle, te, TEETH)) == ""
+    assert counted(measured_error(2.0 * angle, te, TEETH)) == "twice"
+    assert counted(measured_error(0.5 * angle, te, TEETH)) == "half"
+    assert counted(measured_error(*trace(1.2), TEETH)) == ""  # too short
 
 
 def test_the_curve_of_the_mesh_has_nothing_of_slow_parts():

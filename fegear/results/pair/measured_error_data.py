@@ -30,6 +30,8 @@ _JUDGES = 0.1
 _AT_SHAFT = 0.05
 #: Mesh orders that are looked at, and times by which those of the other gear are larger where the shaft is wrong.
 _ORDERS, _OF_MATE = 3, 4.0
+#: Times by which half the mesh order is larger than the mesh order where an encoder counts twice.
+_OF_DOUBLE = 2.0
 #: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
 _DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
 
@@ -48,12 +50,15 @@ class OtherwiseError(BetterDescribed):
         With which the trace fits clearly better.
     speed : float or None
         Of the shaft of the angle [rad/s].
+    counted : {"", "twice", "half"}
+        How the encoder counts, by the order of the mesh.
     """
 
     mate_teeth: int = 0
     ratio: float = 0.0
     low_pass: LowPass | None = None
     speed: float | None = None
+    counted: str = ""
 
     def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
         """How each change is said, and what to check."""
@@ -76,16 +81,35 @@ class OtherwiseError(BetterDescribed):
 
 def orders_of_mate(found: MeasuredError, mate_teeth: int) -> bool:
     """Whether the mesh orders of a trace are those of the mating gear: its angle is that of the other shaft."""
-    spectrum = found.spectrum
-    if spectrum.turns < 1.0:
-        return False
 
     def largest(teeth: int, other: int) -> float:
         orders = [float(n * teeth) for n in range(1, _ORDERS + 1) if (n * teeth) % other]
-        near = [np.abs(spectrum.order - order).argmin() for order in orders if order <= spectrum.order[-1]]
-        return float(spectrum.amplitude[near].max(initial=0.0))
+        return max((_near(found, order) for order in orders), default=0.0)
 
-    return largest(mate_teeth, found.teeth) > _OF_MATE * largest(found.teeth, mate_teeth) > 0.0
+    return found.spectrum.turns >= 1.0 and largest(mate_teeth, found.teeth) > _OF_MATE * largest(
+        found.teeth, mate_teeth
+    ) > 0.0  # fmt: skip
+
+
+def counted(found: MeasuredError) -> str:
+    """Whether an encoder counts twice or half, by the order of the mesh; empty where it does not."""
+    if found.spectrum.turns < 2.0:
+        return ""
+    own, double, half = (_near(found, factor * found.teeth) for factor in (1.0, 2.0, 0.5))
+    uneven = max(own, _near(found, 3.0 * found.teeth))
+    beside = max(_near(found, 0.5 * found.teeth + off) for off in (-2.5, -1.5, 1.5, 2.5))
+    if half > _OF_DOUBLE * own and half > _OF_MATE * beside:
+        return "twice"
+    return "half" if double > _OF_MATE * uneven else ""
+
+
+def _near(found: MeasuredError, order: float) -> float:
+    """Amplitude at an order or at the lines beside it, which have a part of one between two lines [m]."""
+    spectrum = found.spectrum
+    if order > spectrum.order[-1]:
+        return 0.0
+    at = int(np.abs(spectrum.order - order).argmin())
+    return float(spectrum.amplitude[max(at - 1, 0) : at + 2].max())
 
 
 @dataclass(frozen=True)
@@ -272,6 +296,12 @@ class TraceBeside:
                 f"the mesh order of the trace is {self.otherwise.mate_teeth}, the number of teeth of the other gear: "
                 "check shaft"
             )
+        if counts := self.otherwise.counted:
+            order = self.found.teeth * (0.5 if counts == "twice" else 2.0)
+            return failing(
+                f"the mesh order of the trace is {order:g}, {'half' if counts == 'twice' else 'twice'} the number of "
+                f"teeth: the encoder counts {counts}; check its lines per revolution"
+            )
         if better := self.otherwise.said(fitted, computed, "the peak-to-peak value"):
             return failing(better)
         if (behind := self.otherwise.low_pass) is not None:
@@ -346,7 +376,13 @@ class TraceBeside:
     def differs_in_size(self) -> bool:
         """Whether shapes agree, and only the ratio does not."""
         fitted, otherwise = self.fitted, self.otherwise
-        elsewhere = otherwise.mate_teeth or otherwise.better or otherwise.low_pass or otherwise.of_ratio(fitted.gain)
+        elsewhere = (
+            otherwise.mate_teeth
+            or otherwise.counted
+            or otherwise.better
+            or otherwise.low_pass
+            or otherwise.of_ratio(fitted.gain)
+        )
         return (
             self.estimated and not elsewhere and fitted.gain > 0.0 and fitted.likeness >= _ALIKE
             and abs(fitted.gain - 1.0) > math.hypot(*self._limits.values())

@@ -27,6 +27,7 @@ from fegear.results.pair.measured_error_data import (
     MeasuredErrorData,
     OtherwiseError,
     TraceBeside,
+    counted,
     orders_of_mate,
 )
 from fegear.results.pair.placed_gauge import TIMES, comparison_values
@@ -95,9 +96,10 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         better = better_described(measured, fitted, found.x, others, pair.base_pitch, asked.fit)
         of_mate = teeth[1] if orders_of_mate(measured, teeth[1]) else 0
         behind = None
-        if not (better or of_mate) and trace.angle[-1] > trace.angle[0]:  # time goes with the angle
+        counts = "" if of_mate else counted(measured)
+        if not (better or of_mate or counts) and trace.angle[-1] > trace.angle[0]:  # time goes with the angle
             behind = behind_low_pass(measured, fitted, found.x, found.te[:, at], pair.base_pitch, asked.fit)
-        otherwise = OtherwiseError(better, of_mate, pair.ratio if trace.of_angle else 0.0, behind, trace.speed)
+        otherwise = OtherwiseError(better, of_mate, pair.ratio if trace.of_angle else 0.0, behind, trace.speed, counts)
         order = np.argsort(found.loads)
         gains = [beside_computed(measured, found.x, found.te[:, i], pair.base_pitch, asked.fit).gain for i in order]
         torques = np.array(found.loads)[order] * lever

@@ -30,6 +30,8 @@ from fegear.results.pair.trace_named import (
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
+#: Difference of measured and computed strain below which its digits say nothing.
+_SMALL = 1e-4
 #: Correlation below which shapes differ.
 _ALIKE = 0.98
 #: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
@@ -340,7 +342,8 @@ def _in_place_of_verdict(
 
 
 def _by(off: float) -> str:
-    return f"{percent(abs(off))} {'above' if off >= 0.0 else 'below'}"
+    size = percent(abs(off)) if abs(off) >= _SMALL else f"less than {percent(_SMALL)}"
+    return f"{size} {'above' if off >= 0.0 else 'below'}"
 
 
 def _explained(peak: ComputedPeak, limits: Limits, off: float) -> str:
