@@ -30,8 +30,6 @@ _JUDGES = 0.1
 _AT_SHAFT = 0.05
 #: Mesh orders that are looked at, and times by which those of the other gear are larger where the shaft is wrong.
 _ORDERS, _OF_MATE = 3, 4.0
-#: Times by which half the mesh order is larger than the mesh order where an encoder counts twice.
-_OF_DOUBLE = 2.0
 #: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
 _DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
 
@@ -98,7 +96,7 @@ def counted(found: MeasuredError) -> str:
     own, double, half = (_near(found, factor * found.teeth) for factor in (1.0, 2.0, 0.5))
     uneven = max(own, _near(found, 3.0 * found.teeth))
     beside = max(_near(found, 0.5 * found.teeth + off) for off in (-2.5, -1.5, 1.5, 2.5))
-    if half > _OF_DOUBLE * own and half > _OF_MATE * beside:
+    if half > own and half > _OF_MATE * beside:
         return "twice"
     return "half" if double > _OF_MATE * uneven else ""
 
@@ -376,15 +374,10 @@ class TraceBeside:
     def differs_in_size(self) -> bool:
         """Whether shapes agree, and only the ratio does not."""
         fitted, otherwise = self.fitted, self.otherwise
-        elsewhere = (
-            otherwise.mate_teeth
-            or otherwise.counted
-            or otherwise.better
-            or otherwise.low_pass
-            or otherwise.of_ratio(fitted.gain)
-        )
+        elsewhere = otherwise.mate_teeth or otherwise.counted or otherwise.better or otherwise.low_pass
         return (
-            self.estimated and not elsewhere and fitted.gain > 0.0 and fitted.likeness >= _ALIKE
+            self.estimated and not elsewhere and not otherwise.of_ratio(fitted.gain)
+            and fitted.gain > 0.0 and fitted.likeness >= _ALIKE
             and abs(fitted.gain - 1.0) > math.hypot(*self._limits.values())
         )  # fmt: skip
 
