@@ -6,7 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
 from fegear.results.exercises import exercises_of_pair, exercises_of_set
 from fegear.window.assemblies import assemblies_of
 from fegear.window.drag_handles import hands_of
@@ -171,3 +176,16 @@ def test_the_page_hears_them_with_the_gears():
     assert [one["topic"] for one in assemblies_of(scene)["sets"]["P"]["exercises"]] == ["Planetary gear set"] * 4
     pair = pair_scene({"teeth": 18}, {"teeth": 35})
     assert {one["topic"] for one in hands_of(pair)["I"]["exercises"]} == {"Geometry", "Forces and stresses"}
+
+
+def test_the_answer_of_a_set_has_what_the_exercise_asks():
+    scene = set_scene(mesh_efficiency=0.98)
+    results = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+    (said,) = results.outcomes[Task("planet-set", "P")].answer.sentences
+    ratio = 1 + 74 / 22
+    assert said.startswith(
+        f"Set P, ring fixed: ratio sun to carrier {ratio:.4g}, efficiency 0.985; torques sun 140 N m, "
+    )
+    ring, carrier = numbers(said.split("torques")[1])[1:]
+    assert 140 + ring + carrier == pytest.approx(0.0, abs=1.0)
+    assert carrier == pytest.approx(-140 * ratio * (22 + 0.98 * 74) / (22 + 74), abs=1.0)

@@ -25,6 +25,7 @@ from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.dynamics.planetary.set_cycle import MeshedSet, mean_force, set_cycle
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Rows
@@ -428,6 +429,11 @@ _SHEET = Sheet(
                 ),
             ),
         ),
+    ),
+    answer=Answer(
+        "Set {name}: the most loaded planet carries {v[K_gamma]} times an equal share (K_gamma); transmission error "
+        "{v[te_peak_to_peak]} peak to peak.",
+        figure="planet_load_sharing_{name}",
     ),
     remarks=(
         Remark(lambda seen: f"Set {seen.name}: loss of contact: {_apart(seen)}.", when=_apart),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.notes import assuming, failing
+from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
 from fegear.case.planetary import PHASED_HARMONICS
@@ -20,6 +21,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.figure import Figure
 from fegear.engine.figure.items import Curve, Points
 from fegear.engine.figure.panel import Panel
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Rows
@@ -28,6 +30,8 @@ from fegear.engine.stage import Stage
 from fegear.results import forecasts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.built.planetary import SetInputs
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.kinematics import AxialForces, Passing, Sidebands
@@ -139,6 +143,16 @@ def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
     return tuple(said)
 
 
+def _said(seen: Seen) -> Iterator[str]:
+    run = seen.data.asked.run
+    torques = ", ".join(f"{one} {figures(run.torque[one])} N m" for one in CENTRALS)
+    losses = f", efficiency {figures(run.efficiency)}" if run.efficiency < 1.0 else ""
+    yield (
+        f"Set {seen.name}, {run.fixed} fixed: ratio {run.input} to {run.output} {figures(run.ratio, 4)}{losses}; "
+        f"torques {torques}."
+    )
+
+
 def _drawing(seen: Seen) -> tuple[Figure, ...]:
     """Pitch circles of the members, with the phase of each planet."""
     asked: SetInputs = seen.asked.asked
@@ -228,6 +242,7 @@ _SHEET = Sheet(
             of="data.phasing",
         ),
     ),
+    answer=Answer(_said, figure="planet_set_{name}"),
     remarks=(lambda seen: _remarks(seen.asked),),
     settings={"mirrored": "asked.run.mirrored"},
 )  # fmt: skip

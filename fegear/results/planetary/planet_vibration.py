@@ -17,6 +17,7 @@ from fegear.case.planetary import MESHES, set_pair
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
+from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Family, Line, Over
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
@@ -229,6 +230,9 @@ _MODES = Sheet(
             ),
         ),
     ),
+    answer=Answer(
+        "Set {name}: lowest natural frequency {v[natural_frequency_1]}.", figure="planet_modes_{name}",
+    ),
     remarks=(
         Remark(
             lambda seen: f"Set {seen.name}: {_kinds(seen)}; gyroscopic forces of the carrier's rotation are neglected."
@@ -372,6 +376,10 @@ _VIBRATION = Sheet(
                 ),
             ),
         ),
+    ),
+    answer=Answer(
+        "Set {name}: maximum dynamic mesh force {v[dynamic_force]} at {v[dynamic_force_speed]}.",
+        figure="planet_vibration_{name}",
     ),
     remarks=(
         Remark("Set {name}: linearised at the mean load, damping ratio of all modes {asked.damping_ratio:.3g}."),
