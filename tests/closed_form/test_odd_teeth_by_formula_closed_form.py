@@ -143,3 +143,18 @@ def test_a_crosscheck_has_the_odd_tooth_as_the_revolution_has_it():
     assert "potential energy (no fillet), cracked" in [curve.name for curve in curves]
     own = [key for key in found.values.keys() if key.startswith("I")]  # noqa: SIM118  (of names, not of values)
     assert own[0] == "I_z22_5.mesh_stiffness_loss.fe"
+
+
+@pytest.mark.dear
+def test_non_working_flanks_that_carry_load_over_a_revolution_are_said():
+    cracked = GEARS[0].with_crack(tooth=5, depth_ratio=0.5, angle="65 deg")
+    asked = {"torque": "90 N*m", "speed": "6500 rpm"}
+    notes = {}
+    for damping in (0.02, 0.3):
+        pair = fegear.Pair(cracked, GEARS[1], compliance=NAME)
+        found = fegear.vibration_revolution(pair, damping_ratio=damping, **asked)
+        notes[damping] = [note for note in found.notes() if "non-working flanks carry load" in note]
+        force = found.tables["vibration_revolution_I"]["force [N]"]
+        assert bool(notes[damping]) == (force.min() < 0.0)
+    assert len(notes[0.02]) == 1
+    assert 'train.mesh.I.backlash (a length or "unlimited")' in notes[0.02][0]

@@ -58,6 +58,8 @@ class MotionOverRevolution:
         Over how many times C base pitches the motion is averaged.
     repeats : bool
         Whether it repeats.
+    behind : float
+        Share of the time in which the non-working flanks carry load.
     """
 
     pair: GearPair
@@ -81,6 +83,7 @@ class MotionOverRevolution:
     te_residual: Array = shown("um", "dynamic transmission error without its mesh harmonics", table="revolution")
     force: Array = shown("N", "mesh force with damping", label="mesh force", table="revolution")
     acceleration: Array = shown("m/s^2", "acceleration along the line of action", table="revolution")
+    behind: float = 0.0
 
     @property
     @shows("N", "maximum mesh force over the base pitches")

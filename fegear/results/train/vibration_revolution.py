@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.effects import MOTION_EFFECTS
+from fegear.base.notes import assuming
+from fegear.base.printed import percent
 from fegear.case.built.train import motion_spec
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
@@ -26,6 +28,8 @@ from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, ne
 from fegear.results.train.motion import check_motion
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.case.reading import Scene
     from fegear.dynamics.motion.motion_over_revolution import MotionOverRevolution
     from fegear.dynamics.motion.motion_spec import MotionSpec
@@ -65,7 +69,19 @@ def _compute(asked: VibrationInputs, upstream: Upstream, work: Work) -> MotionOv
     i = data.train.mesh_index(asked.mesh)
     mesh = data.meshes[i]
     (state,) = steady_motions(asked.motion, data, work.progress)
-    return motion_over_revolution(state, i, mesh.pair, mesh.error.pitches, data.phases[i])
+    found = motion_over_revolution(state, i, mesh.pair, mesh.error.pitches, data.phases[i])
+    return replace(found, behind=float(state.behind[i]))
+
+
+def _on_other_flanks(seen: Seen) -> Iterator[str]:
+    """Where non-working flanks carry load: how far they are from the others decides."""
+    data: MotionOverRevolution = seen.data
+    if data.behind > 0.0:
+        yield assuming(
+            f"Mesh {seen.name}: the non-working flanks carry load for {percent(data.behind)} of the time, with the "
+            f"backlash of the case (zero by default). Gears with more backlash lose contact: set "
+            f'train.mesh.{seen.name}.backlash (a length or "unlimited"), or thickness_allowance of a gear.'
+        )
 
 
 def _speed(seen: Seen) -> str:
@@ -122,6 +138,7 @@ _SHEET = Sheet(
             "Mesh {name}: the motion does not repeat; one period of the excitation is shown.",
             when=lambda seen: not seen.data.repeats,
         ),
+        _on_other_flanks,
     ),
     settings={"speed": lambda seen: float(seen.asked.motion.speeds[0]), "averaged": "averaged"},
 )  # fmt: skip
