@@ -308,7 +308,7 @@ def test_a_motion_over_all_base_pitches_is_that_of_its_trajectory(times):
     """Sampled from the mesh's own phase on, the mean where it goes round so many times; orders are those of a wave."""
     pitches, phase = 5, 0.3
     state = SimpleNamespace(
-        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, 3), repeats=True,
+        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, 3), repeats=True, behind=np.zeros(2),
         model=SimpleNamespace(parts=lambda: SimpleNamespace(frequency=np.array([1.0, FREQUENCY]))),
     )  # fmt: skip
     pair = SimpleNamespace(driver=SimpleNamespace(teeth=20), gear=lambda member: SimpleNamespace(teeth=20))

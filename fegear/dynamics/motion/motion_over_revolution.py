@@ -145,5 +145,5 @@ def motion_over_revolution(
     turned = s[: cycles * samples]
     return MotionOverRevolution(
         pair, cycles, frequency, averaged, state.repeats, _TURN / pair.driver.teeth * turned, turned / frequency, te,
-        without_mesh_harmonics(te, cycles), force, acceleration,
+        without_mesh_harmonics(te, cycles), force, acceleration, float(state.behind[mesh]),
     )  # fmt: skip

@@ -69,8 +69,7 @@ def _compute(asked: VibrationInputs, upstream: Upstream, work: Work) -> MotionOv
     i = data.train.mesh_index(asked.mesh)
     mesh = data.meshes[i]
     (state,) = steady_motions(asked.motion, data, work.progress)
-    found = motion_over_revolution(state, i, mesh.pair, mesh.error.pitches, data.phases[i])
-    return replace(found, behind=float(state.behind[i]))
+    return motion_over_revolution(state, i, mesh.pair, mesh.error.pitches, data.phases[i])
 
 
 def _on_other_flanks(seen: Seen) -> Iterator[str]:
