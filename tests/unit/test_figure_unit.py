@@ -141,6 +141,28 @@ def test_a_menu_shows_one_view_and_paper_shows_them_beside_each_other(tmp_path):
     assert names == [f"own_{k}" for k in range(6)]
 
 
+def test_titles_and_marks_of_panels_are_those_of_the_chosen_view():
+    """The chart of a second design bore the amounts and the start of the first."""
+
+    def views(*titles):
+        return tuple(
+            View(one, (Panel(Axis("x"), Axis("y"), (Curve([0, 9], [0, 1], "c", "blue"),), (Mark("x", n, one),), one),))
+            for n, one in enumerate(titles, start=2)
+        )
+
+    layout = plotly_json(Figure("k", "t", "c", views=views("first", "second")))["layout"]
+    for number, button in enumerate(layout["updatemenus"][0]["buttons"]):
+        own = button["args"][1]
+        assert {note["text"] for note in own["annotations"]} == {
+            ("first", "second")[number], ("<b>first</b>", "<b>second</b>")[number]
+        }  # fmt: skip
+        assert [shape["x0"] for shape in own["shapes"]] == [2 + number]
+    assert layout["annotations"] == layout["updatemenus"][0]["buttons"][0]["args"][1]["annotations"]
+    (view,) = views("same")
+    alike = plotly_json(Figure("k", "t", "c", views=(view, view)))["layout"]["updatemenus"][0]["buttons"]
+    assert all("annotations" not in button["args"][1] for button in alike)
+
+
 def test_the_margin_has_room_for_the_longest_legend_of_all_views():
     def view(count):
         curves = tuple(Curve([0, 1], [0, k], f"curve {k}", f"series:{k}") for k in range(count))

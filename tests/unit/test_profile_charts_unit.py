@@ -15,6 +15,7 @@ from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
+from fegear.engine.figure.items import Mark
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
@@ -25,7 +26,7 @@ from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
-from fegear.results.relief.profile_charts import _abscissa, _place, _tip_side, profile_chart
+from fegear.results.relief.profile_charts import _abscissa, _apart, _place, _tip_side, profile_chart
 
 LOAD = 6000.0
 EXACT = TipTolerance(0.0, 0.0, 0.0)
@@ -116,12 +117,14 @@ def test_points_of_single_contact_are_marked_and_words_stand_apart(engagement, t
     active = active_profile(pair, "driver")
     chart = profile_chart("p", pair.driver, tips[0], TipTolerance(4e-6, None, 0.0), None, active, recommended=True)
     assert chart.with_form is None
-    assert [mark.label for mark in chart.marks[:2]] == ["LPSTC", "HPSTC"]
-    for mark, radius in zip(chart.marks, (active.lowest_single, active.highest_single), strict=False):
+    assert [mark.label for mark in chart.marks[:2]] == ["HPSTC", "LPSTC"]
+    for mark, radius in zip(chart.marks, (active.highest_single, active.lowest_single), strict=False):
         assert mark.at * 1e-3 == pytest.approx(math.sqrt(radius**2 - pair.driver.base_radius**2), rel=1e-12)
-    beside = replace(tips[0], start=chart.marks[1].at * 1e-3 / pair.driver.base_radius + 0.01)
+    beside = replace(tips[0], start=chart.marks[0].at * 1e-3 / pair.driver.base_radius + 0.01)
     words = [mark.label for mark in profile_chart("p", pair.driver, beside, EXACT, None, active).marks]
-    assert words == ["LPSTC", "HPSTC", ""]  # the line of the start stays
+    assert words == ["HPSTC", "LPSTC", ""]  # the line of the start stays
+    close = [Mark("x", at, word) for at, word in ((5.0, "HPSTC"), (4.2, "LPSTC"), (5.9, "d 71.3"), (6.0, "d 71.3"))]
+    assert [mark.label for mark in _apart(close, 10.0)] == ["HPSTC", "", "", "d 71.3"]
     axis = _abscissa(SimpleNamespace(one=chart))
     assert axis.second.value == pytest.approx(np.degrees(np.array(axis.second.at) * 1e-3 / pair.driver.base_radius))
     assert _place(chart) == " (recommended)"

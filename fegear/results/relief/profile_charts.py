@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 _PLACES = 241
 #: Share of the deepest removal that is left free above the involute.
 _ROOM = 0.18
-#: Share of the abscissa that a word beside a mark takes.
-_WORD = 0.13
+#: Shares of the abscissa that a letter beside a mark takes, and the room beside a word.
+_LETTER, _MARGIN = 0.017, 0.01
 #: Limit toward more removal with profile form in the legend.
 _FORM = "lower limit with profile form f_{fα}"
 _SHAPES = {1.0: "linear", 2.0: "parabolic"}
@@ -111,9 +111,15 @@ def profile_chart(
 
 def _apart(marks: Sequence[Mark], span: float) -> tuple[Mark, ...]:
     """Marks of an axis that spans so much, without words that would lie on one before; lines stay."""
+
+    def room(mark: Mark) -> float:
+        return (_MARGIN + _LETTER * len(mark.label)) * span
+
     kept: list[Mark] = []
     for mark in marks:
-        free = all(abs(mark.at - one.at) >= _WORD * span for one in kept if one.label)
+        free = all(
+            one.at - mark.at >= room(mark) or mark.at - one.at >= room(one) for one in kept if one.label
+        )  # a word stands at the right of its line
         kept.append(mark if free else Mark(mark.axis, mark.at))
     return tuple(kept)
 
@@ -124,10 +130,10 @@ def _drawn_length(gear: Gear, roll: float) -> float:
 
 
 def _single_contact(gear: Gear, active: ActiveProfile | None) -> list[Mark]:
-    """Lowest and highest point of single tooth contact, where there is one."""
+    """Highest and lowest point of single tooth contact, where there is one: a start is compared with the highest."""
     if active is None or math.isnan(active.lowest_single):
         return []
-    ends = (("LPSTC", active.lowest_single), ("HPSTC", active.highest_single))
+    ends = (("HPSTC", active.highest_single), ("LPSTC", active.lowest_single))
     return [Mark("x", _drawn_length(gear, float(roll_of_radius(gear, radius))), word) for word, radius in ends]
 
 
