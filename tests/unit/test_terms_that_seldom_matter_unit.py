@@ -8,6 +8,7 @@ import pytest
 
 from fegear.base.effects import MISALIGNMENT, RELIEF, SPACING_ERRORS
 from fegear.base.errors import GeometryError, RangeError
+from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.many import corners
 from fegear.contact.many.arrays import ManyEngagements, ManyFlanks
 from fegear.contact.pair_spec import PairSpec
@@ -145,3 +146,26 @@ def test_a_damper_between_bodies_that_move_alike_does_not_bound_their_resonance(
     assert np.isfinite(torque_response(train, against, "b").shafts).all()
     with pytest.raises(RangeError, match="natural frequency of the undamped train"):
         torque_response(train, alike, "b")
+
+
+# ---- measured traces -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("scale", [0.0, 0.5, -2.0])
+def test_samples_as_measured_are_divided_by_no_scale_of_zero(scale):
+    """Samples and those that are left out alike; what is left of them is the scaled residual."""
+    trace, computed, out = np.array([3e-6, 8e-6, 5e-6]), np.array([2e-6, 9e-6, 4e-6]), np.array([90e-6, -70e-6])
+    by = scale or 1.0
+    found = FittedCurve(
+        fit=("scale",), errors={"drift": 3e-7}, outside=0, offset=1e-6, scale=scale, shift=0.1, gain=1.0,
+        gain_error=0.0, angle=np.array([0.2, -0.1, 0.4]), measured=trace / by, computed=computed, left_out=out / by,
+        wave=SimpleNamespace(place=-0.4, amplitude=2e-6, error=1e-7),
+    )  # fmt: skip
+    assert found.as_measured == pytest.approx(trace, rel=1e-15)
+    assert found.left_out_as_measured == pytest.approx(out, rel=1e-15)
+    assert found.drawn_angle.tolist() == [-0.1, 0.2, 0.4]
+    assert found.fitted == pytest.approx(scale * computed[[1, 0, 2]])
+    assert found.left_by_fit == pytest.approx(trace - scale * computed)
+    if scale:
+        assert found.left_by_fit == pytest.approx(scale * found.residual)
+    assert (found.runout, found.runout_error, found.drift_error) == (2e-6, 1e-7, 3e-7)
+    assert found.runout_angle == pytest.approx(-0.5)  # less the shift, between half a turn before and after
+    assert found.runout_measured_angle == pytest.approx(2.0 * math.pi - 0.4)
