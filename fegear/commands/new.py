@@ -117,6 +117,7 @@ def new(
     """
     from fegear.case.drafts.answers import ASSUMED_SPEED, Answers, kind_of, with_torque_of_power
     from fegear.case.drafts.first_size import with_teeth_of_ratio
+    from fegear.case.drafts.sized import sized
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
 
@@ -162,6 +163,8 @@ def new(
                 raise InputError("--power", shown(power), "requires a speed, which this kind has not", "use --torque")
             voice.say(f"Torque of --power at an assumed speed of {ASSUMED_SPEED}; specify --speed")
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
+    for line in sized(text):
+        voice.say(line)
     for note in _check(text, path):
         voice.note(note)
     if not no_schema:

@@ -135,6 +135,16 @@ def test_a_gearbox_for_a_ratio_has_hunting_teeth(say, tmp_path, ratio, stages):
     made = math.prod(gears[1::2]) / math.prod(gears[::2])
     assert made == pytest.approx(float(ratio.removesuffix(":1")), rel=0.002 if stages > 1 else 0.02)
     assert f"Teeth {'/'.join(map(str, gears))}: ratio {made:.5g}" in out
+    names = ["I", "II", "III"][:stages]
+    assert (
+        re.findall(
+            r"^Stage (\w+): teeth \d+/\d+, module [\d.]+ mm, face width \d+ mm, centre distance \d+ mm",
+            out,
+            re.MULTILINE,
+        )
+        == names
+    )
+    assert out.count("Shaft ") == stages + 1
     assert all(math.gcd(*gears[k : k + 2]) == 1 for k in range(0, len(gears), 2))
 
 
@@ -280,7 +290,7 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--power", "0 kW"), "must be positive"),
         (
             ("x", "--ratio", "217"),
-            '--ratio = "217": is outside 10 to 216; draft three stages, at most 6 each, and type',
+            '--ratio = "217": is outside 1 to 216; draft three stages, at most 6 each, and type',
         ),
         (("x", "--ratio", "50", "--kind", "two-stage-gearbox"), "is outside 3 to 36; use --kind gearbox"),
         (("x", "--ratio", "9", "--kind", "three-stage-gearbox"), "is outside 10 to 216; use --kind gearbox"),

@@ -72,10 +72,11 @@ def with_teeth_of_ratio(kind: str | None, given: Mapping[str, str]) -> tuple[str
     if not re.fullmatch(r"[0-9]+\.?[0-9]*(:1)?", text.strip()):
         raise InputError("--ratio", told, "must be a number", "for example 14")
     ratio = float(text.strip().removesuffix(":1"))
+    least = _LEAST.get(kind or "", 1.0)
     if kind in (None, "gearbox") and ratio > _STAGE:
         kind = TWO_STAGES if ratio <= _STAGE**2 else THREE_STAGES
     stages = STAGES.get(kind or "gearbox", 0)
-    least, most = _LEAST.get(kind or "", 1.0), _STAGE**stages if stages else _PAIR
+    most = _STAGE**stages if stages else _PAIR
     if not least <= ratio <= most:
         raise InputError(
             "--ratio", told, f"is outside {figures(least)} to {figures(most)}", _instead(kind, ratio, most)
