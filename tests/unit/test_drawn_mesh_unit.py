@@ -94,6 +94,39 @@ def test_the_stress_is_where_the_flanks_touch(loaded, inside):
         assert np.hypot(*(most - touches)) < 0.2 * 4e-3  # within the half-width of the pressure that is shown
 
 
+def test_drawings_have_the_teeth_of_both_gears_where_they_touch(loaded, inside):
+    """Lengths in mm from the pitch point: mates touch where loads are, each tooth is the one that its stress is of."""
+    pair, drawings = inside.pair, list(stress_drawings("I", loaded.engagement, loaded.nominal, inside))
+    stands = standing_at_points(loaded.engagement, loaded.nominal)
+    assert [one.letter for one in drawings] == list("ABCDE")
+    assert len({one.top for one in drawings}) == 1
+    for one, stand in zip(drawings, stands, strict=True):
+        assert one.loads == pytest.approx(np.array([(1e3 * at.x, at.load) for at in stand.touching]))
+        assert one.points.shape[1] == one.stress.size
+        assert one.triangles.min() == 0
+        assert one.triangles.max() == one.stress.size - 1
+        assert one.path == pytest.approx([1e3 * pair.x_start, 1e3 * pair.x_end])
+        for place, _ in one.loads:  # both outlines pass through it, and material of both gears is beside it
+            at = place * one.along[:, None]
+            for member in MEMBERS:
+                a, b = one.outlines[member][:, :-1], one.outlines[member][:, 1:]
+                chords = (a + part * (b - a) for part in np.linspace(0.0, 1.0, 21))
+                assert min(np.hypot(*(points - at)).min() for points in chords) < 0.02
+            beside = np.hypot(*(one.points - at)) < 0.3
+            assert one.stress[beside].max() > 5.0 * np.median(one.stress)
+        x, y = one.points
+        assert min(-y.min(), y.max()) > 4.0  # a module and more to either side of the pitch line
+        assert np.hypot(one.along[0], one.along[1]) == pytest.approx(1.0)
+        assert x.min() < one.path[0]
+        assert x.max() > one.path[1]
+    fillets = max(
+        float(tooth_stress(inside.gears[member], pair, member, at.number, stand.touching)[
+            inside.gears[member].table.fillet].max())
+        for stand in stands for at in stand.touching for member in MEMBERS
+    )  # fmt: skip
+    assert 1e-6 * fillets <= drawings[0].top < 1.1 * 1e-6 * fillets  # two digits, rounded up
+
+
 @pytest.mark.dear
 def test_drawings_have_one_scale_and_are_written(scene, loaded, inside, tmp_path):
     drawings = list(stress_drawings("I", loaded.engagement, loaded.nominal, inside))
