@@ -361,8 +361,8 @@ def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
 
 #: Which of two leads of one mesh is to be ground.
 _ESTIMATED = (
-    "Gearbox: leads in gearbox_changes are estimates under nominal load, slope and crowning in place of the present "
-    "ones; request lead-correction for those to grind, computed for all loads."
+    "Gearbox: K_Hbeta and safety factors after a lead correction are estimates under nominal load; request "
+    "lead-correction for the amounts to grind, computed for all loads."
 )
 #: What the safety of shafts lacks.
 _NOTCHES = (
@@ -407,7 +407,12 @@ _SHEET = Sheet(
             of="checked",
         ),
         Rows(
-            "gearbox_changes", "What to change first", ("part", "finding", "remedy"), of="changes", when="changes",
+            "gearbox_changes", "What to change first",
+            (
+                "part", "finding",
+                Cell("remedy", lambda seen: [one.told or one.remedy for one in seen.data.changes]),
+            ),
+            of="changes", when="changes",
         ),
     ),
     figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
