@@ -12,7 +12,7 @@ import tomlkit
 
 from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of
-from fegear.case.drafts import two_stages
+from fegear.case.drafts import placed_shafts
 from fegear.case.reading import build_scene
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.engine import added_stage
@@ -101,10 +101,10 @@ def test_the_bearing_with_less_radial_load_holds_the_axial_force_alone(monkeypat
 
     def bearing(kind, seat, radial, axial, _forces):
         asked.append((kind, radial, axial))
-        return two_stages.ChosenBearing(kind, None, max(seat, 0.025 if kind == "roller" else 0.02), 0.015, 0.05)
+        return placed_shafts.ChosenBearing(kind, None, max(seat, 0.025 if kind == "roller" else 0.02), 0.015, 0.05)
 
-    monkeypatch.setattr(two_stages, "_bearing", bearing)
-    found = two_stages._located(0.02, two_stages._Forces(left, right, 300.0, 1e8, 0.06))
+    monkeypatch.setattr(placed_shafts, "_bearing", bearing)
+    found = placed_shafts._located(0.02, placed_shafts._Forces(left, right, 300.0, 1e8, 0.06))
     assert set(asked) == {("ball", 500.0, 300.0), ("roller", 900.0, 0.0)}
     assert list(found.bearings) == order
     assert asked[-1][0] == "roller"
