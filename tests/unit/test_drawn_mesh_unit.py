@@ -16,7 +16,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.output.export import export_gears
 from fegear.results.catalogue import STAGES
 from fegear.results.gear.drawing import moving_pair
-from fegear.results.pair.drawn_mesh import standing_at_points, stress_drawings, tooth_stress, turned_by
+from fegear.results.pair.drawn_mesh import _rounded_up, standing_at_points, stress_drawings, tooth_stress, turned_by
 
 GEAR = {"module": "4 mm", "face_width": "20 mm", "plane": "stress"}
 CASE = {
@@ -125,6 +125,11 @@ def test_drawings_have_the_teeth_of_both_gears_where_they_touch(loaded, inside):
         for stand in stands for at in stand.touching for member in MEMBERS
     )  # fmt: skip
     assert 1e-6 * fillets <= drawings[0].top < 1.1 * 1e-6 * fillets  # two digits, rounded up
+
+
+@pytest.mark.parametrize(("stress", "top"), [(123e6, 130e6), (120e6, 120e6), (99.1e6, 100e6), (1.01, 1.1), (0.0, 0.0)])
+def test_a_colour_scale_ends_at_two_digits_and_no_less(stress, top):
+    assert _rounded_up(stress) == pytest.approx(top)
 
 
 @pytest.mark.dear
