@@ -91,3 +91,17 @@ def test_of_a_fillet_in_two_pieces_the_larger_counts_where_it_stands():
     first, second = (curve.largest(stress[points]) for curve, points in ((one, slice(0, 30)), (other, slice(30, 60))))
     assert value.tolist() == [first[0][0], second[0][1]]
     assert place.tolist() == pytest.approx([first[1][0], second[1][1] + 0.4 * module])
+    assert cut.at(stress, place).diagonal() == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", ["tension", "compression"])
+def test_at_the_place_of_its_largest_a_curve_has_its_largest(side):
+    """And what else is superposed there changes the largest by as much, to first order."""
+    curve = curves(2e-3, side)
+    sign = 1.0 if side == "tension" else -1.0
+    stress = sign * np.cos(np.multiply.outer(curve.arc, [1.0, 3.0, 9.0]) - [0.2, 0.9, 0.3])
+    more = np.sin(4.0 * curve.arc + 0.5)[:, None]
+    value, place = curve.largest(stress)
+    assert curve.at(stress, place).diagonal() == pytest.approx(value, rel=1e-12)
+    changed = curve.largest(stress + 1e-6 * more)[0]
+    assert (changed - value) / 1e-6 == pytest.approx(curve.at(more, place)[:, 0], rel=1e-4)

@@ -12,7 +12,7 @@ from fegear.contact.plane.formula_root_stress import formula_root_stress
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.root_stress import Felt, RootStress
 from fegear.contact.plane.root_stress_history import root_stress_history, superposed_stress, touching_radius
-from fegear.contact.plane.tooth_stress import ToothStress, loaded_states, tooth_stress
+from fegear.contact.plane.tooth_stress import ToothStress, _by_each_load, loaded_states, tooth_stress
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.external_tooth import Tooth
@@ -84,6 +84,24 @@ def test_a_tooth_on_the_path_without_load_has_its_neighbours_stress_as_beyond_th
 
 
 @pytest.mark.dear
+@pytest.mark.parametrize("member", ["driver", "driven"])
+def test_of_a_tooth_without_load_another_load_changes_what_it_has_at_the_place_of_the_largest(engagement, member):
+    """Elsewhere along its fillet it may have many times as much of the other sign, which does not move the largest."""
+    pair = engagement.pair
+    x = pair.x_start + pair.base_pitch * (np.arange(11) + 0.5) / 11
+    state = engagement.solve(engagement.grid(x), [LOAD])
+    off = np.zeros_like(state.loads)
+    one = int(np.flatnonzero(state.grid.contacts.number == 0)[0])
+    off[one] = 1e-6 * state.loads[one]
+    more = replace(state, shared=replace(state.shared, loads=state.loads + off))
+    found, again = (root_stress_history(engagement, loaded, member, "tension", 1) for loaded in (state, more))
+    by_load, _ = _by_each_load(engagement, found, state, off, None)
+    idle = np.pad(state.loads == 0.0, ((1, 1), (0, 0), (0, 0)), constant_values=True)
+    change = np.abs(again.stress - found.stress)[idle]
+    assert (change > 0.0).sum() >= 12
+    assert by_load[idle] == pytest.approx(change, rel=0.02, abs=1e-3 * change.max())
+
+
 def test_largest_compression_and_the_range_of_stress_state_errors_that_finer_gears_confirm():
     """Gears of edges three times as short lie within the stated errors, and these are no blanket."""
 

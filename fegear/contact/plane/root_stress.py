@@ -204,6 +204,16 @@ class RootStress:
         found = np.asarray(stress.max(axis=1) if self.side == "tension" else stress.min(axis=1))
         return found, np.full(found.shape, math.nan)
 
+    def at_place(self, tooth: int, row: Array, place: Array) -> Array:
+        """What rows of the fillet of a tooth, (Q, points), have at the places of its largest stress, (S,): (S, Q).
+
+        Where no curve is known, the largest magnitude at any of the points.
+        """
+        curve = self.curve(tooth)
+        if curve is None:
+            return np.broadcast_to(np.abs(row).reshape(row.shape[0], -1).max(axis=1), (place.size, row.shape[0]))
+        return curve.at(row.T, place)
+
     def curve(self, tooth: int) -> FilletCurve | CutFillet | None:
         """How the largest of a tooth is found between the points of its fillet; None if they are all there is."""
         return self.source.fillet_curve(tooth, self.side)

@@ -36,12 +36,15 @@ class RootStressHistory:
         Position of the pair's contact [m]; beyond the path the tooth is unloaded but feels its neighbours.
     stress : ndarray, shape (n, P, L)
         Largest tension, or most negative compression [Pa].
+    place : ndarray, shape (n, P, L), or None
+        Where along the fillet that is, as `RootStress.largest_and_place` has it.
     """
 
     member: Member
     side: Side
     x: Array
     stress: Array
+    place: Array | None = None
 
     @property
     def largest(self) -> Array:
@@ -91,16 +94,19 @@ def root_stress_history(
     x = contacts.x[0] + places[:, None] * engagement.pair.base_pitch
     low, high = within or (-np.inf, np.inf)
     asked = (x > low) & (x < high)
-    stress = np.full(touching.shape, np.nan)
+    stress, place = np.full((2, *touching.shape), np.nan)
     teeth = [engagement.compliance.tooth(member, int(contacts.number[0] + at), loaded.cycle) for at in places]
     for rows in together([roots.source.same_as(tooth, 1) for tooth in teeth]):
         wanted = asked[rows]
         flat = np.stack([along[row] for row in rows])[wanted]
-        found = roots.largest(teeth[rows[0]], flat.reshape(-1, flat.shape[-1]), touching[rows][wanted].ravel())
-        part = stress[rows]
-        part[wanted] = found.reshape(-1, touching.shape[2])
-        stress[rows] = part
-    return RootStressHistory(member, side, x, stress)
+        found = roots.largest_and_place(
+            teeth[rows[0]], flat.reshape(-1, flat.shape[-1]), touching[rows][wanted].ravel()
+        )
+        for values, new in zip((stress, place), found, strict=True):
+            part = values[rows]
+            part[wanted] = new.reshape(-1, touching.shape[2])
+            values[rows] = part
+    return RootStressHistory(member, side, x, stress, place)
 
 
 def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:

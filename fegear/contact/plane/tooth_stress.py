@@ -363,20 +363,23 @@ def stress_with_error(
     off = np.zeros_like(found.stress)
     for again in shifted:
         off += np.abs(root_stress_history(e, again, member, side, 1, source, within).stress - found.stress)
-    by_load, by_source = _by_each_load(e, member, side, state, apart, source)
+    by_load, by_source = _by_each_load(e, found, state, apart, source)
     return found, np.hypot(np.maximum(off, by_load), by_source)
 
 
 def _by_each_load(
-    e: Engagement, member: Member, side: Side, state: Loaded, apart: Array, source: RootStressInfluence | None
+    e: Engagement, found: RootStressHistory, state: Loaded, apart: Array, source: RootStressInfluence | None
 ) -> tuple[Array, Array]:
     """Errors of the stress of each tooth by that of every load that it feels, shape (n + 2, P, L) each [Pa].
 
     A tooth that carries next to nothing is stressed by its neighbours' loads; the sum may pass through zero where its
-    parts, and their errors, do not.
+    parts, and their errors, do not. What another load changes of the largest stress is, to first order, what a unit of
+    it has at the place of the largest: elsewhere along the fillet it may have many times as much of the other sign.
 
     Parameters
     ----------
+    found : RootStressHistory
+        Where along its fillet each tooth's stress is largest.
     apart : ndarray, shape (n, P, L)
         Errors of the loads that pairs have by themselves [N].
 
@@ -386,13 +389,14 @@ def _by_each_load(
         Root of the sum of squares of what errors of the loads change, and of what the source leaves in the stress per
         load; not a number where it does not know its own error.
     """
-    roots, contacts = RootStress.of(e.compliance, member, side, source), state.grid.contacts
+    member, place = found.member, found.place
+    roots, contacts = RootStress.of(e.compliance, member, found.side, source), state.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     few = np.linspace(radius.min(), radius.max(), 9)
     n, face = radius.shape[0], e.compliance.face_width
     reach = min(roots.reach, n + 1)
     numbers = [e.compliance.tooth(member, int(contacts.number[0]) + row, state.cycle) for row in range(-1, n + 1)]
-    known: dict[int, dict[int, tuple[Array, Array]]] = {}
+    known: dict[int, dict[int, _Sizes]] = {}
     by_load, by_source = (np.zeros((n + 2, *state.loads.shape[1:])) for _ in range(2))
     for row, tooth in enumerate(numbers):
         for other, loaded in enumerate(numbers[1:-1]):
@@ -400,19 +404,40 @@ def _by_each_load(
             if like not in known:
                 known[like] = _sizes(roots, loaded, reach, few)
             if tooth - loaded in known[like]:
-                size, left = known[like][tooth - loaded]
-                by_load[row] += (apart[other] * (np.interp(radius[other], few, size)[:, None] / face)) ** 2
-                by_source[row] += (state.loads[other] * (np.interp(radius[other], few, left)[:, None] / face)) ** 2
+                sizes = known[like][tooth - loaded]
+                size = np.interp(radius[other], few, sizes.largest)[:, None]
+                if tooth != loaded and place is not None:
+                    size = _interpolated(roots.at_place(tooth, sizes.row, place[row].ravel()), few, radius[other])
+                by_load[row] += (apart[other] * (size / face)) ** 2
+                left = np.interp(radius[other], few, sizes.error)[:, None]
+                by_source[row] += (state.loads[other] * (left / face)) ** 2
     return np.sqrt(by_load), np.sqrt(by_source)
 
 
-def _sizes(roots: RootStress, loaded: int, reach: int, few: Array) -> dict[int, tuple[Array, Array]]:
-    """Stress per unit line load on a tooth at a few radii, and its error, by how far its tooth is from that one."""
-    found: dict[int, tuple[Array, Array]] = {}
+class _Sizes(NamedTuple):
+    """Stress along a fillet per unit line load at F radii, shape (F, points), its largest, and that one's error."""
+
+    row: Array
+    largest: Array
+    error: Array
+
+
+def _sizes(roots: RootStress, loaded: int, reach: int, few: Array) -> dict[int, _Sizes]:
+    """Those of the teeth that feel a load on one tooth, by how far they are from it."""
+    found: dict[int, _Sizes] = {}
     for k in sorted(range(-reach, reach + 1), key=abs):
         row = roots.row(loaded + k, loaded, few)
         if row is not None:
             # a tooth's own below the contact: at it stress is what the contact itself leaves
             size = np.abs(roots.largest(loaded, row, few) if k == 0 else row).reshape(few.size, -1).max(axis=1)
-            found[k] = size, roots.error(loaded + k, loaded, few)
+            found[k] = _Sizes(row, size, roots.error(loaded + k, loaded, few))
     return found
+
+
+def _interpolated(values: Array, few: Array, radius: Array) -> Array:
+    """Values of P positions under each of L loads at a few radii, (P L, F), at the radius of each position: (P, L)."""
+    below = np.clip(np.searchsorted(few, radius) - 1, 0, few.size - 2)
+    share = (radius - few[below]) / (few[below + 1] - few[below])
+    each = values.reshape(radius.size, -1, few.size)
+    low, high = (np.take_along_axis(each, at[:, None, None], axis=2)[..., 0] for at in (below, below + 1))
+    return low + share[:, None] * (high - low)

@@ -177,6 +177,10 @@ class FilletCurve:
             values = without_contact(values, self.arc, ends, CLEARANCE)
         return smooth_at(values, self.arc, (share * self.length)[:, None])
 
+    def at(self, stress: Array, place: Array) -> Array:
+        """The smooth curve through stress at the points, (points, Q), at places of its largest, (S,): shape (S, Q)."""
+        return smooth_at(np.ascontiguousarray(stress), self.arc, place[:, None] / self.module)
+
     def _beside(self, radius: ArrayLike, half_width: float) -> tuple[Array, Array]:
         """How far above the fillet contacts stand, infinitely where none touches, and their half-widths [modules]."""
         touched, side = np.asarray(radius, dtype=float), 1.0 if self.flank[1] >= self.flank[0] else -1.0
@@ -231,6 +235,14 @@ class CutFillet:
             best = np.where(better, sign * value, best)
             place = np.where(better, at + start * curve.module, place)
         return sign * best, place
+
+    def at(self, stress: Array, place: Array) -> Array:
+        """As `FilletCurve.at`."""
+        found = np.empty((place.size, stress.shape[1]))
+        for start, curve, points in self.pieces:  # from the root land up
+            on = ~(place < start * curve.module)
+            found[on] = curve.at(stress[points], place[on] - start * curve.module)
+        return found
 
 
 #: A semi-elliptic pressure as three forces: places over its half-width, and parts of the load. What the forces do is
