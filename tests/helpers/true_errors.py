@@ -414,11 +414,11 @@ def row_of(several):
 
 
 def fine_solid(_accuracy):
-    """Settings of solid gears finer than any tolerance's."""
+    """Settings of solid gears finer than any tolerance's; every node has all functions along the face."""
     third = solid_settings(3e-3)
     return replace(
         third, section=third.section.scaled(0.75), waves_per_module=2.6, least_degree=14, least_piece_degree=7,
-        body_layers=4, wave_reach=3.6, fewest_waves=8.0, band_half_width=0.16, room_share=0.6,
+        body_layers=4, wave_reach=3.6, fewest_waves=100.0, band_half_width=0.16, room_share=0.6,
     )  # fmt: skip
 
 
