@@ -112,9 +112,9 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
                 trace.reading, asked.estimates, otherwise, torque_of_gain(torques, np.array(gains), trace.load * lever),
             )
         )  # fmt: skip
-    behind = [one.otherwise.low_pass for one in traces]
     lags = [
-        low and low.lag / (one.otherwise.speed or 1.0) for low, one in zip(behind, traces, strict=True)
+        filtered and filtered.lag / (one.otherwise.speed or 1.0)
+        for one in traces for filtered in (one.otherwise.low_pass,)
     ]  # fmt: skip
     if not one_filter(lags):
         traces = [replace(one, otherwise=replace(one.otherwise, low_pass=None)) for one in traces]
