@@ -113,7 +113,7 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
             )
         )  # fmt: skip
     lags = [
-        filtered and filtered.lag / (one.otherwise.speed or 1.0)
+        None if filtered is None else filtered.lag / (one.otherwise.speed or 1.0)
         for one in traces for filtered in (one.otherwise.low_pass,)
     ]  # fmt: skip
     if not one_filter(lags):
