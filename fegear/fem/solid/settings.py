@@ -143,10 +143,12 @@ def whole(number: float, *, up: bool = False) -> int:
     return math.ceil(number - _ROUND_OFF) if up else math.floor(number + 0.5 + _ROUND_OFF)
 
 
-#: Elements of order 4, more functions along the face, narrower bands.
+#: Elements of order 4, more functions along the face, narrower bands. Ends of a face need short waves wherever stress
+#: is large: on the fillet that is compressed, far from the loaded flank, narrow faces have all functions.
 _THIRD = SolidSettings(
-    section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, band_half_width=0.2
-)
+    section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, fewest_waves=10.0,
+    band_half_width=0.2,
+)  # fmt: skip
 
 
 def solid_settings(tolerance: float) -> SolidSettings:
