@@ -71,11 +71,15 @@ _MOST_SMOOTH: dict[Side, tuple[float, float]] = {"tension": (0.55, 0.3), "compre
 #: On the tension side of the tooth behind, edges that are ever shorter leave a greater part of ever smaller
 #: differences, of what both orders have in common: from this part at the first of these shares of a tooth's own to the
 #: usual one at the second.
-_SHORT_BEHIND, _OF_SHORT_BEHIND = (0.16, 0.28), 0.9
+_SHORT, _OF_SHORT_BEHIND = (0.16, 0.28), 0.9
 #: Relatively no neighbour errs by less than so much of what a tooth's own stress usually differs by: on the tooth ahead
-#: and on that behind, and there on the tension side where edges are short and where they are long, between these.
+#: and on that behind, and the same where edges are short; behind it on the tension side less where they are long,
+#: between these shares. What short edges leave of its own stress is of the contact and of their curves, which smooth
+#: fillets do not feel (64 gears and rings, docs/numerics.md); of scatter less counts on the tension side ahead there.
 _OF_OWN_STRESS: dict[Side, tuple[float, float]] = {"tension": (0.6, 0.35), "compression": (0.9, 0.9)}
-_OF_OWN_SHORT_BEHIND, _OF_OWN_LONG_BEHIND, _LONG_BEHIND = 0.1, 0.2, (0.36, 0.55)
+_OF_OWN_SHORT: dict[Side, tuple[float, float]] = {"tension": (0.1, 0.1), "compression": (0.9, 0.3)}
+_OF_OWN_LONG_BEHIND, _LONG_BEHIND = 0.2, (0.36, 0.55)
+_SCATTERED_SHORT_AHEAD = 0.5
 #: What differences usually are on a neighbour's fillet are no less than this part of those on its other fillet.
 _OTHER_FILLET = 0.1
 #: A gear on a small bore turns as a whole by far more than its teeth give way, and of all teeth two solutions differ by
@@ -384,12 +388,16 @@ class Estimate:
             else:
                 share *= _SMOOTH_STRESS[side]
                 share = min(share, _MOST_SMOOTH[side][k < 0]) if self.fine.flank.order == 4 else share
-            part = _OF_OWN_STRESS[side][k < 0]
-            if k < 0 and side == "tension" and self.fine.flank.order == 4:
-                share = np.interp(self._stress_share, _SHORT_BEHIND, (_OF_SHORT_BEHIND, _MOST_SMOOTH[side][k < 0]))
-                own = _OF_OWN_SHORT_BEHIND, part, part, _OF_OWN_LONG_BEHIND
-                part = np.interp(self._stress_share, (*_SHORT_BEHIND, *_LONG_BEHIND), own)
-            error = np.maximum(share * np.maximum(difference, beside), np.maximum(scattered, _SCATTERED_NEXT * scatter))
+            part, of_scatter = _OF_OWN_STRESS[side][k < 0], np.maximum(scattered, _SCATTERED_NEXT * scatter)
+            if self.fine.flank.order == 4:
+                own, places = (_OF_OWN_SHORT[side][k < 0], part), _SHORT
+                if k < 0 and side == "tension":
+                    share = np.interp(self._stress_share, _SHORT, (_OF_SHORT_BEHIND, _MOST_SMOOTH[side][k < 0]))
+                    own, places = (*own, part, _OF_OWN_LONG_BEHIND), (*_SHORT, *_LONG_BEHIND)
+                part = np.interp(self._stress_share, places, own)
+                if k > 0 and side == "tension":
+                    of_scatter *= np.interp(self._stress_share, _SHORT, (_SCATTERED_SHORT_AHEAD, 1.0))
+            error = np.maximum(share * np.maximum(difference, beside), of_scatter)
             least = _USUAL * max(self._usual_stress.values())
             return np.asarray(np.maximum(error, part * least * np.abs(value)))
         least = _OWN_USUAL * self._usual_stress[side]
