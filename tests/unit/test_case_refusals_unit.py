@@ -172,7 +172,8 @@ def test_other_lists_of_numbers_are_left_alone(fine):
         ({"balance": "lod"}, r'train\.balance = "lod": is not a body of this case; did you mean "load"'),
         ({"torque": {"motr": "5 N*m"}}, r'train\.torque = "motr": is not a body'),
         ({"mesh": {"I": {"driver": "motor", "driven": "wheel"}}}, r'train\.mesh\.I\.driven = "wheel": is not a body'),
-        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is not a pair'),
+        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'no pair of this case is called II; set pair = "I"'),
+        ({"mesh": {"II": {"pair": "J", "driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "J": is not'),
         ({"damper": {"d": {"a": "lead", "damping": "1 N*m*s"}}}, r'train\.damper\.d\.a = "lead": is not a body'),
     ],
 )

@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -376,10 +376,18 @@ def test_a_design_for_a_range_is_compared_with_reliefs_for_one_load_and_with_the
     present, other = (EndRelief(amount, tip - 0.1, tip) for amount in (8e-6, 20e-6))
     asked = []
 
+    @dataclass(frozen=True)
+    class Ground:
+        driver: EndRelief
+        driven: EndRelief
+        objective: float = 1.0
+
+        def applied(self, engagement):
+            return replace(engagement, driver_relief=self.driver)
+
     def grindable(engagement, load, shape, metric, *, banded=True, cache=None):
         asked.append((load, shape, metric, banded))
-        relief = other if banded else present
-        return SimpleNamespace(applied=lambda pair: replace(pair, driver_relief=relief), objective=1.0)
+        return Ground(other if banded else present, EndRelief(0.0, tip - 0.1, tip))
 
     monkeypatch.setattr(relief_design, "grindable", grindable)
     loading = LoadingFunction(1.3 * pair.base_pitch, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end))
@@ -402,6 +410,9 @@ def test_a_design_for_a_range_is_compared_with_reliefs_for_one_load_and_with_the
         assert [one.peak_to_peak for one in found.over_range[label]] == pytest.approx(
             [transmission_error(state, one, 12).peak_to_peak for one in (0.5 * load, load)], rel=1e-3
         )
+    left = [one.peak_to_peak for one in found.over_range["linear tip relief"]]
+    assert found.rounded["linear"] == pytest.approx(left, rel=2e-3)  # 20 um, and a diameter to a thousandth
+    assert found.rounded["linear"].tolist() != left
     assert list(found.for_one_load) == ["linear"]
     assert found.finer == 0
 
