@@ -390,10 +390,10 @@ class Estimate:
                 share = min(share, _MOST_SMOOTH[side][k < 0]) if self.fine.flank.order == 4 else share
             part, of_scatter = _OF_OWN_STRESS[side][k < 0], np.maximum(scattered, _SCATTERED_NEXT * scatter)
             if self.fine.flank.order == 4:
-                own, places = (_OF_OWN_SHORT[side][k < 0], part), _SHORT
+                places, own = [*_SHORT], [_OF_OWN_SHORT[side][k < 0], part]
                 if k < 0 and side == "tension":
                     share = np.interp(self._stress_share, _SHORT, (_OF_SHORT_BEHIND, _MOST_SMOOTH[side][k < 0]))
-                    own, places = (*own, part, _OF_OWN_LONG_BEHIND), (*_SHORT, *_LONG_BEHIND)
+                    places, own = [*places, *_LONG_BEHIND], [*own, part, _OF_OWN_LONG_BEHIND]
                 part = np.interp(self._stress_share, places, own)
                 if k > 0 and side == "tension":
                     of_scatter *= np.interp(self._stress_share, _SHORT, (_SCATTERED_SHORT_AHEAD, 1.0))
