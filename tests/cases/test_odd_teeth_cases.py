@@ -74,6 +74,7 @@ def test_half_a_tooth_cracked():
     assert any(listed in said for said in found.remarks)
     said = " ".join(sentence for sentence in found.answer.sentences)
     assert "32 % below that of ordinary teeth" in said
+    assert "N/µm), contact outside the path of contact included." in said
     assert "K_I up to 8.1" in said
     assert "54 % (load at radius" in said
 

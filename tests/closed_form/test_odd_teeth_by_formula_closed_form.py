@@ -1,6 +1,7 @@
 """Cracked and pitted teeth by the potential-energy method in mesh, beside springs in parallel added up by hand."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -136,7 +137,9 @@ def test_a_crosscheck_has_the_odd_tooth_as_the_revolution_has_it():
     assert table["mesh_stiffness_fe_ordinary [N/um]"].min() == pytest.approx(ordinary, rel=2e-3)
     loss = found.values["I_z22_5.mesh_stiffness_loss.potential-energy-simplified"].value
     assert loss == pytest.approx(found.values["I_z22_5.mesh_stiffness_loss.fe"].value, abs=6.0)
-    assert found.answer.sentences[0].startswith("Pair I, tooth 5 of gear z22 cracked: minimum mesh stiffness")
+    said = "Pair I, tooth 5 of gear z22 cracked: minimum mesh stiffness on the path of contact"
+    assert found.answer.sentences[0].startswith(said)
+    assert "path of contact" not in whole.answer.sentences[0]  # there nothing else touches
     curves = found.figures["crosscheck_odd_tooth_I_z22_5"].panels[0].items
     assert {curve.dash or "solid" for curve in curves if curve.name.endswith("cracked")} == {"solid"}
     assert {curve.dash for curve in curves if curve.name.endswith("ordinary")} == {"dash"}
@@ -158,3 +161,22 @@ def test_non_working_flanks_that_carry_load_over_a_revolution_are_said():
         assert bool(notes[damping]) == (force.min() < 0.0)
     assert len(notes[0.02]) == 1
     assert 'train.mesh.I.backlash (a length or "unlimited")' in notes[0.02][0]
+
+
+@pytest.mark.dear
+def test_the_answer_on_the_dynamic_factor_has_the_load_on_non_working_flanks():
+    """Without backlash teeth hardly lose contact near the resonance: their other flanks carry load."""
+    driver = fegear.Gear(22, "2.5 mm", face_width="17 mm", name="z22")
+    said = []
+    for room in ("0 um", "60 um"):
+        driven = fegear.Gear(43, "2.5 mm", face_width="17 mm", thickness_allowance=room, name="z43")
+        pair = fegear.Pair(driver, driven, compliance=NAME)
+        found = fegear.dynamic_factor(pair, torque="90 N*m", speeds=["10000 rpm"], damping_ratio=0.03)
+        said.append((found.tables["dynamic_factor_I"]["backside_fraction"].max(), found.answer.sentences[-1]))
+    (share, tight), (none, loose) = said
+    assert share > 0.05
+    assert "loss of contact at no speed; " in tight
+    (shown,) = re.findall(r"; the non-working flanks carry load up to ([0-9.]+) % of the time\.$", tight)
+    assert float(shown) == pytest.approx(100.0 * share, rel=0.02)
+    assert none == 0.0
+    assert re.search(r"loss of contact up to [0-9.]+ % of the time\.$", loose)

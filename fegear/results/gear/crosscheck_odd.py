@@ -86,8 +86,8 @@ def said_of_passage(seen: Seen) -> list[str]:
     said = ", ".join(f"{name} {found.odd.min() * 1e-6:.4g} N/µm (-{percent(found.loss)})" for name, found in by)
     return [
         (
-            f"Pair {one.pair}, tooth {tooth.tooth} of gear {tooth.gear} {tooth.what}: minimum mesh stiffness (and "
-            f"change from ordinary teeth) {said}."
+            f"Pair {one.pair}, tooth {tooth.tooth} of gear {tooth.gear} {tooth.what}: minimum mesh stiffness on the "
+            f"path of contact (and change from ordinary teeth) {said}."
         )
     ]
 
@@ -102,7 +102,7 @@ def passage_values(seen: Seen) -> Iterator[Value]:
     ):  # fmt: skip
         yield from Number(
             "loss", of=of, owner="{key}", name=f"mesh_stiffness_loss.{name}",
-            meaning=f"reduction of the minimum mesh stiffness, {which}, {words}",
+            meaning=f"reduction of the minimum mesh stiffness on the path of contact, {which}, {words}",
         ).values(seen)  # fmt: skip
 
 

@@ -81,6 +81,8 @@ class RevolutionInputs:
         Names of driver and driven gear.
     others : int
         Loads of the case besides the nominal one.
+    corners : bool
+        Whether contact outside the path of contact is included.
     """
 
     odd: tuple[tuple[Member, tuple[int, ...]], ...]
@@ -88,6 +90,7 @@ class RevolutionInputs:
     described: tuple[tuple[Member, str], ...]
     gears: tuple[str, str] = field(compare=False)
     others: int = field(compare=False)
+    corners: bool = field(compare=False)
     name: str = field(compare=False)
 
 
@@ -212,7 +215,8 @@ def inputs_of(scene: Scene, name: str) -> RevolutionInputs:
     teeth = tuple((member, one.numbers) for member, one in known)
     described = tuple((member, one.described) for member, one in known)
     others = len(part.all_loads(scene.pairs[name])) - 1
-    return RevolutionInputs(teeth, cracked, described, gears, others, name)
+    corners = bool(scene.case.effects.corner_contact)
+    return RevolutionInputs(teeth, cracked, described, gears, others, corners, name)
 
 
 def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> RevolutionData:
@@ -307,10 +311,11 @@ def _answer(seen: Seen) -> Iterator[str]:
         return
     start = f"Pair {seen.name} at {load_words(data.found.load)}"
     which = " and ".join(f"{said} ({member})" for member, said in seen.asked.described)
+    over = ", contact outside the path of contact included" if seen.asked.corners else ""
     yield (
         f"{start}, {which}: minimum mesh stiffness {data.mesh_stiffness_min * 1e-6:.4g} N/µm, "
         f"{percent(data.mesh_stiffness_loss)} below that of ordinary teeth "
-        f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm)."
+        f"({data.mesh_stiffness_min_ordinary * 1e-6:.4g} N/µm){over}."
     )
     residual = data.found.residual
     how = "rises" if residual.max() >= -residual.min() else "falls"

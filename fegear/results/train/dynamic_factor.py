@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 #: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
 _COARSE = 0.1
+#: Share of the time below which it is round-off.
+_ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
@@ -314,10 +316,12 @@ def _lowest(seen: Seen) -> Iterator[str]:
 
 
 def _lost(seen: Seen) -> Iterator[str]:
-    """Whether teeth lose contact."""
+    """Whether teeth lose contact, and whether the other flanks carry load instead."""
     if seen.data.chart is not None and seen.data.parting:
-        most = seen.data.largest.contact_loss
-        words = f"up to {percent(most)} of the time" if most else "at no speed"
+        most, behind = seen.data.largest.contact_loss, float(seen.data.held.behind.max())
+        words = f"up to {percent(most)} of the time" if most and most > _ROUND_OFF else "at no speed"
+        if behind > _ROUND_OFF:
+            words += f"; the non-working flanks carry load up to {percent(behind)} of the time"
         yield f"Mesh {seen.name}: loss of contact {words}."
 
 
