@@ -43,6 +43,8 @@ _SLACK = 1e-3
 _HARMONICS = 12
 #: Largest part of the samples that are spikes; groups of teeth whose gains are compared, and fewest of them.
 _MOST_SPIKES, _GROUPS, _FEW_GROUPS = 0.1, 24, 3
+#: Logarithm of measured / computed up to which a trace may be at another torque.
+_OF_CURVE = math.log(1.15)
 #: Fewest turns whose means have a scatter.
 _TURNS = 3
 #: Orders of each gear that are fitted together, and periods over the trace that tell two of them apart.
@@ -433,16 +435,24 @@ def better_described(
         As it is described.
     x : ndarray, shape (P,)
     curves : mapping of str to ndarray, shape (P,)
-        Computed transmission error: under the empty name that beside which it is, and others.
+        Computed transmission error: under the empty name that beside which it is, and others, which have to fit in
+        size as well.
     base_pitch : float
     fit : collection of {"offset", "scale", "shift"}
     """
     over = _Over(x, base_pitch)
-    better = alternatives(
-        fitted, found.teeth * found.angle, found.te, over.angle, {name: over.closed(te) for name, te in curves.items()},
-        fit,
-    )  # fmt: skip
+    asked = {name: over.closed(te) for name, te in curves.items()}
+    better = _alternatives(found, fitted, over, asked, fit)
+    wrong = {one.curve for one in better if one.curve and abs(math.log(one.fitted.gain)) > _OF_CURVE}
+    if wrong:  # another shape of the size of none of them
+        better = _alternatives(found, fitted, over, {name: te for name, te in asked.items() if name not in wrong}, fit)
     return tuple(replace(one, fitted=replace(one.fitted, shift=one.fitted.shift / found.teeth)) for one in better)
+
+
+def _alternatives(
+    found: MeasuredError, fitted: FittedError, over: _Over, curves: Mapping[str, Array], fit: Collection[Fitted]
+) -> tuple[Alternative, ...]:  # fmt: skip
+    return alternatives(fitted, found.teeth * found.angle, found.te, over.angle, curves, fit)
 
 
 def behind_low_pass(

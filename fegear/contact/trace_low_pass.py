@@ -1,9 +1,10 @@
-"""Whether a trace is what a low pass of first order makes of the computed curve: filter or bandwidth of an amplifier.
+"""Whether a trace is what a low pass makes of the computed curve: filter or bandwidth of an amplifier.
 
 A time constant T at the rotation speed w is an angle w T, whatever the speed. The computed curve is filtered along the
 rotation, with its first value before its beginning, or as one that repeats (a transmission error over a tooth pitch),
-and the trace is fitted to it as to the curve itself; the shift takes up the delay, so that filters of higher order,
-which delay more, have nearly the same shape.
+and the trace is fitted to it as to the curve itself; the shift takes up the delay. Behind a low pass of first order it
+stays skewed; what amplifiers have are mostly Butterworth and Bessel filters of higher order, which delay more, and of
+which the first ring. They are looked for where that of first order leaves something.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.fitted_line import Fitted
 
+Kind = Literal["", "Butterworth", "Bessel"]
+
 #: Angles of the time constant that are looked at first, up to a good part of the contact of a tooth, or of a curve that
 #: repeats with a full turn [rad].
 _LAGS, _LAGS_OF_PERIOD = np.radians(np.geomspace(0.2, 20.0, 9)), np.geomspace(0.05, 5.0, 9)
@@ -32,28 +35,81 @@ _LAGS, _LAGS_OF_PERIOD = np.radians(np.geomspace(0.2, 20.0, 9)), np.geomspace(0.
 _EXPLAINED, _EXPLAINED_OF_PERIOD = 2e-3, 3e-4
 #: Least correlation behind a low pass, noise included: a rounder curve fits nearly every wrong one better.
 _FITS = 0.97
-#: Samples that are fitted at most, and points of the filtered curve.
-_MOST, _POINTS = 4000, 3000
+#: Kinds of filters of higher order that are looked for, and their orders.
+_HIGHER: tuple[tuple[Kind, int], ...] = (("Butterworth", 2), ("Butterworth", 4), ("Butterworth", 8), ("Bessel", 4))
+#: Times less that a filter of higher order has to leave unexplained than that of first order.
+_LESS = 2.0
+#: Time constants after which all of them have settled.
+_SETTLED = 25.0
+#: Samples that are fitted at most, and to choose among filters of higher order; points of the filtered curve.
+_MOST, _MOST_RANKED, _POINTS = 4000, 1000, 3000
+#: How close a logarithm of the time constant is found.
+_CLOSE = {"xatol": 0.01}
 
 
 @dataclass(frozen=True)
 class LowPass:
-    """A low pass of first order that explains a trace.
+    """A low pass that explains a trace.
 
     Parameters
     ----------
     lag : float
-        Rotation within its time constant [rad].
+        Rotation within its time constant, one over the limiting angular frequency (-3 dB) [rad].
     fitted : FittedCurve
         The trace laid over the filtered curve.
+    kind : {"", "Butterworth", "Bessel"}
+        Empty for first order.
+    order : int
     """
 
     lag: float
     fitted: FittedCurve
+    kind: Kind = ""
+    order: int = 1
+
+
+def filtered_higher(
+    angle: Array, curve: Array, lag: float, kind: Kind, order: int, *, repeats: bool = False
+) -> tuple[Array, Array]:  # fmt: skip
+    """The curve behind a low pass of higher order, over uniform angles, by its transfer function.
+
+    Parameters
+    ----------
+    angle, curve : ndarray, shape (Q,)
+        Ascending [rad], any unit.
+    lag : float
+        Rotation within one over the limiting angular frequency (-3 dB) [rad].
+    kind : {"Butterworth", "Bessel"}
+    order : int
+    repeats : bool
+        Whether the curve begins again where it ends; else it had its first value before.
+    """
+    at = np.linspace(angle[0], angle[-1], _POINTS)
+    values = np.interp(at, angle, curve)
+    step = at[1] - at[0]
+    before = 0 if repeats else math.ceil(_SETTLED * lag / step)
+    # of a curve that repeats the last point is the first one
+    before_it = np.concatenate([np.full(before, values[0]), values[:-1] if repeats else values]) - values[0]
+    frequency = 2.0 * math.pi * np.fft.rfftfreq(before_it.size, step)
+    output = np.fft.irfft(np.fft.rfft(before_it) * _transfer(kind, order, frequency * lag), before_it.size)
+    if repeats:
+        return at, np.append(output, output[0]) + values[0]
+    return at, output[before:] + values[0]
+
+
+def _transfer(kind: Kind, order: int, frequency: Array) -> Array:
+    """Of a filter whose limiting angular frequency is one."""
+    from scipy.signal import bessel, butter, freqs_zpk
+
+    made = butter(order, 1.0, analog=True, output="zpk") if kind == "Butterworth" else bessel(
+        order, 1.0, analog=True, output="zpk", norm="mag"
+    )  # fmt: skip
+    found: Array = freqs_zpk(*made, worN=frequency)[1]
+    return found
 
 
 def filtered(angle: Array, curve: Array, lag: float, *, repeats: bool = False) -> tuple[Array, Array]:
-    """The curve behind a low pass, over uniform angles.
+    """The curve behind a low pass of first order, over uniform angles.
 
     Parameters
     ----------
@@ -106,26 +162,46 @@ def low_pass(
         return None  # it fits, or time goes against the angle
     from scipy.optimize import minimize_scalar
 
-    some = slice(None, None, -(-angle.size // _MOST))
-    along = turns_along(angle)[some] * 2.0 * math.pi + angle[0]
-    thinned = measured[some]
+    turned = turns_along(angle) * 2.0 * math.pi + angle[0]
 
-    def through(log_lag: float) -> FittedCurve | None:
+    def through(log_lag: float, kind: Kind, order: int, most: int) -> FittedCurve | None:
+        lag, some = math.exp(log_lag), slice(None, None, -(-angle.size // most))
         try:
-            behind = filtered(curve_angle, curve, math.exp(log_lag), repeats=repeats)
-            return fit_curve(along, thinned, *behind, {*fit, "scale"})
+            behind = (
+                filtered_higher(curve_angle, curve, lag, kind, order, repeats=repeats) if kind else
+                filtered(curve_angle, curve, lag, repeats=repeats)
+            )  # fmt: skip
+            return fit_curve(turned[some], measured[some], *behind, {*fit, "scale"})
         except NothingToCompareError:
             return None
 
-    def left(log_lag: float) -> float:
-        one = through(log_lag)
-        return 1.0 if one is None or one.gain <= 0.0 else 1.0 - one.correlation**2
+    def left(log_lag: float, kind: Kind, order: int, most: int) -> float:
+        return _left(through(log_lag, kind, order, most))
 
     logs = np.log(_LAGS_OF_PERIOD if repeats else _LAGS)
-    best = int(np.argmin([left(one) for one in logs]))
-    ends = logs[max(best - 1, 0)], logs[min(best + 1, logs.size - 1)]
-    at = float(minimize_scalar(left, bounds=ends, method="bounded", options={"xatol": 0.01}).x)
-    one = through(at)
-    if one is None or one.correlation < _FITS or not clearly_better(one, found):
+
+    def nearest(kind: Kind, order: int, most: int) -> tuple[float, float]:
+        """What the best lag of a kind leaves unexplained, and its logarithm."""
+        best = int(np.argmin([left(one, kind, order, most) for one in logs]))
+        ends = logs[max(best - 1, 0)], logs[min(best + 1, logs.size - 1)]
+        found = minimize_scalar(left, bounds=ends, args=(kind, order, most), method="bounded", options=_CLOSE)
+        return float(found.fun), float(found.x)
+
+    def laid(log_lag: float, kind: Kind, order: int) -> LowPass | None:
+        fitted = through(log_lag, kind, order, _MOST)
+        return None if fitted is None else LowPass(math.exp(log_lag), fitted, kind, order)
+
+    best = laid(nearest("", 1, _MOST)[1], "", 1)
+    if best is None or unexplained(best.fitted) > explained:
+        (_, log_lag), which = min((nearest(*one, _MOST_RANKED), one) for one in _HIGHER)
+        higher = laid(log_lag, *which)
+        if higher is not None and _LESS * _left(higher.fitted) < _left(None if best is None else best.fitted):
+            best = higher
+    if best is None or best.fitted.correlation < _FITS or not clearly_better(best.fitted, found):
         return None
-    return LowPass(math.exp(at), one)
+    return best
+
+
+def _left(found: FittedCurve | None) -> float:
+    """Part of the variance of a trace that its curve leaves, with the noise."""
+    return 1.0 if found is None or found.gain <= 0.0 else 1.0 - found.correlation**2

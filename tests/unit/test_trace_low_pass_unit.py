@@ -1,14 +1,16 @@
 """A trace behind a low pass: the time constant is found, and no other trace is said to have one."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
+from scipy.signal import bessel, butter, lfilter
 
 from fegear.base.notes import NoteClass
 from fegear.contact.fitted_curve import fit_curve
 from fegear.contact.measured_error import behind_low_pass, beside_computed, measured_error
-from fegear.contact.trace_low_pass import filtered, low_pass
+from fegear.contact.trace_low_pass import filtered, filtered_higher, low_pass
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.trace_verdict import ComputedPeak, alike, verdict
 
@@ -103,3 +105,40 @@ def test_what_is_no_low_pass_has_none():
         assert low_pass(found, TURNS, measured, ANGLE, STRAIN, FIT) is None
     backwards = fit_curve(-TURNS, trace(0.08), ANGLE, STRAIN, FIT)
     assert low_pass(backwards, -TURNS, trace(0.08), ANGLE, STRAIN, FIT) is None
+
+
+def test_a_step_behind_a_butterworth_filter_of_second_order_has_its_closed_form():
+    at, step = filtered_higher(np.array([0.0, 1e-9, 1.0]), np.array([2.0, 3.0, 3.0]), 0.05, "Butterworth", 2)
+    phase = at / 0.05 / math.sqrt(2.0)
+    expected = 3.0 - np.exp(-phase) * (np.cos(phase) + np.sin(phase))
+    np.testing.assert_allclose(step, expected, atol=6e-3)  # the step is half a point early
+
+
+@pytest.mark.parametrize("lag", [0.1, 1.3])
+def test_harmonics_of_a_curve_that_repeats_have_their_closed_form_behind_a_butterworth_filter(lag):
+    angle = np.linspace(1.0, 1.0 + 2.0 * math.pi, 721)
+    at, found = filtered_higher(
+        angle, 2.0 + np.cos(angle) + 0.4 * np.sin(3.0 * angle), lag, "Butterworth", 2, repeats=True
+    )
+    passed = {n: 1.0 / (1.0 + 1j * math.sqrt(2.0) * n * lag - (n * lag) ** 2) for n in (1, 3)}
+    expected = 2.0 + (passed[1] * np.exp(1j * at) - 0.4j * passed[3] * np.exp(3j * at)).real
+    np.testing.assert_allclose(found, expected, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kind", "order", "made"), [("Butterworth", 4, butter), ("Bessel", 4, partial(bessel, norm="mag"))]
+)
+def test_filters_of_higher_order_are_named_with_their_limiting_frequency(kind, order, made):
+    """Samples filtered one by one along three turns at 12 Hz, 2513 in each."""
+    sampling, cutoff, speed = 2.0 * math.pi / 2.5e-3 * 12.0, 260.0, 2.0 * math.pi * 12.0
+    turns = np.arange(0.0, 6.0 * math.pi, 2.5e-3)
+    place = np.mod(turns - 1.0 + math.pi, 2.0 * math.pi) - math.pi
+    noise = np.random.default_rng(5).normal(0.0, 4e-6, turns.size)
+    measured = 1.03 * lfilter(*made(order, cutoff / (0.5 * sampling)), np.interp(place, ANGLE, STRAIN)) + noise
+    found = fit_curve(turns, measured, ANGLE, STRAIN, FIT)
+    behind = low_pass(found, turns, measured, ANGLE, STRAIN, FIT)
+    assert (behind.kind, behind.order) == (kind, order)
+    assert speed / (2.0 * math.pi * behind.lag) == pytest.approx(cutoff, rel=0.02)
+    assert behind.fitted.gain == pytest.approx(1.03, abs=0.005)
+    said = verdict(found, ComputedPeak(9e-4), Otherwise(low_pass=behind, speed=speed))
+    assert f"behind a low pass of about order {order} ({kind}) with a limiting frequency of 260 Hz at 720 rpm" in said

@@ -183,7 +183,9 @@ def test_what_is_left_out_is_counted_and_drawn_otherwise():
     assert left_out(cut).endswith(
         "samples are saturated at 600 µm/m (range of the amplifier); left out of the comparison, drawn as crosses"
     )
-    assert "samples are saturated at 600 µm/m" in verdict(cut, PEAK, brief=True)
+    brief = verdict(cut, PEAK, brief=True)
+    assert "samples are saturated at 600 µm/m" in brief
+    assert brief.word.endswith(", saturated at 600 µm/m")
     clean = fit_curve(TURNS, strain(), ANGLE, STRAIN)
     assert left_out(clean) == left_out(None) == drawn_as(None) == ""
     assert drawn_as(clean) == " Points: strain as measured."
@@ -211,6 +213,15 @@ def test_traces_of_encoders_that_are_described_wrongly_are_named(trace, words):
     better = better_described(measured, fitted, X, {"": HEAVY, "60 N m": LIGHT}, 8e-3, fit)
     said = OtherwiseError(better).said(fitted, float(np.ptp(HEAVY)))
     assert said.startswith(f"the trace fits {words}") if words else said == ""
+
+
+def test_the_shape_at_another_torque_is_not_named_where_the_size_is_not_that_of_it():
+    fit = ("offset", "scale", "shift")
+    for size, named in ((1.05, True), (1.4, False), (0.7, False)):
+        measured = measured_error(*encoders(size * LIGHT), 24, 36)
+        fitted = beside_computed(measured, X, HEAVY, 8e-3, fit)
+        better = better_described(measured, fitted, X, {"": HEAVY, "60 N m": LIGHT}, 8e-3, fit)
+        assert ("60 N m" in [one.curve for one in better]) is named
 
 
 @pytest.mark.parametrize("seed", range(6))

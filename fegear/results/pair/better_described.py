@@ -80,12 +80,18 @@ def behind_low_pass(behind: LowPass, found: FittedCurve, size: float, speed: flo
     of, check : str
         How the size is called, and where the low pass is looked for.
     """
-    limit = f"{figures(math.degrees(behind.lag), 2)}° of rotation"
+    cutoff = ""
     if speed:
-        cutoff = figures(speed / (2.0 * math.pi * behind.lag), 2)
-        limit += f", a limiting frequency of {cutoff} Hz at {figures(speed * 30.0 / math.pi)} rpm"
+        hertz = figures(speed / (2.0 * math.pi * behind.lag), 2)
+        cutoff = f"a limiting frequency of {hertz} Hz at {figures(speed * 30.0 / math.pi)} rpm"
+    if behind.kind:
+        order = f" of about order {behind.order} ({behind.kind})"
+        limit = cutoff or f"a limiting frequency of {figures(1.0 / behind.lag, 2)} times per turn"
+    else:
+        order, limit = "", f"a time constant of {figures(math.degrees(behind.lag), 2)}° of rotation"
+        limit += f", {cutoff}" if cutoff else ""
     return (
-        f"the trace fits behind a low pass with a time constant of {limit}: RMS of the residual "
+        f"the trace fits behind a low pass{order} with {limit}: RMS of the residual "
         f"{percent(behind.fitted.rms / size)} of {of} instead of {percent(found.rms / size)}, measured / computed "
         f"{behind.fitted.gain:#.3g}; check {check}"
     )

@@ -312,6 +312,7 @@ def verdict(
     if brief:  # what is said without its notes has to name what falsifies it
         drift = found.unfitted_drift
         judged += f"; {saturated}" if (saturated := saturation(found)) else ""
+        word += _saturated_at(found)
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
         steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
         if hum_named(found) and found.hum is not None:
@@ -339,6 +340,10 @@ def _in_place_of_verdict(
             NoteClass.FAILS, word="opposite sign",
         )  # fmt: skip
     return None
+
+
+def _saturated_at(found: FittedCurve) -> str:
+    return "" if found.saturated_at is None else f", saturated at {figures(found.saturated_at * 1e6)} µm/m"
 
 
 def _by(off: float) -> str:
