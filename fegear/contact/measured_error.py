@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -442,17 +443,12 @@ def better_described(
     """
     over = _Over(x, base_pitch)
     asked = {name: over.closed(te) for name, te in curves.items()}
-    better = _alternatives(found, fitted, over, asked, fit)
+    described = partial(alternatives, fitted, found.teeth * found.angle, found.te, over.angle)
+    better = described(asked, fit)
     wrong = {one.curve for one in better if one.curve and abs(math.log(one.fitted.gain)) > _OF_CURVE}
     if wrong:  # another shape of the size of none of them
-        better = _alternatives(found, fitted, over, {name: te for name, te in asked.items() if name not in wrong}, fit)
+        better = described({name: te for name, te in asked.items() if name not in wrong}, fit)
     return tuple(replace(one, fitted=replace(one.fitted, shift=one.fitted.shift / found.teeth)) for one in better)
-
-
-def _alternatives(
-    found: MeasuredError, fitted: FittedError, over: _Over, curves: Mapping[str, Array], fit: Collection[Fitted]
-) -> tuple[Alternative, ...]:  # fmt: skip
-    return alternatives(fitted, found.teeth * found.angle, found.te, over.angle, curves, fit)
 
 
 def behind_low_pass(
