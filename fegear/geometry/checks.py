@@ -18,6 +18,8 @@ LEAST_TIP_CLEARANCE = 0.1
 LEAST_CONTACT_RATIO = 1.2
 #: Both profile shifts of a pair are printed with four digits at least: what that takes off their sum, in modules.
 ROUNDED_SHIFTS = 1e-4
+#: By how much a margin that is searched for may lie below zero where curves just touch [modules]: below any tolerance.
+TOUCHING = 1e-5
 #: Least rim below the root circle, in depths of a tooth: thinner rims bend with their teeth (Y_B of ISO 6336-3 is 1).
 LEAST_RIM = 1.2
 
@@ -113,8 +115,8 @@ class Undercut(NamedTuple):
     enough : float
         Profile shift from which on nothing is cut away, rounded up to four digits.
     straight : float or None
-        Depth h of the rack's straight flank below its reference line [modules], where x_min = h - z sin(alpha)^2 / 2:
-        spur gears whose thickness is that of their profile shift.
+        Depth h of the rack's straight flank below its reference line [normal modules], where
+        x_min = h - z sin(alpha_t)^2 / (2 cos(beta)): gears whose thickness is that of their profile shift.
     """
 
     lost: float
@@ -132,8 +134,8 @@ def undercut_of(gear: Gear) -> Undercut | None:
     if tooth.profile_shift < least - ROUNDED_SHIFTS:
         lost = (tooth.form_radius - tooth.base_radius) * gear.module
     straight = tooth.rack.tip_centre_depth + tooth.rack.tip_radius * math.sin(tooth.rack.pressure_angle)
-    by_rule = straight - 0.5 * tooth.teeth * math.sin(tooth.rack.pressure_angle) ** 2
-    holds = gear.helix_angle == 0.0 and abs(by_rule - least) < ROUNDED_SHIFTS
+    by_rule = straight - 0.5 * tooth.teeth * math.sin(gear.transverse_pressure_angle) ** 2 / math.cos(gear.helix_angle)
+    holds = abs(by_rule - least) < ROUNDED_SHIFTS
     return Undercut(lost, tooth.profile_shift, math.ceil(least * 1e4) * 1e-4, straight if holds else None)
 
 
@@ -174,7 +176,7 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
                       "reduce this tip diameter or the rack tip radius of the mating gear")
             )  # fmt: skip
     checks += [
-        Check(name, one.name, one.margin * module, 0.0, "mm", one.trouble)
+        Check(name, one.name, one.margin * module, 0.0, "mm", one.trouble, TOUCHING * module)
         for one in (check.of_pinion for check in pair.internal_checks)
         if math.isfinite(one.margin)
     ]

@@ -81,8 +81,18 @@ def figures(value: float, digits: int) -> str:
     return plain_figures(value, digits).replace("-", "−")
 
 
+def _signed(value: float, decimals: int) -> str:
+    """With so many decimals, and the minus sign of a formula."""
+    return f"{value:.{decimals}f}".replace("-", "−")
+
+
 def _mm(length: float) -> str:
     return f"{figures(length * 1e3, _DIGITS)} mm"
+
+
+def _distance(length: float) -> str:
+    """A centre distance, to the micrometre."""
+    return f"{length * 1e3:.3f}".rstrip("0").rstrip(".") + " mm"
 
 
 def _degrees(angle: float) -> str:
@@ -142,18 +152,19 @@ def _undercut(pair: GearPair) -> Exercise:
     found = {member: one for member in MEMBERS if (one := undercut_of(pair.gear(member))) is not None}
     said = [
         f"The {member} gear is undercut: {figures(one.lost * 1e3, 2)} mm of its involute above the base circle are cut "
-        f"away; profile_shift = {one.enough:.4f} and more avoid it."
+        f"away; profile_shift = {_signed(one.enough, 4)} and more avoid it."
         for member, one in found.items() if one.lost > 0.0
     ]  # fmt: skip
     if not said:
-        limits = ", ".join(f"{one.enough:.4f} ({member})" for member, one in found.items())
+        limits = ", ".join(f"{_signed(one.enough, 4)} ({member})" for member, one in found.items())
         begins = f"; undercut begins below profile_shift = {limits}" if limits else ""
         said = [f"Neither gear is undercut{begins}."]
     straight = {member: one.straight for member, one in found.items() if one.straight is not None}
     if straight:
-        usual = ", ".join(f"{_least_shift(pair.gear(member)):.3f} ({member})" for member in straight)
+        usual = ", ".join(f"{_signed(_least_shift(pair.gear(member)), 3)} ({member})" for member in straight)
+        rule = "x_min = h − z sin²α_t / (2 cos β)" if pair.driver.helix_angle else "x_min = h − z sin²α/2"
         said.append(
-            f"Rule: x_min = h − z sin²α/2. Textbooks take h = 1: {usual}; the flank of this rack is straight down to "
+            f"Rule: {rule}. Textbooks take h = 1: {usual}; the flank of this rack is straight down to "
             f"h = {' and '.join(dict.fromkeys(f'{one:.3f}' for one in straight.values()))} modules below its reference "
             "line."
         )
@@ -162,7 +173,7 @@ def _undercut(pair: GearPair) -> Exercise:
 
 def _least_shift(gear: Gear) -> float:
     """Profile shift without undercut by a rack that is straight down to one module."""
-    return 1.0 - 0.5 * gear.teeth * math.sin(gear.normal_pressure_angle) ** 2
+    return 1.0 - 0.5 * gear.teeth * math.sin(gear.transverse_pressure_angle) ** 2 / math.cos(gear.helix_angle)
 
 
 def _contact_ratio(pair: GearPair) -> Exercise:
@@ -170,22 +181,32 @@ def _contact_ratio(pair: GearPair) -> Exercise:
     ratio = f"{_mm(pair.path_length)} / {_mm(pair.base_pitch)} = {pair.contact_ratio:.3f}"
     below = " Below 1 motion is not transmitted continuously." if pair.contact_ratio < 1.0 else ""
     radii = [(one.tip_radius, one.base_radius) for one in (pair.driver, pair.driven)]
-    if pair.internal or any(tip <= base for tip, base in radii):
+    if any(tip <= base for tip, base in radii):
         return Exercise("Geometry", question, f"Path of contact over base pitch: {ratio}.{below}")
     tips = [math.sqrt(tip**2 - base**2) for tip, base in radii]
     angle = pair.working_pressure_angle
     between = pair.centre_distance * math.sin(angle)
-    by_tips = (sum(tips) - between) / pair.base_pitch
+    signs = [one.tooth.side for one in (pair.driver, pair.driven)]  # -1 of a ring, whose tip circle is the inner one
+    by_tips = (sum(side * tip for side, tip in zip(signs, tips, strict=True)) - pair.side * between) / pair.base_pitch
     t = "t" if pair.driver.helix_angle else ""
-    formula = (
-        f"ε = (√(r_a1² − r_b1²) + √(r_a2² − r_b2²) − a sin α_w{t}) / p_b{t} = ({figures(tips[0] * 1e3, _DIGITS)} + "
-        f"{figures(tips[1] * 1e3, _DIGITS)} − {figures(between * 1e3, _DIGITS)}) mm / {_mm(pair.base_pitch)} = "
-        f"{by_tips:.3f}"
+    roots, lengths = (
+        _sum(*zip((*signs, -pair.side), terms, strict=True))
+        for terms in (
+            ("√(r_a1² − r_b1²)", "√(r_a2² − r_b2²)", f"a sin α_w{t}"),
+            [figures(one * 1e3, _DIGITS) for one in (*tips, between)],
+        )
     )
+    formula = f"ε = ({roots}) / p_b{t} = ({lengths}) mm / {_mm(pair.base_pitch)} = {by_tips:.3f}"
     if _same(by_tips, pair.contact_ratio):
         overlap = f"; overlap ratio {pair.overlap_ratio:.3f}" if pair.overlap_ratio else ""
         return Exercise("Geometry", question, f"{formula}{overlap}.{below}")
     return Exercise("Geometry", question, f"{formula}; fegear: {ratio}, because {_shortened_by(pair)}.{below}")
+
+
+def _sum(*terms: tuple[float, str]) -> str:
+    """Terms with their signs, those added first."""
+    plus, *more = sorted(terms, key=lambda one: one[0] < 0.0)
+    return plus[1] + "".join(f" {'−' if sign < 0.0 else '+'} {term}" for sign, term in more)
 
 
 def _shortened_by(pair: GearPair) -> str:
@@ -246,9 +267,10 @@ def _centre_distance(mesh: _Mesh) -> Exercise:
     tooth = pair.driver.symmetric_tooth
     shifts = tooth.profile_shift + pair.driven.symmetric_tooth.profile_shift
     teeth = tooth.side * tooth.teeth + pair.driven.tooth.side * pair.driven.teeth
-    t, cos = ("t", " / cos β") if mesh.helical else ("", "")
+    t, n, reference, cos = ("_wt", "_n", "_t", " / cos β") if mesh.helical else ("_w", "", "", "")
     between = "|z₁ − z₂|" if pair.internal else "(z₁ + z₂)"
-    said = f"a = m {between}{cos} / 2 = {_mm(a)}"
+    signed = "(z₂ − z₁)" if tooth.side < 0.0 else "(z₁ − z₂)" if pair.internal else between
+    said = f"a = m{n} {between}{cos} / 2 = {_distance(a)}"
     tight = a
     if abs(shifts) > 1e-12:
         angle = float(pressure_angle_of_inv(
@@ -256,14 +278,14 @@ def _centre_distance(mesh: _Mesh) -> Exercise:
         ))  # fmt: skip
         tight = a * math.cos(tooth.pressure_angle) / math.cos(angle)
         said += (
-            f"; inv α_w{t} = inv α{t} + 2 (x₁ + x₂) tan α / (z₁ + z₂): α_w{t} = {_degrees(angle)}, "
-            f"a_w = a cos α{t} / cos α_w{t} = {_mm(tight)} without backlash"
+            f"; inv α{t} = inv α{reference} + 2 (x₁ + x₂) tan α{n} / {signed}: α{t} = {_degrees(angle)}, "
+            f"a_w = a cos α{reference} / cos α{t} = {_distance(tight)} without backlash"
         )
     else:
         said += ", the working centre distance without backlash, since x₁ + x₂ = 0"
     if abs(pair.centre_distance - tight) > 1e-4 * pair.driver.module:
         said += (
-            f"; the case has {_mm(pair.centre_distance)}: α_w{t} = {_degrees(pair.working_pressure_angle)}, normal "
+            f"; the case has {_distance(pair.centre_distance)}: α{t} = {_degrees(pair.working_pressure_angle)}, normal "
             f"backlash {_mm(pair.normal_backlash)}"
         )
     elif pair.normal_backlash > 1e-4 * pair.driver.module:
@@ -297,11 +319,12 @@ def _tip_thickness(pair: GearPair) -> Exercise:
         if not _same(own, usual):
             here += f" (fegear: {_mm(own)}, with thickness allowance and the end of the involute below a tip rounding)"
         said.append(here)
-    helix = " cos β_a" if pair.driver.helix_angle else ""
+    n, t, helix = ("_n", "_t", " cos β_a") if pair.driver.helix_angle else ("", "", "")
+    at_tip = f"α_a{t[1:]}"
     return Exercise(
         "Geometry",
         "How thick are the teeth at the tip circle, and is that enough?",
-        f"s_a = d_a ((π/2 + 2 x tan α) / z + inv α − inv α_a){helix}: {'; '.join(said)}. Usual minimum "
+        f"s_a = d_a ((π/2 + 2 x tan α{n}) / z + inv α{t} − inv {at_tip}){helix}: {'; '.join(said)}. Usual minimum "
         f"{LEAST_TIP_THICKNESS} m, case-hardened {_HARDENED} m.",
     )
 

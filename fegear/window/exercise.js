@@ -5,7 +5,8 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
   const { plain, ofPanel } = fegearPlots, numbersOf = fegearPacked.numbers;
   const $ = (id) => document.getElementById(id);
   const made = (tag, cls, text) => Object.assign(document.createElement(tag), cls ? { className: cls } : {}, text === undefined ? {} : { textContent: text });
-  const rounded = ({ value, unit }, count = 3) => `${Number(value.toPrecision(count))}${unit ? ` ${unit}` : ""}`;
+  const figures = (value, count = 3) => String(Number(value.toPrecision(count))).replace("-", "−");
+  const rounded = ({ value, unit }, count = 3) => `${figures(value, count)}${unit ? ` ${unit}` : ""}`;
   const share = (part) => `${Math.round(100 * part)} %`;
 
   // ---- answers that follow from solved gears; an empty one where figures alone show it ------------------------------
@@ -13,9 +14,9 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
     const one = number("te_peak_to_peak");
     if (!one) return "";
     const at = half(), now = `The peak-to-peak transmission error is ${rounded(one)}`;
-    if (!at || Math.abs(at.full - one.value) > 0.02 * one.value) return `${now}; that at half the torque follows.`; // of the case before
+    if (!at) return `${now}; that at half the torque follows.`;
     const ratio = at.half / at.full, how = Math.abs(ratio - 1) < 0.01 ? "stays at" : ratio < 1 ? "falls to" : "rises to";
-    return `${now}; at half the torque it ${how} ${rounded({ value: at.half, unit: one.unit })}.`;
+    return `${now}; at half the torque it ${how} ${rounded({ value: ratio * one.value, unit: one.unit })}.`; // both at the positions of the map
   }
   function ofSharing() {
     const { pair, mesh } = shown(), { data, loadAt } = fegearGears.inside(pair);
@@ -30,6 +31,7 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
     const single = `over the other ${share(1 - several)} a single one carries all of it`;
     if (Math.abs(several - rigid) < 0.01) return `${of}; ${single}.`;
     const why = several > rigid ? "tip edges of deflected teeth are in contact outside the path of contact, too" : "gaps from reliefs or deviations keep teeth out of contact";
+    if (several > 0.995) return `${of}. Under this load: over all of it (${why}).`;
     return `${of}. Under this load: over ${share(several)} (${why}); ${single}.`;
   }
   function ofRoots() {
@@ -44,9 +46,29 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
       const [letter] = (data?.points ?? []).find(([, one]) => Math.abs(one * 1e3 - x) < 0.01 * data.base_pitch * 1e3) ?? [];
       const [before, after] = [(data?.points ?? []).filter(([, one]) => one * 1e3 < x).at(-1), (data?.points ?? []).find(([, one]) => one * 1e3 > x)];
       const near = letter ?? (before && after ? `between ${before[0]} and ${after[0]}` : "");
-      where = ` ${letter || !near ? "at " : ""}${near ? `${near}, ` : ""}${Number(x.toPrecision(3))}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
+      where = ` ${letter || !near ? "at " : ""}${near ? `${near}, ` : ""}${figures(x)}${/\[([^\]]*)\]/.exec(axis)?.[1] ? ` ${/\[([^\]]*)\]/.exec(axis)[1]}` : ""} (${axis.replace(/\s*\[[^\]]*\]/, "")})`;
     }
-    return `The ${high} gear: ${rounded(most)}${where}; the ${low} gear has ${rounded(least)}.`;
+    return `The ${high} gear: ${rounded(most)}${where}${onFace(high)}; the ${low} gear has ${rounded(least)}.`;
+  }
+  /** Where along the face the root stress of a gear is highest: the map of it over mesh and face has a panel for each gear. */
+  function onFace(gear) {
+    const { pair, mesh } = shown(), drawn = mesh?.wide ? spec(`root_stress_over_face_${pair}`) : undefined;
+    const panel = [1, 2].find((one) => plain(drawn?.layout?.annotations?.[one - 1]?.text ?? "").startsWith(gear));
+    const map = panel && ofPanel(drawn, panel).find(({ type }) => type === "heatmap");
+    if (!map) return "";
+    const values = numbersOf(map.z), at = values.reduce((best, one, i) => (one > values[best] || !(values[best] === values[best]) ? i : best), 0);
+    return `, at face position z = ${figures(numbersOf(map.y)[Math.floor(at / numbersOf(map.x).length)])} mm`;
+  }
+  /** The mean line load over a base pitch at both ends of the face, and K_Hβ, its maximum over the uniform one. */
+  function ofFace() {
+    const { pair } = shown(), drawn = spec(`load_over_face_${pair}`), called = (words) => drawn?.data.find(({ name: own }) => own && plain(own) === words);
+    const [mean, even] = [called("mean over a base pitch"), called("load / face width")];
+    if (!mean || !even) return "";
+    const z = numbersOf(mean.x), loads = numbersOf(mean.y), uniform = numbersOf(even.y)[0], last = loads.length - 1;
+    const top = loads.reduce((best, one, i) => (one > loads[best] ? i : best), 0), place = (i) => `z = ${figures(z[i])} mm`, load = (i) => `${figures(loads[i])} N/mm`;
+    const [high, low] = loads[0] > loads[last] ? [0, last] : [last, 0], same = loads[high] - loads[low] < 0.02 * uniform;
+    const ends = same ? `At neither (${load(high)} at ${place(high)}, ${load(low)} at ${place(low)}, mean over a base pitch)` : `At ${place(high)}: ${load(high)}, against ${load(low)} at ${place(low)} (mean over a base pitch)`;
+    return `${ends}. K_Hβ = ${figures(loads[top])} / ${figures(uniform)} = ${figures(loads[top] / uniform)}: the maximum, at ${place(top)}, over load / face width.`;
   }
   function ofPhases() { // harmonic h of N equal mesh forces with delays d adds up to |sum of exp(2 pi i h d)|
     const delay = fegearSets.of(shown().pair)?.data?.meshes.sun.delay.map((one) => ((one % 1) + 1) % 1);
@@ -77,7 +99,7 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
       ["Which gear has the higher root stress, and at which position in the mesh is it highest?", ofRoots],
     ],
     wide: [
-      ["At which end of the face is the load larger, and how large is K_Hβ?", () => ""],
+      ["At which end of the face is the load larger, and how large is K_Hβ?", ofFace],
       error,
       ["Which gear has the higher root stress, and at which place on the face is it highest?", ofRoots],
     ],
@@ -88,7 +110,9 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
   };
   /** All questions on what is shown: those by computation first. */
   function questions() {
-    const { kind, pair, mesh, exercises } = shown(), about = kind === "set" ? "set" : mesh?.wide ? "wide" : "plane";
+    const { kind, pair, mesh, exercises } = shown();
+    if (!pair) return []; // a rack, a single gear
+    const about = kind === "set" ? "set" : mesh?.wide ? "wide" : "plane";
     const byFormula = (kind === "set" ? fegearSets.of(pair)?.data?.exercises : exercises) ?? [];
     const answer = (one) => () => { const found = one.number && number(one.number); return found ? `${one.answer} ${one.words.replace("{}", rounded(found, 4))}` : one.answer; };
     return [
@@ -157,15 +181,16 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
     }
     const [words, answer] = [asked.querySelector("p"), asked.querySelector("textarea")], all = questions();
     if (words.isContentEditable) return; // it is being written
-    const place = Math.abs(now.question ?? 0) % all.length, question = now.words || all[place].question, another = words.textContent !== question;
+    const place = all.length ? Math.abs(now.question ?? 0) % all.length : 0, question = now.words || (all[place]?.question ?? "No question on this case: write your own."), another = words.textContent !== question;
     list(asked.querySelector("select"), all, place);
+    for (const one of asked.querySelectorAll("select, button:not(.own)")) one.hidden = all.length < 2;
     words.textContent = question;
     if (another || (!now.revealed && !hiding)) answer.value = ""; // another exercise
     hiding = !now.revealed;
     answer.readOnly = !!now.revealed;
-    const computed = asked.querySelector("output"), sentence = now.revealed && !now.words ? all[place].of() : "";
+    const computed = asked.querySelector("output"), sentence = now.revealed && !now.words && all.length ? all[place].of() || "The answer follows with the results under load." : "";
     if (computed.textContent !== sentence) computed.textContent = sentence;
     computed.hidden = !sentence;
   }
-  return { ask };
+  return { ask, questions };
 };

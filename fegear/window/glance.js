@@ -262,6 +262,7 @@ const fegearGlance = (() => {
       dim();
     },
     plan(tasks, owners) { // what is computed no longer is shown no longer
+      if (!fegear.isMoving()) halves = {}; // of the case before
       for (const key of [...specs.keys()]) if (owners.has(key) && !tasks.includes(owners.get(key))) specs.delete(key);
       awaited = { figures: new Set(specs.keys()), numbers: new Set(numbers.keys()) };
       clearTimeout(dimming);
@@ -279,7 +280,7 @@ const fegearGlance = (() => {
     choose(name, of = "pair") { [pair, kind] = [name, of]; soon(); },
     pinned(content) {
       pinned = null;
-      if (content.found) { pinned = { specs: new Map(), numbers: new Map() }; for (const one of content.found) gather(one, pinned); }
+      if (content.found) { pinned = { specs: new Map(), numbers: new Map() }; for (const one of content.found) gather(one, pinned); for (const [name, value] of Object.entries(content.ratios ?? {})) pinned.numbers.set(name, { value }); }
       soon();
     },
     unpinned() { pinned = null; soon(); },

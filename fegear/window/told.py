@@ -58,4 +58,9 @@ class Told:
     def keep_pinned(self) -> None:
         """Keep what was found as that of variant A, which pages show beside what is found later."""
         found = [{key: value for key, value in kept.items() if key != "pictures"} for kept in self._found.values()]
-        self.last["pinned"] = {"found": found}
+        ratios = {
+            f"{pair}.{name}": value
+            for pair, one in self.last.get("hands", {}).get("pairs", {}).items()
+            for name, value in ((one.get("mesh") or {}).get("ratios") or {}).items()
+        }
+        self.last["pinned"] = {"found": found, "ratios": ratios}

@@ -202,6 +202,34 @@ def pressed_and_heard(browser, pressed: str) -> None:
     browser.until(f"window.echoes > {before}")
 
 
+def answers_of_wide_pairs_and_of_none(browser) -> None:
+    """Of made figures: a mean line load that rises to an end, a stress that is highest in the second row of a map."""
+    even = "{ name: 'load / face width', x: [-10, 10], y: [200, 200] }"
+    mean = "{ name: 'mean over a base pitch', x: [-9, 0, 9], y: [150, 210, 250] }"
+    stress = "{ type: 'heatmap', x: [1, 2], y: [-4, 0, 4], z: [1, 2, 3, 9, 4, 5] }"
+    title = "{ text: '<b>driver p: 90 MPa</b>' }"
+    history = "{ name: 'driver, tension', x: [1, 2], y: [8, 90] }"
+    figures = (
+        f"{{ load_over_face_W: {{ data: [{even}, {mean}], layout: {{}} }}, "
+        f"root_stress_over_face_W: {{ data: [{stress}], layout: {{ annotations: [{title}] }} }}, "
+        f"root_stress_history_W: {{ data: [{history}], layout: {{ xaxis: {{ title: {{ text: 'place [mm]' }} }} }} }} }}"
+    )
+    roots = "{ 'driver.largest_root_tension': 90, 'driven.largest_root_tension': 80 }"
+    made = (
+        "fegearExercise({ view: () => ({}), half: () => null, keep: () => 0, changed: () => 0, "
+        "shown: () => ({ kind: 'pair', pair: $PAIR, mesh: { wide: true } }), "
+        f"number: (name) => (name in {roots} ? {{ value: {roots}[name], unit: 'MPa' }} : null), "
+        f"spec: (key) => ({figures})[key] }}).questions()"
+    )
+    ends, error, place = (browser.run(f"{made.replace('$PAIR', repr('W'))}[{i}].of()") for i in range(3))
+    assert ends.startswith("At z = 9 mm: 250 N/mm, against 150 N/mm at z = −9 mm")
+    assert "K_Hβ = 250 / 200 = 1.25" in ends
+    assert error == ""
+    assert place.startswith("The driver gear: 90 MPa")
+    assert "at face position z = 0 mm; the driven gear has 80 MPa." in place
+    assert browser.run(f"{made.replace('$PAIR', 'null')}.length") == 0
+
+
 def asked_and_answered(browser) -> None:
     """The question of an exercise lies above the figures, hidden or shown, and covers nothing."""
     place = "document.getElementById('{}').getBoundingClientRect().{}"
@@ -221,6 +249,7 @@ def asked_and_answered(browser) -> None:
     inside = f"(({{ data, loadAt }}) => {loads})(fegearGears.inside('I'))"
     for at in ("0", "0.37", "0.999", "1"):
         assert browser.run(inside.replace("$PLACE", at)) == pytest.approx(6000.0, rel=2e-3)
+    answers_of_wide_pairs_and_of_none(browser)
     # the next question is asked without its answer; every one has an answer in numbers
     words = "document.querySelector('#question p').textContent"
     answer = "document.querySelector('#asked output').textContent"
@@ -245,7 +274,7 @@ def asked_and_answered(browser) -> None:
     ratio = browser.run("(({ data }) => (data.end - data.start) / data.base_pitch)(fegearGears.inside('I'))")
     assert f"= {ratio:.3f}" in answers[3]
     limit = browser.run("fegearGears.inside('I').data.enough.driver")
-    assert f"{limit:.4f} (driver)" in answers[2]
+    assert f"{limit:.4f} (driver)".replace("-", "−") in answers[2]
     assert f"2 (ε − 1)/ε = {100 * 2 * (ratio - 1) / ratio:.0f} %" in answers[0]
     assert answers[4].startswith("p = √(F_n E* / (π b ρ)) = ")
     pressure = browser.run("document.querySelector('[data-number=largest_hertz_pressure] b').textContent")

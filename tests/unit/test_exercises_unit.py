@@ -58,7 +58,7 @@ def test_a_pair_with_profile_shifts_as_by_hand():
     a = 79.5 * math.cos(ALPHA) / math.cos(angle)
     assert f"= 79.5 mm; inv α_w = inv α + 2 (x₁ + x₂) tan α / (z₁ + z₂): α_w = {math.degrees(angle):.4g}°" in (
         answer(found, "centre distance"))  # fmt: skip
-    assert f"a_w = a cos α / cos α_w = {a:.4g} mm without backlash." in answer(found, "centre distance")
+    assert f"a_w = a cos α / cos α_w = {a:.3f} mm without backlash." in answer(found, "centre distance")
     assert f"= 35/18 = {35 / 18:.4g}; n₂ = {900 * 18 / 35:.4g} rpm; T₂ = i T₁ = {100 * 35 / 18:.4g} N m" in (
         answer(found, "transmission ratio"))  # fmt: skip
     assert f"= {3 * math.pi * math.cos(ALPHA):.4g} mm:" in answer(found, "base pitch")
@@ -123,11 +123,55 @@ def test_a_helical_pair_has_an_axial_force_and_no_pressure_of_a_spur_pair():
     found = exercises_of_pair(pair_scene(*gears), "I")
     beta = math.radians(18.0)
     a = 3 * 53 / (2 * math.cos(beta))
-    assert f"= {a:.4g} mm" in answer(found, "centre distance")
+    assert f"a = m_n (z₁ + z₂) / cos β / 2 = {a:.3f} mm" in answer(found, "centre distance")
     tangential = 100e3 / (0.5 * 3 * 18 / math.cos(beta))
     assert f"F_a = F_t tan β_w = {tangential * math.tan(beta):.4g} N" in answer(found, "forces")
     assert not [one for one in answers(found) if "Hertzian" in one]
     assert "overlap ratio " in answer(found, "contact ratio")
+
+
+def test_helical_answers_have_the_quantities_of_their_sections():
+    """Standard formulas in the transverse section, from normal module, angles and shifts."""
+    gears = [{"teeth": z, "profile_shift": x, "helix_angle": "22 deg", "hand": hand}
+             for z, x, hand in ((13, 0.0, "left"), (41, 0.3, "right"))]  # fmt: skip
+    found = exercises_of_pair(pair_scene(*gears), "I")
+    beta = math.radians(22.0)
+    alpha_t = math.atan(math.tan(ALPHA) / math.cos(beta))
+    m_t = 3.0 / math.cos(beta)
+    angle = working_angle(involute(alpha_t) + 2.0 * 0.3 * math.tan(ALPHA) / 54)
+    a = 27.0 * m_t * math.cos(alpha_t) / math.cos(angle)
+    centre = answer(found, "centre distance")
+    assert "inv α_wt = inv α_t + 2 (x₁ + x₂) tan α_n / (z₁ + z₂)" in centre
+    assert f"a_w = a cos α_t / cos α_wt = {a:.3f} mm" in centre
+
+    least = -13 * math.sin(alpha_t) ** 2 / (2.0 * math.cos(beta))
+    undercut = answer(found, "undercut")
+    assert "x_min = h - z sin²α_t / (2 cos β)" in undercut
+    assert f"h = 1: {1.0 + least:.3f} (driver)" in undercut
+    enough = float(re.search(r"profile_shift = (-?[\d.]+)", undercut)[1])
+    assert enough == pytest.approx(1.25 - 0.25 * (1.0 - math.sin(ALPHA)) + least, abs=1.1e-4)
+
+    tip = 0.5 * 13 * m_t + 3.0
+    tip_angle = math.acos(0.5 * 13 * m_t * math.cos(alpha_t) / tip)
+    arc = 2.0 * tip * (math.pi / 26 + involute(alpha_t) - involute(tip_angle))
+    thick = arc * math.cos(math.atan(tip * math.tan(beta) / (0.5 * 13 * m_t)))
+    assert answer(found, "tip circle").startswith(
+        f"s_a = d_a ((π/2 + 2 x tan α_n) / z + inv α_t - inv α_at) cos β_a: driver {thick:.4g} mm"
+    )
+
+
+def test_a_ring_gear_has_the_contact_ratio_of_its_tip_circles():
+    ring = {"teeth": 71, "internal": True, "tip_diameter": "208.2 mm",
+            "cutter": {"teeth": 20, "addendum": 1.25, "tip_radius": 0.2}}  # fmt: skip
+    found = exercises_of_pair(pair_scene({"teeth": 20, "profile_shift": 0.1}, ring), "I")
+    angle = working_angle(involute(ALPHA) + 2.0 * 0.1 * math.tan(ALPHA) / (20 - 71))
+    a = 76.5 * math.cos(ALPHA) / math.cos(angle)
+    roots = [math.sqrt(tip**2 - (1.5 * z * math.cos(ALPHA)) ** 2) for tip, z in ((33.3, 20), (104.1, 71))]
+    ratio = (roots[0] - roots[1] + a * math.sin(angle)) / (3 * math.pi * math.cos(ALPHA))
+    assert f"= {ratio:.3f}" in answer(found, "contact ratio")
+    assert "√(r_a1² - r_b1²) + a sin α_w - √(r_a2² - r_b2²)" in answer(found, "contact ratio")
+    assert "tan α / (z₁ - z₂)" in answer(found, "centre distance")
+    assert f"cos α_w = {a:.3f} mm" in answer(found, "centre distance")
 
 
 def test_a_ring_gear_turns_the_same_way():

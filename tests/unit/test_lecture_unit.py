@@ -10,6 +10,7 @@ from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.geometry.checks import pair_checks
 from fegear.results.catalogue import STAGES
 from fegear.window.on_gears import gears_in_mesh
 from fegear.window.order import HarrisMaps
@@ -66,6 +67,24 @@ def test_of_broken_rules_the_one_that_stops_the_motion_is_named():
     assert " rules not met, the worst: I: transverse contact ratio is 0." in said
     found = run(scene_of(results=["tooth-geometry-check"])).outcomes[Task("tooth-geometry-check", "")]
     assert " of 10 rules not met: p: undercut is " in found.answer.sentences[0]
+
+
+@pytest.mark.parametrize(
+    ("tip_diameter", "broken"),
+    [("243.15 mm", []), ("242.9 mm", ["ring tip, pinion root", "ring tip corner, pinion fillet"])],
+)
+def test_a_ring_tip_that_just_touches_the_end_of_the_fillet_breaks_no_rule(tip_diameter, broken):
+    """Below the ring tip of the first the pinion's involute goes on for 7 µm, and a search finds -0.7 nm."""
+    gear = {"module": "3 mm", "face_width": "30 mm"}
+    cutter = {"teeth": 41, "addendum": 1.25, "tip_radius": 0.2}
+    ring = {"teeth": 83, "internal": True, "tip_diameter": tip_diameter, "cutter": cutter}
+    pair = {"driver": "p", "driven": "r", "torque": "150 N*m"}
+    document = {"title": "t", "results": ["geometry"], "pair": {"I": pair},
+                "gear": {"p": {"teeth": 24, "rack": "ISO 53 C", **gear}, "r": gear | ring}}  # fmt: skip
+    checks = pair_checks("I", build_scene(document, "t", Path()).pairs["I"])
+    corner = next(one for one in checks if one.rule == "ring tip corner, pinion fillet")
+    assert abs(corner.value) < 1e-8 or broken
+    assert [one.rule for one in checks if not one.holds] == broken
 
 
 def test_a_tip_below_the_form_circle_is_said_once():

@@ -236,6 +236,9 @@ def test_what_a_page_that_opens_now_is_told_comes_in_order(bench):
 
 def test_a_pinned_case_is_compared_when_all_is_at_rest(bench):
     first = bench.asked_for[-1].number
+    bench._hear(
+        Said(first, "hands", {"pairs": {"I": {"mesh": {"ratios": {"transverse": 1.61}}}, "II": {"mesh": None}}})
+    )
     bench._hear(Said(first, "plan", {"tasks": ["one"]}))
     bench._hear(Said(first, "found", {"task": "one", "values": "v", "figures": [], "pictures": {"p": 1}}))
     bench._hear(Said(first, "done", {"moving": False}))
@@ -243,6 +246,7 @@ def test_a_pinned_case_is_compared_when_all_is_at_rest(bench):
     (told,) = (content for what, content in bench.heard if what == "pinned")
     assert [one["task"] for one in told["found"]] == ["one"]
     assert "pictures" not in told["found"][0]
+    assert told["ratios"] == {"I.transverse": 1.61}  # no computed value: the contact ratio comes with the gears
     bench.move_load("I", "load", "950 N", moving=True)
     bench._hear(Said(bench.asked_for[-1].number, "done", {"moving": True}))
     assert isinstance(bench.asked_for[-1], Compute)  # what moves is not compared
