@@ -1,15 +1,14 @@
-"""Numbers that the code has from print or promises: constants and tables, defaults, flags and bounds of fields.
+"""Numbers that the code states: constants and tables, defaults, flags and bounds of fields.
 
     python tests/golden/constants.py [--accept]
 
 Tables of standards and of makers were compared with their print when they were typed in; what a key or an argument is
-where it is not given is a promise. Of the rooms that hold such numbers (`ROOMS`) ``constants.json`` keeps what their
-names stand for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields
-count in comparisons, and bounds; of the others what is neutral where it is not given (true, false, 0, 1, -1) or called
-usual. Of every result it keeps what it takes and for what it asks, and in which files its tables stand. How finely
-something is searched or drawn is free to change, and not kept. Long tables are kept as a sum in which every number has
-a weight of its own. Only what is kept and still there is compared; after a change that is meant, ``--accept`` keeps
-what is found.
+where it is not given is a promise; how finely something is searched, how large an error is stated and how a figure
+looks was measured or looked at. None of it is to change unseen: ``constants.json`` keeps what names in capitals stand
+for, what functions take where nothing is given, and of classes that hold data the defaults, whether fields count in
+comparisons, and bounds. Of every result it keeps what it takes and for what it asks, and in which files its tables
+stand. Long tables are kept as a sum in which every number has a weight of its own. Only what is kept and still there is
+compared; after a change that is meant, ``--accept`` keeps what is found.
 """
 
 import argparse
@@ -25,10 +24,11 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_suffix(".json")
-#: Units and materials, keys, standards and closed forms, teeth by their standards, bearings and shafts, Python.
-ROOMS = ("base", "case", "formulas", "geometry", "shafts", "workbench")
-OTHERS = ("atlas", "commands", "contact", "design", "dynamics", "engine", "exchange", "fem", "output", "results",
-          "studies", "verify", *(("window",) if importlib.util.find_spec("nicegui") else ()))  # fmt: skip
+#: All packages; the window only where its libraries are.
+ROOMS = tuple(
+    sorted(folder.name for folder in (ROOT / "fegear").iterdir()
+           if any(folder.glob("*.py")) and (folder.name != "window" or importlib.util.find_spec("nicegui")))
+)  # fmt: skip
 #: So many numbers are kept as they are.
 FEW = 12
 _GIVEN = re.compile(r"^(_?[A-Z][A-Z0-9_]*(?:, _?[A-Z][A-Z0-9_]*)*)(?:: [^=\n]+)? = (?!\{\}|\[\]|TypeVar)", re.MULTILINE)
@@ -38,9 +38,9 @@ UNSEEN = "not compared"
 DEEP = 8
 
 
-def modules(rooms=ROOMS):
-    """Names of the modules of these rooms, with what is written in them."""
-    for path in sorted(path for room in rooms for path in (ROOT / "fegear" / room).rglob("*.py")):
+def modules():
+    """Names of all modules, with what is written in them."""
+    for path in sorted(path for room in ROOMS for path in (ROOT / "fegear" / room).rglob("*.py")):
         yield ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"), path
 
 
@@ -106,7 +106,7 @@ def defaults(function):
 def of_module(name, path):
     """All that is kept of a module."""
     module, found = importlib.import_module(name), {}
-    for known in dict.fromkeys(assigned(path) if path else ()):
+    for known in dict.fromkeys(assigned(path)):
         found[known] = numbers(getattr(module, known, None))
     for known, thing in list(vars(module).items()):
         if getattr(thing, "__module__", None) != name:
@@ -139,25 +139,9 @@ def of_results():
     return kept
 
 
-def neutral(name, path, were=()):
-    """Of a module of the other rooms: flags, zeros, ones, minus ones taken where nothing is given, and what were.
-
-    And what it calls usual: that is taken where nothing is given, too.
-    """
-    declared = of_module(name, None).items()
-    found = {known: kept for known, kept in declared if len(kept) == 1}
-    usual = {known: kept for known, kept in of_module(name, path).items() if known.lstrip("_").startswith("USUAL")}
-    return usual | {
-        known: kept for known, kept in found.items()
-        if known.endswith(UNSEEN) or known in were or kept[0] in (-1.0, 0.0, 1.0)
-    }  # fmt: skip
-
-
-def found(were=None):
-    """Of all modules, and of all results; of what was neutral what it is now."""
-    were = kept() if were is None else were
-    every = {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
-    return every | {name: neutral(name, path, were.get(name, ())) for name, path in modules(OTHERS)}
+def found():
+    """Of all modules, and of all results."""
+    return {name: of_module(name, path) for name, path in modules()} | {"results": of_results()}
 
 
 def kept():
@@ -194,7 +178,6 @@ def main():
     asked, new = wishes.parse_args(), found()
     print(*differences(kept(), new), sep="\n")
     if asked.accept:
-        new = found({})
         parts = []
         for module in sorted(name for name, of_name in new.items() if of_name):
             told = {name: [whole(one) for one in of_name] for name, of_name in new[module].items()}

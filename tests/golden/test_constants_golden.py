@@ -1,4 +1,4 @@
-"""Numbers that the code states are those that are kept: a slip in one that no result shows is a slip."""
+"""Numbers that the code states are those that are kept: none changes unseen."""
 
 import importlib.util
 from pathlib import Path
