@@ -15,7 +15,11 @@ _PHRASES = {
     "root compression": "root stress, compression side",
     "mesh stiffness min ordinary": "minimum mesh stiffness of ordinary teeth",
     "mesh stiffness min": "minimum mesh stiffness",
+    "mesh force max ordinary": "maximum mesh force in an ordinary base pitch",
     "mesh stiffness loss": "reduction of the mesh stiffness",
+    "mesh force max": "maximum mesh force",
+    "dynamic transmission error, change max": "maximum change of the dynamic transmission error",
+    "dynamic transmission error, residual max": "maximum residual of the dynamic transmission error",
     "transmission error, residual max": "maximum residual of the transmission error",
 }
 #: Of drawn populations: the last word, where no tooth is numbered.

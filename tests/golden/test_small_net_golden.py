@@ -393,6 +393,9 @@ def check_vibration(data, _name, found):
     close(data["force"].max(), number_of(found, "I.mesh_force_max"), 1e-6)
     residual = data["te_residual"]
     close(np.abs(residual).max(), number_of(found, "I.dynamic_te_residual_max"), 1e-6)
+    ordinary = np.median(data["te"].reshape(25, -1), axis=0)
+    close(data["te_change"], (data["te"].reshape(25, -1) - ordinary).ravel())
+    close(np.abs(data["te_change"]).max(), number_of(found, "I.dynamic_te_change_max"), 1e-6)
     assert math.sqrt((residual**2).mean()) == pytest.approx(number_of(found, "I.dynamic_residual_rms"))
     moments = ((residual - residual.mean()) ** np.array([[2], [4]])).mean(axis=1)
     assert moments[1] / moments[0] ** 2 == pytest.approx(number_of(found, "I.dynamic_residual_kurtosis"))

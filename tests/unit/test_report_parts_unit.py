@@ -282,6 +282,10 @@ def test_a_value_is_for_people_first_and_orange_only_where_a_decision_could_chan
         ("I.fm0", "FM0"), ("I.m6a", "M6A"), ("I.mesh_stiffness_min", "minimum mesh stiffness"),
         ("I.mesh_stiffness_min_ordinary", "minimum mesh stiffness of ordinary teeth"),
         ("I.te_residual_max", "maximum residual of the transmission error"),
+        ("I.dynamic_te_residual_max", "maximum residual of the dynamic transmission error"),
+        ("I.dynamic_te_change_max", "maximum change of the dynamic transmission error"),
+        ("I.mesh_force_max", "maximum mesh force"),
+        ("I.mesh_force_max_ordinary", "maximum mesh force in an ordinary base pitch"),
         ("I.driver.S_F", ""), ("a.c_self_at_pitch", ""), ("I.K_Hbeta", ""),
     ],
 )  # fmt: skip

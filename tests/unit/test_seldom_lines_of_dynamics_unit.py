@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.base.errors import ConvergenceError, InputError, RangeError
+from fegear.contact.plane.sidebands import without_mesh_harmonics
 from fegear.dynamics.compound import mesh_phases
 from fegear.dynamics.compound.compound_set import Shaft
 from fegear.dynamics.helical_pair import mode_following
@@ -333,6 +334,22 @@ def test_a_motion_over_all_base_pitches_is_that_of_its_trajectory(times):
     assert fields[3][:3] == pytest.approx([2.0, 0.0, 0.6], abs=1e-9)
     assert fields[4][:3] == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
     assert fields[5][0] == pytest.approx(2.0 * w**2)
+
+
+def test_what_one_tooth_changes_of_a_motion_is_zero_in_all_other_base_pitches():
+    """A pulse in one of eleven base pitches comes out as it is; the residual signal spreads its mean over all."""
+    pitches, samples = 11, 64
+    s = np.arange(samples) / samples
+    usual, pulse = 3.0 + np.cos(2.0 * np.pi * s), np.zeros((pitches, samples))
+    pulse[4] = np.exp(-(((s - 0.5) / 0.1) ** 2))
+    te, force = (usual + pulse).ravel(), (10.0 * usual - 50.0 * pulse).ravel()
+    rest = without_mesh_harmonics(te, pitches)
+    found = motion_over_revolution.MotionOverRevolution(None, pitches, 1.0, 1, True, te, te, te, rest, force, te)
+    np.testing.assert_allclose(found.te_change, pulse.ravel(), atol=1e-14)
+    assert found.dynamic_te_change_max == pytest.approx(1.0)
+    assert found.dynamic_te_residual_max == pytest.approx(1.0 - 1.0 / pitches)
+    assert (found.mesh_force_max, found.mesh_force_max_ordinary) == pytest.approx((40.0, 40.0))
+    np.testing.assert_allclose(found.te_change - rest, np.tile(pulse.mean(axis=0), pitches), atol=1e-12)
 
 
 @pytest.mark.parametrize("times", [1, 2])

@@ -92,6 +92,33 @@ class MotionOverRevolution:
         return float(self.force.max())
 
     @property
+    @shows("N", "maximum mesh force in an ordinary base pitch")
+    def mesh_force_max_ordinary(self) -> float:
+        """[N]."""
+        return float(self._ordinary(self.force).max())
+
+    @cached_property
+    @shows(
+        "um",
+        "dynamic transmission error minus that of an ordinary base pitch",
+        label="change from an ordinary base pitch",
+        table="revolution",
+    )
+    def te_change(self) -> Array:
+        """Less the median of all base pitches, as the residual of a pair at rest is defined, shape (M,) [m]."""
+        return np.asarray((self.te.reshape(self.cycles, -1) - self._ordinary(self.te)).ravel())
+
+    @property
+    @shows("um", "maximum change: dynamic transmission error minus that of an ordinary base pitch")
+    def dynamic_te_change_max(self) -> float:
+        """[m]."""
+        return float(np.abs(self.te_change).max())
+
+    def _ordinary(self, values: Array) -> Array:
+        """Of an ordinary base pitch: the median of all, sample by sample."""
+        return np.asarray(np.median(values.reshape(self.cycles, -1), axis=0))
+
+    @property
     @shows("um", "maximum residual of the dynamic transmission error")
     def dynamic_te_residual_max(self) -> float:
         """[m]."""

@@ -100,7 +100,7 @@ _SHEET = Sheet(
         ),
     ),
     values=(
-        "mesh_force_max", "dynamic_te_residual_max",
+        "mesh_force_max", "mesh_force_max_ordinary", "dynamic_te_change_max", "dynamic_te_residual_max",
         *(Number(key, of="indicators", name="dynamic_" + key) for key in INDICATORS),
     ),
     figures=(
@@ -123,8 +123,9 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        "Mesh {name}: residual of the dynamic transmission error up to {v[dynamic_te_residual_max]}, kurtosis "
-        "{v[dynamic_residual_kurtosis]}, maximum mesh force {v[mesh_force_max]}.",
+        "Mesh {name}: dynamic transmission error up to {v[dynamic_te_change_max]} from that of an ordinary base "
+        "pitch, kurtosis of its residual {v[dynamic_residual_kurtosis]}, maximum mesh force {v[mesh_force_max]} "
+        "({v[mesh_force_max_ordinary]} in an ordinary base pitch).",
         figure="vibration_revolution_{name}",
     ),
     remarks=(
