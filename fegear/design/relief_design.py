@@ -25,7 +25,7 @@ from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
 from fegear.design.tip_relief.grindable import TipReliefPair, grindable
 from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
-from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
+from fegear.design.tip_relief.tolerated import decisive_tolerances, unrelieved_within, within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
 from fegear.geometry.relief import UNMODIFIED, Shape
 
@@ -146,11 +146,15 @@ class ReliefDesign:
         Which tolerance decides the largest of these at each load for the shape to be ground; empty as `within`.
     finer : int or None
         By how many classes the tolerances would have to be finer for the shape to be ground to leave no more than no
-        relief at any of these loads that counts: 0 where they do, None where none does.
+        relief with profile slopes inside the same tolerances at any of these loads that counts: 0 where they do, None
+        where none does.
     tables_leave : float
         Transmission error, peak to peak, of the relief tables read back linearly [m].
     rounded : mapping of shape to ndarray, shape (L,)
         Peak-to-peak value at each of these loads with the reliefs to grind as they are rounded for the drawing [m].
+    unrelieved_most : ndarray, shape (L,), or None
+        Largest peak-to-peak value at each of these loads without relief, with profile slopes inside the tolerances [m];
+        None where the shape to be ground leaves no more than no relief without deviations.
     """
 
     task: DesignTask
@@ -167,6 +171,7 @@ class ReliefDesign:
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
     rounded: Mapping[Shape, Array] = field(default_factory=dict)
+    unrelieved_most: Array | None = None
 
     @property
     def shapes(self) -> list[Shape]:
@@ -258,6 +263,7 @@ def design_relief(
         task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
         rounded=rounded,
     )  # fmt: skip
+    design = replace(design, unrelieved_most=_unrelieved_most(plain, design))
     return replace(design, finer=_classes_finer(plain, design), decisive=_decisive(plain, design))
 
 
@@ -272,22 +278,34 @@ def _as_rounded(plain: Engagement, ground: TipReliefPair, task: DesignTask) -> A
     return np.array([one.peak_to_peak for one in found])
 
 
+def _unrelieved_most(plain: Engagement, design: ReliefDesign) -> Array | None:
+    """What no relief leaves at most within the same tolerances; None where even without deviations it leaves more."""
+    task = design.task
+    if task.tip_tolerances is None or not design.within:
+        return None
+    none = np.array([one.peak_to_peak for one in design.over_range["no relief"]])
+    worse = (design.within[design.best_ground[0]][:, 1] > none) & (task.over_weights > 0.0)
+    return unrelieved_within(plain, task.tip_tolerances, task.over_loads) if worse.any() else None
+
+
 def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:
     """By how many classes tolerances would have to be finer for the shape to be ground to pay at every load."""
     task = design.task
-    if task.tip_tolerances is None or not design.within:
+    if task.tip_tolerances is None or not design.within or design.unrelieved_most is None:
         return 0
     shape, ground = design.best_ground
     both, counts = task.tip_tolerances, task.over_weights > 0.0
     loads = np.array(task.over_loads)[counts]
-    none = np.array([one.peak_to_peak for one in design.over_range["no relief"]])
 
-    def finer(classes: int) -> Array:
+    def share(classes: int) -> Array:
+        """Of what no relief leaves within tolerances that are so many classes finer."""
         allowed = both[0].finer(classes), both[1].finer(classes)
-        return within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
+        most = within_tolerances(plain, (ground.driver, ground.driven), allowed, loads)[:, 1]
+        return np.asarray(most / unrelieved_within(plain, allowed, loads))
 
     finest = min(one.finest for one in both)
-    return classes_finer(design.within[shape][counts, 1], none[counts], finer, finest)
+    as_given = design.within[shape][counts, 1] / design.unrelieved_most[counts]
+    return classes_finer(as_given, np.ones(loads.size), share, finest)
 
 
 def _decisive(plain: Engagement, design: ReliefDesign) -> tuple[Decisive | None, ...]:

@@ -290,6 +290,28 @@ def test_where_misalignment_scatters_the_mean_over_it_decides():
     ]
 
 
+def test_where_misalignment_scatters_fewer_modifications_are_not_ground_at_the_cost_of_their_tolerances():
+    """Crowning leaves as much as tip reliefs on the mean, but twice as much within its tolerances."""
+    given = FlankTolerance((TipTolerance(5e-6, None, 0.0),) * 2, LeadTolerance(6e-6, 4e-6, 5e-6))
+    crowned = GroundRelief(crowning=4.8e-6)
+    scatter = Scatter(np.array([-1e-6, 0.0, 1e-6]), np.array([0.25, 0.5, 0.25]))
+
+    def best(crowning, tips):
+        design = left_by(("profile", TIPS, 0.40, 0.01), ("crowning-and-end-relief", crowned, 0.41, 0.01))
+        mean = {"profile": 0.500e-6, "crowning-and-end-relief": 0.505e-6}
+        most = {"profile": np.full(1, tips), "crowning-and-end-relief": np.full(1, crowning)}
+        states = tuple(
+            replace(s, over_most=most.get(s.label), judged=SimpleNamespace(
+                **vars(s.judged), mean_over_scatter=SimpleNamespace(value=mean.get(s.label, 2e-6), error=1e-8)))
+            for s in design.states
+        )  # fmt: skip
+        return replace(design, states=states, task=replace(design.task, scatter=scatter, tolerance=given)).best.label
+
+    assert best(1.0e-6, 0.56e-6) == "profile"
+    assert best(0.58e-6, 0.56e-6) == "crowning-and-end-relief"  # alike within the tolerances, too
+    assert best(0.4e-6, 0.56e-6) == "crowning-and-end-relief"
+
+
 class Valley:
     """In place of trials: what is left grows with every amount and shrinks with every length, load by load."""
 

@@ -12,9 +12,10 @@ from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.relief_design import _unrelieved_most
 from fegear.design.tip_relief.grindable import relief_over_path
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.design.tip_relief.tolerated import decisive_tolerances, within_tolerances
+from fegear.design.tip_relief.tolerated import decisive_tolerances, unrelieved_within, within_tolerances
 from fegear.engine.figure.items import Mark
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
@@ -23,7 +24,7 @@ from fegear.geometry.pair import GearPair
 from fegear.geometry.path_of_contact import active_profile
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
-from fegear.results.relief.answer_numbers import with_limits
+from fegear.results.relief.answer_numbers import ground_microns, with_limits
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
 from fegear.results.relief.profile_charts import _abscissa, _apart, _place, _tip_side, profile_chart
@@ -49,6 +50,43 @@ def left(engagement, tips, load):
     return transmission_error(
         replace(engagement, driver_relief=tips[0], driven_relief=tips[1]), load, 12
     ).peak_to_peak  # fmt: skip
+
+
+def test_without_relief_profile_slopes_within_the_tolerances_tilt_the_contact_of_every_pair(engagement):
+    """Slopes of opposite sense add up: without load the envelope of straight gaps is a saw-tooth over a base pitch."""
+    pair, both = engagement.pair, (TipTolerance(6e-6, None, 0.0), TipTolerance(4e-6, None, 0.0))
+    loads = np.array([1e-3, LOAD])
+    idle, loaded = unrelieved_within(engagement, both, loads)
+    assert idle == pytest.approx(10e-6 * pair.base_pitch / pair.path_length, rel=1e-3)
+    # Only the sum of both counts, whichever flank has it; equal senses make up for each other.
+    ends = [float(pair.roll_angle(x, "driver")) for x in (pair.x_start, pair.x_end)]
+    tilted = [
+        transmission_error(replace(engagement, driver_relief=EndRelief(10e-6, *order, 1.0)), LOAD, 12).peak_to_peak
+        for order in (ends, ends[::-1])
+    ]
+    assert loaded == pytest.approx(max(tilted), rel=1e-9)
+    plain = [transmission_error(engagement, load, 12).peak_to_peak for load in loads]
+    assert unrelieved_within(engagement, (EXACT, EXACT), loads) == pytest.approx(plain, rel=1e-12)
+    assert loaded > 1.1 * plain[1]
+
+
+def test_what_relief_is_compared_with_is_asked_for_only_where_it_leaves_more_than_an_exact_pair(engagement):
+    tolerances = (TipTolerance(6e-6, None, 0.0),) * 2
+    none = [transmission_error(engagement, load, 12) for load in (0.5 * LOAD, LOAD)]
+
+    def most(*within, weights=(1.0, 1.0)):
+        task = SimpleNamespace(tip_tolerances=tolerances, over_loads=(0.5 * LOAD, LOAD), over_weights=np.array(weights))
+        found = np.array([[0.0, one.peak_to_peak * part] for one, part in zip(none, within, strict=True)])
+        return _unrelieved_most(
+            engagement,
+            SimpleNamespace(
+                task=task, within={"linear": found}, best_ground=("linear", None), over_range={"no relief": none}
+            ),
+        )
+
+    assert most(0.9, 1.0) is None
+    assert most(1.1, 0.9, weights=(0.0, 1.0)) is None
+    assert most(1.1, 0.9) == pytest.approx(unrelieved_within(engagement, tolerances, [0.5 * LOAD, LOAD]))
 
 
 def test_without_tolerances_a_relief_leaves_what_it_leaves(engagement, tips):
@@ -109,7 +147,7 @@ def test_the_band_of_a_profile_chart_has_the_tolerances_at_its_ends(engagement, 
         begins = chart.roll_length[np.flatnonzero(limit < -1e-12)[0]]
         assert begins == pytest.approx(gear.base_radius * tip.start - off, abs=1.1 * np.diff(chart.roll_length).max())
     assert chart.words.startswith(f"20 ± 4 µm, {'linear' if power == 1.0 else 'parabolic'} from d ")
-    assert chart.words.endswith(" ± 0.5 mm long); f_{fα} 3 µm")
+    assert chart.words.endswith(" ± 0.500 mm long); f_{fα} 3 µm")
 
 
 def test_points_of_single_contact_are_marked_and_words_stand_apart(engagement, tips):
@@ -133,10 +171,15 @@ def test_points_of_single_contact_are_marked_and_words_stand_apart(engagement, t
 def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):
     gear, tip = engagement.pair.driver, replace(tips[0], amount=4.8e-6)
     chart = profile_chart("p", gear, tip, TipTolerance(5.5e-6, None, 0.0))
-    assert chart.words.startswith("0 to 10 µm (nominal 4.8), linear from d ")
+    assert chart.words.startswith("0 to 10.3 µm (nominal 4.8), linear from d ")
     assert (chart.upper[-1], chart.lower[-1]) == pytest.approx((0.0, -10.3e-6), abs=1e-12)
     assert with_limits(2e-6, 6e-6) == "-4 to 8 µm (nominal 2)"
     assert with_limits(-6e-6, 5e-6) == "-6 ± 5 µm"
+    # The numbers of the grinding table, not two digits of them.
+    assert with_limits(10.459e-6, 5.5e-6) == "10.5 ± 5.5 µm"
+    assert [ground_microns(size) for size in (17.64e-6, 9.96e-6, 101.23e-6, 0.0574e-6, 1e-10)] == [
+        "17.6", "10", "101.2", "0.057", "0",
+    ]  # fmt: skip
 
 
 def test_the_relief_of_a_ring_gear_is_off_by_its_tolerances_as_that_of_other_gears():

@@ -64,6 +64,12 @@ def test_the_first_sentence_says_what_is_left_as_drawn_and_at_most_within_the_to
     )
 
 
+def test_a_relief_for_one_load_that_leaves_as_much_as_none_is_not_said_to_leave_more():
+    seen = made((3.3, 4.5), (3.5, 5.0))
+    seen.data.over_range["linear tip relief for one load"] = left((3.7 * (1.0 + 1e-9), 0.8))
+    assert not [one for one in said_of_range(seen) if "only gives" in one]
+
+
 def test_the_first_sentence_has_what_the_rounded_numbers_leave_where_that_is_known():
     seen = made((3.3, 4.5), (3.5, 5.0))
     best = seen.data.over_range["linear tip relief"]
@@ -181,6 +187,25 @@ def test_where_tolerances_take_more_than_the_gain_at_every_torque_the_first_sent
     assert grind.startswith("Pair I: without deviations grind 6 µm from d 60.0 mm on gear p and ")
     assert "only gives" in single
     assert said((4.3, 6.99), (4.2, 4.5), finer)[0].startswith("Pair I: grind ")
+
+
+def test_no_relief_has_the_deviations_of_the_relief_that_it_is_compared_with():
+    """More than an exact pair at every torque, but less than one with profile slopes within the same tolerance."""
+    seen = made((4.3, 7.2), (4.4, 7.4))
+    seen.data.over_range["no relief"] = replace(left((3.7, 7.0)), slopes=np.array([5.6e-6, 10.9e-6]))
+    first, within, _ = said_of_range(seen)
+    assert first.startswith("Pair I: grind 6 µm")
+    assert within == (
+        f"{WITHIN}4.3 µm at 50 N m (3.7 µm without relief, at most 5.6 µm with profile slopes within the same "
+        "tolerance)."
+    )
+    assert recommended_design(seen.data.grinding, seen.data.over_range) == "linear tip relief"
+    worse = made((5.8, 11.2), (5.9, 11.4), finer=2)
+    worse.data.over_range["no relief"] = seen.data.over_range["no relief"]
+    first, *_ = said_of_range(worse)
+    lost = "smaller without relief at every torque: at most 10.9 µm at 100 N m, with relief at most 11.2 µm"
+    assert lost in first
+    assert recommended_design(worse.data.grinding, worse.data.over_range) == ""
 
 
 def test_without_deviations_the_shape_that_is_best_as_drawn_is_named_with_its_numbers():

@@ -212,19 +212,22 @@ class FlankDesign(ReadOnlyArrays):
         """The one to be ground: `least`, or one of fewer modifications that leaves no more within its error.
 
         So does one of fewer whose further modifications are smaller than their tolerances: no inspection finds these.
-        One that leaves clearly less at the worst within its tolerances goes before all of them.
+        One that leaves clearly less at the worst within its tolerances goes before all of them. Where misalignment
+        scatters, the mean over it goes first; one of fewer is then not to lose clearly more by its tolerances.
         """
         least = self.least
-        like = [
-            s for s in self.ground
-            if s.modifications <= least.modifications and (s is least or self.alike(s) or self.within_tolerance(s))
-        ]  # fmt: skip
+        fewer = [s for s in self.ground if s.modifications <= least.modifications and self._holds(s)]
+        like = [least, *(s for s in fewer if s is not least and (self.alike(s) or self.within_tolerance(s)))]
         simple = min(like, key=lambda s: (s.modifications, self.left_by(s)))
         clear = [] if self.scattered else [
             s for s in self.ground
             if self.within_by(s) < CLEARLY * self.within_by(simple) and s.modifications <= least.modifications
         ]  # fmt: skip
         return min(clear, key=self.within_by, default=simple)
+
+    def _holds(self, state: FlankState) -> bool:
+        """Whether a way that is alike over scattered misalignment leaves no clearly larger maximum than `least`."""
+        return not self.scattered or CLEARLY * self.within_by(state) <= self.within_by(self.least)
 
     def within_by(self, state: FlankState) -> float:
         """What a way leaves at most within its tolerances, as `left_by`; infinite where that is not known [m]."""

@@ -60,6 +60,35 @@ def within_tolerances(
     return found
 
 
+def unrelieved_within(
+    engagement: Engagement, tolerances: tuple[TipTolerance, TipTolerance], loads: ArrayLike
+) -> Array:  # fmt: skip
+    """Largest peak-to-peak transmission error without relief at each load, shape (L,) [m].
+
+    What relief is compared with within its tolerances: the profile slopes of both flanks are off by the tolerances of
+    the amounts, straight over the path of contact, to either side each.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Its own reliefs are replaced.
+    tolerances : tuple of TipTolerance
+        Of driver and driven gear.
+    loads : array_like, shape (L,)
+        [N].
+    """
+    pair = engagement.pair
+    ends = (pair.x_start, pair.x_end), (pair.x_end, pair.x_start)
+    slopes: list[tuple[EndRelief, EndRelief]] = []
+    for member, allowed, (root, tip) in zip(MEMBERS, tolerances, ends, strict=True):
+        low, high = (float(pair.roll_angle(x, member)) for x in (root, tip))
+        slopes.append((EndRelief(allowed.amount, low, high, 1.0), EndRelief(allowed.amount, high, low, 1.0)))
+    both: list[tuple[Relief, ...]] = [(UNMODIFIED, UNMODIFIED), *product(*slopes)]
+    flanks = [replace(engagement, driver_relief=driver, driven_relief=driven) for driver, driven in both]
+    w = np.atleast_1d(np.asarray(loads, dtype=float))
+    return np.array([max(transmission_error(one, float(load), 12).peak_to_peak for one in flanks) for load in w])
+
+
 def decisive_tolerances(
     engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance],
     loads: ArrayLike, most: Array,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fegear.base.printed import figures
+from fegear.design.ground_digits import amount_step, to_step
 
 #: Digits of a length in µm, and of two that read the same with so many.
 _DIGITS, _APART = 2, 3
@@ -15,6 +16,11 @@ _NOTHING = 1e-9
 def microns(size: float, digits: int = _DIGITS) -> str:
     """A length [m] in µm, without the unit: ``"2.9"``, ``"0"``."""
     return figures(size * 1e6, digits) if abs(size) > _NOTHING else "0"
+
+
+def ground_microns(size: float) -> str:
+    """An amount to grind [m] in µm with the digits of the grinding table, without the unit: ``"17.6"``, ``"0.057"``."""
+    return f"{to_step(size, amount_step(size)) * 1e6:.5g}" if abs(size) > _NOTHING else "0"
 
 
 def told_apart(one: float, other: float) -> tuple[str, str]:
@@ -29,9 +35,9 @@ def with_limits(amount: float, tolerance: float, least: float = -math.inf) -> st
     ``"6.4 ± 3 µm"``, ``"0 to 10 µm (nominal 4.8)"``.
     """
     if tolerance < abs(amount):
-        return f"{microns(amount)} ± {microns(tolerance)} µm"
+        return f"{ground_microns(amount)} ± {ground_microns(tolerance)} µm"
     low, high = max(amount - tolerance, least), amount + tolerance
-    return f"{microns(low)} to {microns(high)} µm (nominal {microns(amount)})"
+    return f"{ground_microns(low)} to {ground_microns(high)} µm (nominal {ground_microns(amount)})"
 
 
 def torque_words(torque: float) -> str:

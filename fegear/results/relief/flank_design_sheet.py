@@ -35,10 +35,9 @@ from fegear.results.relief.relief_over_range import (
     RANGE_CHART,
     TIME_MEANS,
     left_words,
-    lost_words,
     said_of_spectrum,
-    within_words,
 )
+from fegear.results.relief.within_words import lost_words, within_words
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array

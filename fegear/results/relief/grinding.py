@@ -17,7 +17,7 @@ from fegear.base.shown import shown
 from fegear.design.ground_digits import ANGLE_STEP, LENGTH_STEP, amount_step, to_step
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import Member
-from fegear.results.relief.answer_numbers import microns
+from fegear.results.relief.answer_numbers import ground_microns
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -83,7 +83,7 @@ class Grinding:
         """As a sentence says it; empty for nothing."""
         if abs(self.amount) <= NOTHING:
             return ""
-        amount = f"{microns(self.amount)} µm"
+        amount = f"{ground_microns(self.amount)} µm"
         if self.modification == TIP:
             return f"{amount} from d {self.start_diameter * 1e3:.1f} mm on gear {self.gear}"
         return f"{amount} {self.modification} on gear {self.gear}"

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import figures
 from fegear.base.shown import shown
 from fegear.design.tip_relief.tip_tolerance import NOTHING, TipTolerance
 from fegear.engine.figure.axis import Axis, Scale
@@ -96,8 +95,8 @@ def profile_chart(
         start = gear.base_radius * math.hypot(1.0, tip.start)
         amount = with_limits(tip.amount, tolerance.amount, least=0.0)
         words = (
-            f"{amount}, {_SHAPES[tip.power]} from d {2e3 * start:.1f} mm "
-            f"({figures(length * 1e3, 2)} ± {figures(tolerance.length_of(gear, tip) * 1e3, 2)} mm long)"
+            f"{amount}, {_SHAPES[tip.power]} from d {2e3 * start:.3f} mm "
+            f"({length * 1e3:.3f} ± {tolerance.length_of(gear, tip) * 1e3:.3f} mm long)"
         )
         marks.append(Mark("x", _drawn_length(gear, tip.start), f"d {2e3 * start:.1f}"))
     drawn, form = roll_in_drawing(gear, gear.base_radius * roll), None

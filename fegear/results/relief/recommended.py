@@ -29,7 +29,7 @@ def recommended_design(rows: Sequence[Grinding], over: Mapping[str, LeftOverRang
     if not design or all(row.is_faint for row in rows if row.design == design and row.words):
         return ""
     best, none = over[design], over["no relief"]
-    lost = best.most is not None and best.finer != 0 and bool(np.all(best.most > none.peak_to_peak))
+    lost = best.most is not None and best.finer != 0 and bool(np.all(best.most > none.compared))
     return "" if lost else design
 
 

@@ -21,6 +21,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.left_errors import left_error
+from fegear.results.relief.within_words import lost_words, within_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -38,6 +39,9 @@ if TYPE_CHECKING:
 #: Torques of a spectrum that an answer names at most.
 _NAMED = 4
 
+#: Over what no relief leaves, from which a relief is said to leave more: below, both read the same.
+_MORE = 1.005
+
 #: Largest over smallest torque from which a range is wide: its small torques may govern the relief of all.
 _WIDE = 10.0
 
@@ -53,6 +57,9 @@ class LeftOverRange:
     finer : int or None
         By how many classes the tolerances would have to be finer for it to leave no more than no relief anywhere: 0
         where they do, None where none does.
+    slopes : ndarray, shape (L,), or None
+        Of no relief: maximum peak-to-peak value with profile slopes inside the tolerances of the amounts [m]; None
+        where nothing is compared with it.
     decisive : tuple of Decisive or None, length L
         Which tolerance, once halved, reduces the maximum within the tolerances most at each torque; empty where this
         is not known.
@@ -74,6 +81,7 @@ class LeftOverRange:
     )  # fmt: skip
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
+    slopes: Array | None = None
     share: Array | None = shown("", "share of time in the load spectrum", default=None, name="time_share")
     rounded: Array | None = shown(
         "um", "peak-to-peak transmission error with the rounded numbers of the grinding table",
@@ -84,6 +92,11 @@ class LeftOverRange:
     def time_mean(self) -> float:
         """Peak-to-peak value, mean over the time under load of the spectrum [m]."""
         return float("nan") if self.share is None else float(np.average(self.peak_to_peak, weights=self.share))
+
+    @property
+    def compared(self) -> Array:
+        """Of no relief: what a relief within its tolerances is compared with, shape (L,) [m]."""
+        return self.peak_to_peak if self.slopes is None else self.slopes
 
     @property
     def named(self) -> tuple[int, ...]:
@@ -116,6 +129,7 @@ def left_over_range(
             within.get(label), _errors(found, shifted, searched.get(label)),
             finer=design.finer if label == best else 0, decisive=design.decisive if label == best else (),
             share=shares, rounded=rounded.get(label),
+            slopes=design.unrelieved_most if label == "no relief" else None,
         )
         for label, found in _best_first(design).items()
     }  # fmt: skip
@@ -171,10 +185,10 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     lost, shape = "", chosen
     if rows and best.most is not None:
         places = np.array(every) % best.torque.size
-        of_places = (none.peak_to_peak[places], best.most[places], best.torque[places])
+        of_places = (none.compared[places], best.most[places], best.torque[places])
         shape = _best_as_drawn(seen, places)  # what tolerances decide is not what deviations of zero leave
         named = "" if shape == chosen else f"{chosen} tip "
-        lost = lost_words(*of_places, best.finer, _allowed(seen, rows), named)
+        lost = lost_words(*of_places, best.finer, _allowed(seen, rows), named, slopes=none.slopes is not None)
     if lost:
         yield f"Pair {seen.name}: {lost}."
         best, rows = d.over_range[f"{shape} tip relief"], _ground(seen, shape)
@@ -202,7 +216,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
         yield from _said_of_small_torques(seen, best, single)
     yield from said_of_undefined(seen, rows)
     yield from said_of_tolerances(seen, shape, every, lost=bool(lost))
-    worse = np.flatnonzero(single.peak_to_peak > none.peak_to_peak) if single else np.empty(0, dtype=int)
+    worse = np.flatnonzero(single.peak_to_peak > _MORE * none.peak_to_peak) if single else np.empty(0, dtype=int)
     if single and worse.size:
         i = int(worse[np.argmax((single.peak_to_peak / none.peak_to_peak)[worse])])
         nominal = d.load * single.torque[i] / single.load[i]
@@ -275,36 +289,6 @@ def _allowed(seen: Seen, rows: Sequence[Grinding]) -> Callable[[int], str]:
     return allowed
 
 
-def lost_words(
-    none: Array, most: Array, torque: Array, finer: int | None, allowed: Callable[[int], str], which: str = ""
-) -> str:
-    """That no relief leaves less at every torque within the tolerances, and which would do; empty where it does not.
-
-    Parameters
-    ----------
-    none, most : ndarray, shape (L,)
-        Peak-to-peak transmission error without relief, and at most within the tolerances [m].
-    torque : ndarray, shape (L,)
-        [N m].
-    finer, allowed
-        As in `within_words`.
-    which : str
-        Shape of the relief, where a sentence about another follows: "parabolic tip ".
-    """
-    if finer == 0 or not np.all(most > none):
-        return ""
-    i = int(np.argmax(torque))
-    less, more = told_apart(none[i], most[i])
-    at = " at every torque" if torque.size > 1 else ""
-    said = (
-        f"within {allowed(0)} the transmission error is smaller without relief{at}: {less} µm at "
-        f"{torque_words(torque[i])}, with {which}relief at most {more} µm"
-    )
-    if finer is None:
-        return f"{said}; no finer class makes relief pay{at}"
-    return f"{said}; {which}relief requires {allowed(finer)}"
-
-
 def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: bool = False) -> Iterator[str]:
     """What tolerances may leave of a shape at any of these torques, and which would do where it does not pay.
 
@@ -316,15 +300,16 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
     if not rows or best.most is None:
         return
     places = np.array(every) % best.torque.size
-    i = int(places[np.argmax(best.most[places] / none.peak_to_peak[places])])
+    i = int(places[np.argmax(best.most[places] / none.compared[places])])
 
     if not lost:
-        within = within_words(none.peak_to_peak[i], best.most[i], best.torque[i], best.finer, _allowed(seen, rows))
+        slopes = None if none.slopes is None else float(none.slopes[i])
+        ends = none.peak_to_peak[i], best.most[i], best.torque[i]
+        within = within_words(*ends, best.finer, _allowed(seen, rows), slopes)
         yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
     if best.decisive:
         gears = {row.member: row.gear for row in rows}
-        ends = best.peak_to_peak[i], best.most[i]
-        decides = decisive_words(*ends, best.torque[i], best.decisive[i], gears)
+        decides = decisive_words(best.peak_to_peak[i], best.most[i], best.torque[i], best.decisive[i], gears)
         if decides:
             yield f"Pair {seen.name}: {decides}."
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 and best.share is None else ""
@@ -378,31 +363,6 @@ def left_words(
         time = "" if share is None else f" for {percent(float(share[i])).replace('.0 %', ' %')} of the time"
         said.append(f"{microns(none[i])} -> {microns(drawn[i])} µm{within} at {torque_words(torque[i])}{time}")
     return ", ".join(said)
-
-
-def within_words(
-    none: float, most: float, torque: float, finer: int | None, allowed: Callable[[int], str]
-) -> str:  # fmt: skip
-    """What tolerances may leave at the torque where they take most of the gain, and which would do.
-
-    Parameters
-    ----------
-    none, most : float
-        Without relief, and at most within the tolerances [m].
-    torque : float
-        [N m].
-    finer : int or None
-        By how many classes the tolerances would have to be finer for the relief to pay at every torque.
-    allowed : callable
-        Tolerances that are so many classes finer, in words.
-    """
-    more, less = told_apart(most, none)
-    said = f"within {allowed(0)} at most {more} µm at {torque_words(torque)} ({less} µm without relief)"
-    if finer == 0:
-        return said
-    if finer is None:
-        return f"{said}: no finer class keeps it below that at every torque"
-    return f"{said}: to stay below that at every torque it needs {allowed(finer)}"
 
 
 def _as_drawn(seen: Seen, shape: str, best: LeftOverRange, i: int) -> str:
