@@ -176,8 +176,8 @@ def _say_draft(scene: Scene, planned: Plan, voice: Voice, *, kept: bool) -> None
     except FegearError:  # slices refuse what solids take: there is no draft
         return
     voice.aside("Draft by coupled slices, without estimated errors:")
-    for sentence in sentences:
-        voice.aside(f"  {sentence}")
+    for line in "\n".join(sentences).splitlines():  # changes are lines of one sentence
+        voice.aside(f"  {line}")
     again = "" if kept else "; --cache keeps the gears for runs with other loads, shafts or bearings"
     voice.aside(f"The result with 3D gears follows, in about {draft.seconds:.2g} s of CPU time{again}.")
 

@@ -72,7 +72,11 @@ def answer_lines(answer: RunAnswer) -> list[str]:
     """Lines of an answer: its first sentence, tables of several subjects, the other sentences."""
     first = 1 if answer.overviews else len(answer.sentences)
     rows = [line for table in answer.overviews for line in row_lines(table.filled)]
-    return [*answer.sentences[:first], *rows, *answer.sentences[first:]]
+    before, after = (
+        [line for one in part for line in one.splitlines()]
+        for part in (answer.sentences[:first], answer.sentences[first:])
+    )
+    return [*before, *rows, *after]
 
 
 def spoken_tables(results: Results) -> tuple[list[Table], list[Table]]:

@@ -17,6 +17,8 @@ from fegear.base.notes import NoteClass, class_of
 from fegear.case.built.shafts import said_of_bearings
 from fegear.case.reading import build_scene
 from fegear.case.shaft import BearingPart
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
 from fegear.shafts.catalogue_bearing import CatalogueBearing
 from fegear.shafts.designations import KNOWN, envelope_of
 
@@ -325,5 +327,9 @@ def test_tapered_bearings_of_one_direction_do_not_hold_a_shaft():
     document = shaft_on(*({"designation": "30206", "life": {}},) * 2)
     with pytest.raises(InputError, match=r"in one direction only; set reversed = true for one of them"):
         fegear.run(document, progress=False)
+    coupled = {**document, "effects": {"misalignment": True}}
+    coupled["pair"]["I"]["width"] = "slices"
+    with pytest.raises(InputError, match=r"shaft\.s\.bearings.*in one direction only; set reversed = true"):
+        make_plan(build_scene(coupled, "box", Path()), STAGES)  # before gears are solved
     document["shaft"]["s"]["bearings"][1]["reversed"] = True
     assert fegear.run(document, progress=False).tables["bearing_forces"].column("life").si[:2].min() > 1e9

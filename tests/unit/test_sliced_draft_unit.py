@@ -88,6 +88,7 @@ def test_the_draft_is_said_beside_the_progress(monkeypatch, capsys):
     lines = err.splitlines()
     assert lines[0] == "Draft by coupled slices, without estimated errors:"
     assert any(re.match(r"  Pair I\b.*K_Hβ 1\.\d", line) for line in lines)
+    assert all(line.startswith("  ") for line in lines[1:-1])  # also changes, which are lines of one sentence
     assert lines[-1].startswith("The result with 3D gears follows, in about ")
     assert "--cache keeps the gears" in lines[-1]
     _say_draft(scene, plan, Voice(quiet=True), kept=True)

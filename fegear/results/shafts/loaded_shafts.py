@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from fegear.base.effects import MISALIGNMENT, WIDE_EFFECTS
+from fegear.base.errors import ConvergenceError
 from fegear.base.notes import Note, assuming, class_of, neglecting
 from fegear.case.built.bearing_room import said_of_room
 from fegear.case.built.members import gear_name
@@ -13,7 +15,14 @@ from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_spec import pair_spec
 from fegear.case.built.shafts import gearbox_of, mesh_places, said_of_bearings, said_of_bodies
 from fegear.contact.wide.maker import load_flanks
-from fegear.contact.wide.on_shafts import TOLERANCE, EvenForces, FlankForces, LoadedShafts, load_gearbox
+from fegear.contact.wide.on_shafts import (
+    TOLERANCE,
+    EvenForces,
+    FlankForces,
+    LoadedShafts,
+    gaps_of_even_loads,
+    load_gearbox,
+)
 from fegear.contact.wide.shaft_gaps import RIGID
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.sheet import Sheet
@@ -167,9 +176,12 @@ def needs_gears_of_meshes(scene: Scene, _name: str) -> tuple[Task, ...]:
 
 
 def _check(scene: Scene, _name: str) -> None:
-    gearbox_of(scene)
-    for pair in fed_pairs(scene):
+    box, fed = gearbox_of(scene), fed_pairs(scene)
+    for pair in fed:
         check_wide_pair(scene, pair)
+    if fed:  # shafts that nothing locates are refused before gears are solved; no load distribution would be found
+        with suppress(ConvergenceError):
+            gaps_of_even_loads(box, fed[0])
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
