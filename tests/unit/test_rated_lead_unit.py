@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fegear
 from fegear.case.built.rated_pair import pair_to_rate
 from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
@@ -82,6 +83,39 @@ def test_what_the_case_says_of_the_flanks_stays_and_what_is_not_rated_has_no_saf
     assert {rated_with(lead, row(*one)).factor for one in LEADS} == {1.3}
     case["gear"]["wheel"].pop("strength")
     assert rated_lead(scene_of(case), "I") is None
+
+
+def test_flanks_with_a_larger_load_factor_than_the_rating_have_its_safety_factors():
+    """A slope against the load opens the gap further, and ISO 6336-1 credits it as a correction."""
+    lead = rated_lead(scene_of(drafted()), "I")
+    rated, formula = rated_with(lead, row(4e-6, 3e-6)), math.nan
+    for flanks in (formula, 1.0, rated.factor, 2.0 * rated.factor, 3.0):
+        found = rated_with(lead, replace(row(4e-6, 3e-6), flanks=flanks))
+        larger = max(1.0, flanks / rated.factor) if flanks == flanks else 1.0
+        assert found.factor == rated.factor
+        assert found.contact == pytest.approx(rated.contact / math.sqrt(larger), rel=1e-12)
+        assert found.bending == pytest.approx(rated.bending / larger, rel=1e-12)
+        safety = Safety(rated.contact, rated.bending, (1.0, 1.4), rated.factor).on_flanks(flanks)
+        assert (safety.contact, safety.bending) == pytest.approx((found.contact, found.bending), rel=1e-12)
+        assert safety.of_flanks == (larger > 1.0)
+        assert safety.face_load_factor == pytest.approx(rated.factor * larger, rel=1e-12)
+
+
+@pytest.mark.dear
+def test_a_lead_that_opens_the_gap_does_not_pass_by_the_credit_of_a_correction():
+    case = drafted()
+    case["results"] = ["gearbox"]
+    case["pair"]["I"]["width"] = "slices"
+    case["gear"]["pinion"]["lead"] = {"slope": "-120 um", "crowning": "3 um"}
+    found = fegear.run(case, progress=False)
+    mesh = {name: found.tables["gearbox_meshes"].column(name).si[0] for name in ("S_H", "S_F", "K_Hbeta", "S_H_min")}
+    formula = found.values["I.K_Hbeta_rated"].value
+    assert mesh["K_Hbeta"] > 1.5 * formula
+    rated = min(found.values[f"I.{one}.S_H"].value for one in ("driver", "driven"))
+    assert mesh["S_H"] == pytest.approx(rated * math.sqrt(formula / mesh["K_Hbeta"]), rel=1e-9)
+    assert mesh["S_H"] < 1.0 < rated
+    assert found.answer.sentences[0].startswith("Fails: pair I")
+    assert any("of the loaded flanks exceeds" in note for note in found.remarks)
 
 
 def test_under_a_spectrum_the_safety_factors_are_those_of_the_spectrum():

@@ -20,12 +20,29 @@ from fegear.shafts.life import EXPONENT, LifeRating
 
 @dataclass(frozen=True)
 class Safety:
-    """Lower safety factors of both gears by ISO 6336, the required ones, and the K_Hbeta that they contain."""
+    """Lower safety factors of both gears by ISO 6336, the required ones, and the K_Hbeta that they contain.
+
+    That is the larger one of ISO 6336-1 and of the loaded flanks; `formula` is the former where it is exceeded,
+    otherwise NaN.
+    """
 
     contact: float
     bending: float
     required: tuple[float, float]
     face_load_factor: float
+    formula: float = math.nan
+
+    @property
+    def of_flanks(self) -> bool:
+        """Whether K_Hbeta of the loaded flanks exceeds that of ISO 6336-1."""
+        return math.isfinite(self.formula)
+
+    def on_flanks(self, face_load_factor: float) -> Safety:
+        """With at least this K_Hbeta of the loaded flanks; itself where that is not known (NaN)."""
+        contact, bending = safeties_on_flanks(self.contact, self.bending, self.face_load_factor, face_load_factor)
+        if not face_load_factor > self.face_load_factor:
+            return self
+        return Safety(contact, bending, self.required, face_load_factor, self.face_load_factor)
 
     @property
     def margins(self) -> tuple[float, float]:
@@ -69,7 +86,8 @@ class MeshAtGlance:
     bending_required: float = shown("", "its minimum", name="S_F_min")
     te_peak_to_peak: float = shown("um", "peak-to-peak transmission error", name="te_peak_to_peak")
     margin: float = shown("", "load at the minimum safety factors over the present one", name="load_margin")
-    rated: float = shown("", "K_Hbeta in S_H and S_F, with manufacturing deviations (ISO 6336-1)",
+    rated: float = shown("", "K_Hbeta in S_H and S_F: the larger one of ISO 6336-1, with manufacturing deviations, "
+                         "and of the loaded flanks",
                          name="K_Hbeta_rated", default=math.nan)  # fmt: skip
     lead: LevelLead | None = None
     levelled: Safety | None = None
@@ -118,6 +136,17 @@ def safeties(found: Iterator[tuple[object, dict[str, tuple[float, float]]]], end
         if getattr(method, "ending", None) == ending:
             return min(known["contact_safety"]), min(known["bending_safety"])
     return math.nan, math.nan
+
+
+def safeties_on_flanks(contact: float, bending: float, formula: float, flanks: float) -> tuple[float, float]:
+    """S_H and S_F at the larger K_Hbeta: that of the formula, which they contain, or that of the loaded flanks.
+
+    ISO 6336-1 takes a helix correction as one that compensates the shafts, whatever its amount and sign; loaded flanks
+    show what it leaves. sigma_H grows with the root of K_Hbeta, sigma_F with K_Fbeta = K_Hbeta^N_F; N_F is at most 1,
+    which is taken.
+    """
+    share = formula / flanks
+    return (contact * math.sqrt(share), bending * share) if share < 1.0 else (contact, bending)
 
 
 def bearings_at_glance(

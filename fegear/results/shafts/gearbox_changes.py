@@ -253,8 +253,13 @@ def _rated(one: MeshAtGlance, safety: Safety) -> str:
         return ""
     symbol = limit_of(one, safety)[0]
     value = after.contact if symbol == "S_H" else after.bending
-    factors = f"K_Hβ {after.face_load_factor:.2f} in place of {safety.face_load_factor:.2f} of the rating"
+    factors = f"K_Hβ {after.face_load_factor:.2f} in place of {_factor(safety)}"
     return f": {symbol} {value:.2f} at {factors}"
+
+
+def _factor(safety: Safety) -> str:
+    """K_Hbeta in the safety factors, with where it comes from."""
+    return f"{safety.face_load_factor:.2f} of the {'loaded flanks' if safety.of_flanks else 'rating'}"
 
 
 def _against_tilt(one: MeshAtGlance, rated: str = "", *, gained: bool = True) -> tuple[str, str]:
@@ -287,7 +292,7 @@ def _too_weak(one: MeshAtGlance, safety: Safety) -> Change:
     (remedy, told), brief, more = _against_tilt(one, _rated(one, safety), gained=False), "lead correction", ""
     left = one.margin if after is None else min(after.margins)
     if after is None:
-        more = f", against K_Hβ {safety.face_load_factor:.2f} of the rating; or {_wider(left)}"
+        more = f", against K_Hβ {_factor(safety)}; or {_wider(left)}"
         brief += f" or {_width(left)}"
     elif left < 1.0:
         more = f"; with the lead correction still {_wider(left)}"

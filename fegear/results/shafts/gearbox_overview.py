@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.base.notes import NoteClass, class_of, neglecting, ordered
+from fegear.base.notes import NoteClass, class_of, exceeding, neglecting, ordered
 from fegear.case.built.bearing_room import seats_of
 from fegear.case.built.pair_checks import check_wide_pair
 from fegear.case.built.pair_surface import pair_speed
@@ -267,9 +267,10 @@ def _levelled(one: MeshAtGlance, releaded: RatedLead | None) -> Safety | None:
         return None
     slope, crowning = one.present[0] + one.lead.slope, one.present[1] + one.lead.crowning
     found = rated_with(releaded, SafetyOfLead(one.pair, "", slope, crowning, one.lead.after))
-    if not found.factor < one.safety.face_load_factor:
+    factor = max(found.factor, found.flanks)
+    if not factor < one.safety.face_load_factor:
         return None
-    return Safety(found.contact, found.bending, one.safety.required, found.factor)
+    return Safety(found.contact, found.bending, one.safety.required, factor)
 
 
 def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: int, state: MeshState) -> MeshAtGlance:
@@ -290,6 +291,8 @@ def _mesh(inputs: GearboxInputs, upstream: Upstream, shafts: LoadedShafts, n: in
         swing = float(found.te_peak_to_peak[found.at])
         swing_error = none if found.shift is None else float(found.shift.peak_to_peak)
     safety = _safety(inputs.rated[n], upstream, pair)
+    if safety is not None:
+        safety = safety.on_flanks(factor)
     contact, bending = (none, none) if safety is None else (safety.contact, safety.bending)
     required = (none, none) if safety is None else safety.required
     margin = none if safety is None else min(safety.margins)
@@ -352,6 +355,19 @@ def _known(key: str, of: str = "meshes") -> Cell:
 
 def _with_error(key: str, error: str) -> Cell:
     return replace(_known(key), error=lambda seen: [getattr(one, error) for one in seen.data.meshes])
+
+
+def _said_of_flanks(meshes: tuple[MeshAtGlance, ...]) -> list[Note]:
+    """Meshes whose rating has less K_Hbeta than their loaded flanks."""
+    return [
+        exceeding(
+            f"Pair {one.pair}: K_Hbeta {one.safety.face_load_factor:.2f} of the loaded flanks exceeds "
+            f"{one.safety.formula:.2f} of the rating, of which S_H and S_F are non-conservative; those of the gearbox "
+            f"contain {one.safety.face_load_factor:.2f}. Correct the lead for this load (lead-correction)."
+        )
+        for one in meshes
+        if one.safety is not None and one.safety.of_flanks
+    ]
 
 
 def _changes_to(bearings: tuple[BearingAtGlance, ...]) -> list[str] | None:
@@ -418,6 +434,7 @@ _SHEET = Sheet(
     figures=(lambda seen: (DeferredFigure("gearbox", "Gearbox under load", lambda: scheme(seen.data)),),),
     remarks=(
         lambda seen: [f"Gearbox: {one}." for one in seen.asked.why],
+        lambda seen: _said_of_flanks(seen.data.meshes),
         lambda _seen: [neglecting(_NOTCHES)],
         lambda seen: [_ESTIMATED] if any(one.lead is not None for one in seen.data.meshes) else [],
         lambda seen: said_of_checks(seen.asked.checks, seen.data.shafts.nominal.bent),

@@ -97,9 +97,10 @@ def _states(data: GearboxData, verdict: str) -> tuple[list[str], list[str], list
         ]  # fmt: skip
         said = ", ".join(known)
         if rated and first.safety is not None:
-            said += (
-                f"; S_H and S_F at K_Hβ {first.safety.face_load_factor:.2f} (ISO 6336-1, with manufacturing deviations)"
-            )
+            of = "ISO 6336-1, with manufacturing deviations"
+            if first.safety.of_flanks:
+                of = f"loaded flanks; {of}: {first.safety.formula:.2f}"
+            said += f"; S_H and S_F at K_Hβ {first.safety.face_load_factor:.2f} ({of})"
         safety.append(f"Pair {first.pair}{many}: {said}.")
         known, many = [], ""
     modified = ""

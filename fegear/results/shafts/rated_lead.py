@@ -16,6 +16,7 @@ from fegear.case.built.pair_alignment import modification_of
 from fegear.case.halves import halves_share
 from fegear.case.set_pairs import set_that_shares
 from fegear.results.rating.rating import RATING, given, rated
+from fegear.results.shafts.at_glance import safeties_on_flanks
 
 if TYPE_CHECKING:
     from fegear.case.built.rated_pair import PairToRate
@@ -65,10 +66,10 @@ class SafetyOfLead:
     flanks: float = shown("", "K_Hbeta of the loaded flanks at nominal load", name="K_Hbeta")
     factor: float = shown("", "K_Hbeta of the rating (ISO 6336-1, with manufacturing deviations)",
                           name="K_Hbeta_rated", default=math.nan)  # fmt: skip
-    contact: float = shown("", "lower safety factor for pitting of both gears, ISO 6336-2", name="S_H",
-                           default=math.nan)  # fmt: skip
-    bending: float = shown("", "lower safety factor for tooth breakage of both gears, ISO 6336-3", name="S_F",
-                           default=math.nan)  # fmt: skip
+    contact: float = shown("", "lower safety factor for pitting of both gears, ISO 6336-2, at the larger K_Hbeta",
+                           name="S_H", default=math.nan)  # fmt: skip
+    bending: float = shown("", "lower safety factor for tooth breakage of both gears, ISO 6336-3, at the larger "
+                           "K_Hbeta", name="S_F", default=math.nan)  # fmt: skip
 
 
 def present_lead(scene: Scene, pair: str) -> tuple[float, float]:
@@ -99,7 +100,10 @@ def rated_lead(scene: Scene, pair: str) -> RatedLead | None:
 
 
 def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
-    """The row with the lower safety factors of both gears, under the load spectrum where there is one."""
+    """The row with the lower safety factors of both gears, under the load spectrum where there is one.
+
+    They contain the larger K_Hbeta, of the rating or of the loaded flanks.
+    """
     from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 
     asked = lead.asked
@@ -121,4 +125,6 @@ def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
             contact, bending = spectrum.contact_safety, spectrum.bending_safety
     except InputError:
         return row
-    return replace(row, factor=found["K_Hbeta"].value, contact=min(contact), bending=min(bending))
+    factor = found["K_Hbeta"].value
+    lower = safeties_on_flanks(min(contact), min(bending), factor, row.flanks)
+    return replace(row, factor=factor, contact=lower[0], bending=lower[1])
