@@ -6,17 +6,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.base.errors import InputError
+from fegear.base.errors import GeometryError, InputError
+from fegear.base.printed import in_words
 from fegear.contact.many import changes as many_changes
 from fegear.contact.many.corners import PITCH, START
+from fegear.dynamics.compound import assembly
 from fegear.engine.processes import Job, opened
 from fegear.fem.plane.ring_closure import close_ring
 from fegear.formulas.agma import agma2101
 from fegear.formulas.iso6336 import part2_pitting as pitting
 from fegear.formulas.iso6336.rated import Strength
+from fegear.geometry.balls_on_two_flanks import BallOnTwoFlanks
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
+from fegear.results.pair import measured_error_data
 from fegear.results.shafts.gearbox_overview import _designation
 from fegear.results.train import dynamic_factor
 
@@ -97,3 +101,43 @@ def test_all_changes_of_one_cell_are_found_but_of_one_that_hovers(monkeypatch, c
     known = many_changes.changes(n, None, *none, 1.0, 2, 0, 4, np.array([0.0]), 1, *none, found)
     wanted = np.sort([*first, second])
     assert found[:known] == pytest.approx(wanted if count < 8 else wanted[[0, -1]], abs=1e-5)
+
+
+@pytest.mark.parametrize("count", range(16))
+def test_counts_are_words_up_to_twelve(count):
+    words = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+    assert in_words(count) == (words[count] if count <= 12 else str(count))
+
+
+@pytest.mark.parametrize(("first", "second", "said"), [("p", "p", "planets of p"), ("p", "q", "planets of p and q")])
+def test_planets_whose_tips_overlap_are_named(monkeypatch, first, second, said):
+    monkeypatch.setattr(assembly, "clearances", lambda of: [
+        assembly.Clearance("p", "q", -1.0, certain=False), assembly.Clearance(first, second, -2e-3, certain=True)
+    ])  # fmt: skip
+    with pytest.raises(GeometryError, match=f"{said}: interfere: tip circles overlap by 2 mm"):
+        assembly.check_neighbours(None)
+
+
+@pytest.mark.parametrize(("teeth", "mate"), [(20, 40), (20, 20), (19, 43)])
+@pytest.mark.parametrize("of", ["own", "mate"])
+def test_mesh_orders_are_of_the_mate_only_where_the_trace_has_them(teeth, mate, of):
+    """Of teeth that go into each other no order tells which shaft it was: none is said to be the other's."""
+    order = np.arange(1.0, 400.0)
+    lines = np.zeros(order.size)
+    for n, size in ((1, 3e-6), (2, 1e-6), (3, 0.4e-6)):
+        lines[n * (teeth if of == "own" else mate) - 1] = size
+    spectrum = SimpleNamespace(order=order, amplitude=lines + 1e-9, turns=3.0)
+    found = measured_error_data.orders_of_mate(SimpleNamespace(spectrum=spectrum, teeth=teeth), mate)
+    assert found is (of == "mate" and mate % teeth != 0)
+
+
+@pytest.mark.parametrize(("centre", "said"), [(10.9, "root circle"), (11.1, ""), (14.2, "below the tip circle")])
+def test_a_ball_touches_neither_the_root_circle_nor_lies_below_the_tips(centre, said):
+    """A ball of diameter 2 in a space from radius 10 to 12.5: it stands out from 11.5 on."""
+    tooth = SimpleNamespace(root_radius=10.0, tip_radius=12.5)
+    side = SimpleNamespace(form_radius=10.1, involute_tip_radius=12.4)
+    ball = SimpleNamespace(
+        tooth=tooth, centre=centre if centre < 14.0 else 11.4, diameter=2.0, _sides=(side, side),
+        roll_lengths=(3.0, 3.0), contact_radii=(11.0, 11.0),
+    )  # fmt: skip
+    assert said in BallOnTwoFlanks.trouble.fget(ball)
