@@ -100,6 +100,7 @@ const fegearGears = (() => {
         const word = svg("text", { x: below ? x * 1e3 * c + 0.08 * m : beside, y: -x * 1e3 * s + (below ? 0.5 : -0.26) * m, "font-size": 0.36 * m }, picture);
         word.textContent = letter.replace(/_\{(.*)\}/, "$1");
       }
+      fegearCircles.draw(data, up, picture, { wide, tall, unit: m });
       kept.arrows = svg("g", {}, up);
       draw();
     };
@@ -130,6 +131,7 @@ const fegearGears = (() => {
       scrub.value = Math.round(kept.place * 1000);
       const layers = fegearGlance.hides() ? { ...more.now(), stress: null, deformed: null } : more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
+      picture.classList.toggle("circled", !!fegearGlance.view().circles);
       const field = layers.deformed || kept.sent.field === kept.old ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
       fegearField.draw(inside, kept.room, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
       picture.classList.toggle("filled", !!field);
@@ -234,6 +236,12 @@ const fegearGears = (() => {
       buttons[kind].dataset.shows = kind;
       switches.append(buttons[kind]);
     }
+    const circles = button("Circles", "Pitch, base and tip circles, the line of action with its points of tangency, and the names of the gears", () => {
+      fegearGlance.keep({ circles: !fegearGlance.view().circles });
+      tell();
+      draw();
+    });
+    switches.append(circles);
     const label = document.createElement("label"), words = document.createElement("span"), value = document.createElement("b");
     const slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 300, value: 0 });
     slider.setAttribute("aria-label", "Displacement scale factor");
@@ -318,6 +326,9 @@ const fegearGears = (() => {
           + "elsewhere flanks may appear to overlap, because gaps are not magnified.");
       }
       if (has("tool")) lines.push("The profile is the envelope of the tool's positions.");
+      const circled = !!fegearGlance.view().circles;
+      circles.setAttribute("aria-pressed", String(circled));
+      if (circled) lines.push(fegearCircles.words);
       for (const kind of Object.keys(KINDS)) {
         if (!kept.on[kind]) continue;
         if (kept.sent[kind]?.refused) lines.push(`${KINDS[kind][0]}: ${kept.sent[kind].refused}`);

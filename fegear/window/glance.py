@@ -200,6 +200,8 @@ class View(NamedTuple):
         Number of the question that is asked.
     words : str
         A question of the lecturer's own in its place; empty for none.
+    circles : bool
+        Whether pitch, base and tip circles are drawn at gears in mesh.
     """
 
     pictures: tuple[str, ...] = ()
@@ -213,6 +215,7 @@ class View(NamedTuple):
     revealed: bool = False
     question: int = 0
     words: str = ""
+    circles: bool = False
 
     def changed(self, told: Mapping[str, Any]) -> View:
         """The same with what a page says; what is none of its values stays."""

@@ -56,6 +56,7 @@ _SCRIPTS = (
     "exercise",
     "glance",
     "middle",
+    "circles",
     "gears",
     "saved",
     "crack",

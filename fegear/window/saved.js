@@ -2,7 +2,7 @@
 // The gears in mesh as they are shown, as one SVG file: outlines, loads and letters as lines, stress as the picture that it is.
 const fegearSaved = (() => {
   const SVG = "http://www.w3.org/2000/svg";
-  const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "opacity", "vector-effect", "font-family"];
+  const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "paint-order", "opacity", "vector-effect", "font-family"];
   const seen = (one) => !one.hidden && getComputedStyle(one).visibility !== "hidden" && one.getClientRects().length > 0;
   const made = (tag, attributes, parent, text) => {
     const one = document.createElementNS(SVG, tag);

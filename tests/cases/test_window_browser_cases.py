@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import math
 import os
 import re
 import signal
@@ -230,6 +231,25 @@ def answers_of_wide_pairs_and_of_none(browser) -> None:
     assert browser.run(f"{made.replace('$PAIR', 'null')}.length") == 0
 
 
+def circles_as_in_a_lecture(browser) -> None:
+    """The path of contact ends where tip circles cut the line of action, which is tangent to both base circles."""
+    data = "fegearGears.inside('I').data"
+    lines = "getComputedStyle(document.querySelector('svg.mesh .circles')).display"
+    assert browser.run(lines) == "none"
+    browser.click(button("Circles"))
+    browser.until(f"{lines} === 'inline'")
+    driver, driven = browser.run(f"['driver', 'driven'].map((one) => fegearCircles.of({data}, one))")
+    angle, start, end = (browser.run(f"{data}.{one}") for one in ("pressure_angle", "start", "end"))
+    for gear, x in ((driver, end), (driven, start)):
+        place = complex(1e3 * x * math.cos(angle), 1e3 * x * math.sin(angle))
+        assert abs(place - 1j * gear["centre"]) == pytest.approx(gear["tip"], rel=1e-5)
+        tangent = gear["tangent"] * complex(math.cos(angle), math.sin(angle)) - 1j * gear["centre"]
+        assert abs(tangent) == pytest.approx(gear["base"], rel=1e-9)
+        assert gear["pitch"] == pytest.approx(abs(gear["centre"]), rel=1e-12)
+    browser.click(button("Circles"))
+    browser.until(f"{lines} === 'none'")
+
+
 def asked_and_answered(browser) -> None:
     """The question of an exercise lies above the figures, hidden or shown, and covers nothing."""
     place = "document.getElementById('{}').getBoundingClientRect().{}"
@@ -338,6 +358,7 @@ def test_a_value_stepped_by_keyboard_changes_the_results_and_one_that_is_refused
     served = opened(browser, serve, tmp_path)
     stepped(browser)
     refused(browser)
+    circles_as_in_a_lecture(browser)
     asked_and_answered(browser)
     served.end()
 
