@@ -10,6 +10,7 @@ from fegear.base.errors import GeometryError, InputError
 from fegear.base.printed import in_words
 from fegear.contact.many import changes as many_changes
 from fegear.contact.many.corners import PITCH, START
+from fegear.contact.plane.edge_law import EdgeContacts
 from fegear.dynamics.compound import assembly
 from fegear.engine.processes import Job, opened
 from fegear.fem.plane.ring_closure import close_ring
@@ -21,6 +22,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.results.pair import measured_error_data
+from fegear.results.planetary import planet_load_sharing
 from fegear.results.shafts.gearbox_overview import _designation
 from fegear.results.train import dynamic_factor
 
@@ -141,3 +143,18 @@ def test_a_ball_touches_neither_the_root_circle_nor_lies_below_the_tips(centre, 
         roll_lengths=(3.0, 3.0), contact_radii=(11.0, 11.0),
     )  # fmt: skip
     assert said in BallOnTwoFlanks.trouble.fget(ball)
+
+
+def test_contacts_beside_no_edge_have_no_part_of_it():
+    none = EdgeContacts.none((2, 3))
+    for root in (1e-3, 1.0, 30.0):
+        psi, slope = none.law(np.full((2, 3), root))
+        assert psi.tolist() == slope.tolist() == np.zeros((2, 3)).tolist()
+    assert none.rise(np.ones((2, 3)), np.ones((2, 3)), np.ones((2, 3))) == pytest.approx(np.zeros((2, 3)))
+
+
+def test_planets_that_lose_contact_on_either_side_are_named():
+    lifted = np.array([[0.0, 0.2, 0.0, 0.05], [0.1, 0.0, 0.0, 0.3]])  # of the sun and of the ring
+    seen = SimpleNamespace(data=SimpleNamespace(loads=SimpleNamespace(lifted=lifted)))
+    said = planet_load_sharing._apart(seen)
+    assert said == "planet 1 (10 % of the cycle), planet 2 (20 % of the cycle), planet 4 (30 % of the cycle)"
