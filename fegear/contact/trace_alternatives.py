@@ -60,12 +60,15 @@ class Alternative:
     fitted : FittedCurve
     turning : str
         Name of the factor of the angle; empty for the angle as measured.
+    factor : float
+        Of the angle.
     """
 
     changes: tuple[Change, ...]
     curve: str
     fitted: FittedCurve
     turning: str = ""
+    factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,7 @@ def alternatives(
             )
         except NothingToCompareError:
             continue
-        likely.append(Alternative(one.changes, one.curve, again, one.turning))
+        likely.append(Alternative(one.changes, one.curve, again, one.turning, factors[one.turning]))
     good = [one for one in likely if clearly_better(one.fitted, found)]
     if not good:
         return ()

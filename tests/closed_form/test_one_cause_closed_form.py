@@ -91,3 +91,15 @@ def test_two_bodies_on_a_shaft_have_one_closed_form():
     inertia = dict(zip(found.part.tolist(), found.factor, strict=True))["inertia of a"]
     stiff = replace(of, bodies=(Body("a", 0.3 * inertia), Body("b", 0.7)))
     assert modes(stiff).frequencies[1] == pytest.approx(0.9 * natural, rel=1e-6)
+
+
+def test_a_frequency_that_is_none_of_the_train_is_named():
+    """Of three two agree; a changed mesh, which moves one frequency only, stays the cause."""
+    computed = measured(train())
+    found = causes(computed * np.array([1.002, 8.0, 0.999]))
+    assert found.said.startswith(f"Without {8.0 * computed[1]:.4g} Hz both other measured frequencies agree with the ")
+    assert " within 0.20 %: it is probably no natural frequency of this train (" in found.said
+    assert found.others == pytest.approx(2e-3, rel=1e-6)
+    assert causes(measured(train(tooth=2.1e8))).said.startswith("Mesh I 30 % softer explains")
+    two = causes(computed[:2] * np.array([1.0, 1.3]))
+    assert (two.foreign, two.others) == (0.0, 0.0)

@@ -15,6 +15,7 @@ from fegear.contact.once_per_turn import OncePerTurn
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
+from fegear.results.pair.placed_gauge import counted_angle
 from fegear.results.pair.trace_named import drawn_as, left_out, runout_named, thinned
 from fegear.results.pair.trace_verdict import ComputedPeak, verdict
 
@@ -297,3 +298,23 @@ def test_what_a_wrong_description_leaves_is_no_runout():
     assert runout_named(waving) == ""
     told = replace(fit_curve(TURNS, strain(), ANGLE, STRAIN, ("offset", "scale")), wave=waving.wave)
     assert runout_named(told).startswith("once per turn the measured strain has 30 µm/m")
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.996, 1.007])
+def test_an_encoder_that_loses_pulses_is_named_and_not_the_torque(factor):
+    """The angle counts other than the gear turns; a part of the trace is noise."""
+    turned = np.arange(0.0, 12.0 * math.pi, 0.01)
+    place = np.mod(turned - 1.0 + math.pi, 2.0 * math.pi) - math.pi
+    trace = np.interp(place, ANGLE, STRAIN) + np.random.default_rng(4).normal(0.0, 6e-6, turned.size)
+    angle, fit = np.mod(factor * turned, 2.0 * math.pi), ("offset", "scale", "shift")
+    found = fit_curve(angle, trace, ANGLE, STRAIN, fit)
+    counted = counted_angle(angle, trace, found)
+    if factor == 1.0:
+        assert counted is None
+        return
+    assert counted == pytest.approx(1.0 / factor, abs=1e-4)
+    better = alternatives(found, angle, trace, ANGLE, {"": STRAIN}, fit, turnings={"twice": 0.5, "counted": counted})
+    said = Otherwise(better, teeth=24, mate_teeth=41).said(found, 9e-4)
+    way, pulses = ("0.40 % longer (1.4°", "lost") if factor < 1.0 else ("0.70 % shorter (2.5°", "additional")
+    assert said.startswith(f"the trace fits with an angle {way} per turn): RMS of the residual 0.")
+    assert said.endswith(f"check the encoder ({pulses} pulses, lines per revolution)")

@@ -19,6 +19,7 @@ from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.printed import percent
 from fegear.base.shown import shown, shows
 from fegear.dynamics.train.matrices import elements
+from fegear.dynamics.train.measured_modes import beside_modes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,8 +38,11 @@ _AGREES, _EXPLAINS, _OF_BEFORE = 0.01, 0.01, 0.25
 _EXACT, _NAMED = 1e-3, 3
 #: What causes that are as near as the nearest leave over what that one does.
 _SIMILAR = 1.5
+#: Measured frequencies of which one may be none of the train.
+_FEWEST_WITH_FOREIGN = 3
 #: Relative step of a derivative, and digits of a deviation from which on the smaller change comes first.
 _STEP, _DIGITS = 1e-4, 6
+_OTHERS = ("", "", "", "both other", "the other three", "the other four", "the other five")
 _COUNTS = ("", "", "both", "all three", "all four", "all five", "all six")
 
 
@@ -63,6 +67,9 @@ class OneCause(ReadOnlyArrays):
     shares : ndarray, shape (C, K)
     modes : ndarray, shape (K,)
         Numbers of the modes, from 1.
+    foreign, others : float
+        Of three or more the measured frequency without which the others agree [Hz], and their largest deviation then,
+        relative; zero for none.
     """
 
     before: float
@@ -73,6 +80,8 @@ class OneCause(ReadOnlyArrays):
     left: Array = shown("", "maximum remaining deviation of a measured frequency, relative", name="remaining_maximum")
     rms: Array = shown("", "remaining deviation, root mean square, relative", name="remaining_rms")
     shares: Array = shown("", "share of the part in strain energy (inertias: kinetic energy) of the mode", name="share")
+    foreign: float = 0.0
+    others: float = 0.0
 
     @property
     def shares_by_mode(self) -> dict[str, Array]:
@@ -95,6 +104,13 @@ class OneCause(ReadOnlyArrays):
             near = found[np.argsort(np.abs(np.log(self.factor[found])), kind="stable")][:_NAMED]
             return f"One frequency does not determine the cause: {self._either(near)} would explain it."
         every = _COUNTS[count] if count < len(_COUNTS) else f"all {count}"
+        if not found.size and self.foreign:
+            others = _OTHERS[count] if count < len(_OTHERS) else f"the other {count - 1}"
+            return (
+                f"Without {self.foreign:.4g} Hz {others} measured frequencies agree with the computed ones within "
+                f"{percent(self.others)}: it is probably no natural frequency of this train (bending of a shaft, "
+                "housing, supports, a multiple of the shaft frequency); remove it."
+            )
         if not found.size:
             near = np.flatnonzero(self.rms[:_NAMED] <= _SIMILAR * self.rms[0])
             return (
@@ -191,11 +207,22 @@ def one_cause(train: Train, found: MeasuredModes) -> OneCause:
     off = np.array([found.measured / near - 1.0 for _, near in fitted])
     rms = np.sqrt((np.log1p(off) ** 2).mean(axis=1))
     order = np.lexsort((np.abs(np.log(factor)), np.round(rms, _DIGITS)))
+    foreign, others = _foreign(found, springs.natural(parts[0], np.ones(1))[0])
     return OneCause(
         float(np.abs(found.ratio - 1.0).max()), np.array([one.inertia > 0.0 for one in parts])[order], found.mode,
         np.array([one.name for one in parts])[order], factor[order], np.abs(off).max(axis=1)[order], rms[order],
-        np.array([springs.shares(part, found.mode) for part in parts])[order],
+        np.array([springs.shares(part, found.mode) for part in parts])[order], foreign, others,
     )  # fmt: skip
+
+
+def _foreign(found: MeasuredModes, natural: Array) -> tuple[float, float]:
+    """The measured frequency without which the others agree [Hz], and their largest deviation; zeros for none."""
+    if found.measured.size < _FEWEST_WITH_FOREIGN:
+        return 0.0, 0.0
+    without = [beside_modes(np.delete(found.measured, k), natural) for k in range(found.measured.size)]
+    off = np.array([np.abs(one.ratio - 1.0).max() for one in without])
+    k = int(off.argmin())
+    return (float(found.measured[k]), float(off[k])) if off[k] <= _AGREES else (0.0, 0.0)
 
 
 def _fitted(natural: Callable[[Array], Array], measured: Array) -> tuple[float, Array]:

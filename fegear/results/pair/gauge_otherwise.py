@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from fegear.base.printed import figures
+from fegear.base.printed import figures, percent
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
 from fegear.contact.trace_low_pass import LowPass
@@ -87,6 +87,9 @@ class Otherwise(BetterDescribed):
         if "shift" in one.changes:
             pitches = whole_pitches(one.fitted.shift, self.teeth)
         of_pitches = f" ({pitches:+d} tooth pitch{'es' if abs(pitches) > 1 else ''})" if pitches else ""
+        longer, off = one.factor > 1.0, abs(one.factor - 1.0)
+        of_turn = f"{percent(off)} {'longer' if longer else 'shorter'} ({figures(360.0 * off, 2)}° per turn)"
+        pulses = "lost" if longer else "additional"
         turning = {
             "mate": (f"at {figures(abs(self.mate_teeth / self.teeth))} times its angle, that of the other shaft", key),
             "own": ("with its angle as that of the gear of the gauge", "shaft"),
@@ -98,6 +101,7 @@ class Otherwise(BetterDescribed):
                 "at twice its angle", "speed" if self.over_time else
                 "the lines per revolution of the encoder (it counts half)",
             ),
+            "counted": (f"with an angle {of_turn}", f"the encoder ({pulses} pulses, lines per revolution)"),
         }  # fmt: skip
         return {
             "turning": turning.get(one.turning, ("", "")),

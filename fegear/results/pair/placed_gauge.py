@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.case.built.angle_of_time import steady_turning
 from fegear.case.built.gauges import Gauge, place_gauge
 from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
 from fegear.contact.fitted_line import FITTED
 from fegear.contact.mains_hum import mains_hum
 from fegear.contact.once_per_turn import once_per_turn
-from fegear.contact.trace_alternatives import alternatives
+from fegear.contact.trace_alternatives import alternatives, unexplained
 from fegear.contact.trace_low_pass import low_pass
-from fegear.contact.turns import turns_along
+from fegear.contact.turns import going_on, turns_along
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
 from fegear.engine.sheet.each import Each
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 
 #: Places to either side of the grid's at which the peak is computed.
 _PLACES = 10
+#: Part of the variance left unexplained, and relative error of an angle, above which an encoder may miscount.
+_UNEXPLAINED, _MISCOUNTED = 2e-3, 2e-4
 #: Looks of displaced grids, towards the root and towards the tip, and of samples.
 DASHED, DOTTED = {"dash": "dash", "width": 1.0}, {"dash": "dot", "width": 1.6}
 #: Of a computed curve times a fitted scale.
@@ -203,9 +206,21 @@ def better_described(
         turnings = {"mate": mate / own, **turnings}
         if measured.of_mate:  # the angle has been multiplied by that already
             turnings["own"] = own / mate
+    if not gauge.over_time and (counted := counted_angle(measured.angle, measured.strain, found)) is not None:
+        turnings["counted"] = counted
     return alternatives(
         found, measured.angle, measured.strain, angle, curves, measured.fit, turnings=turnings
     )  # fmt: skip
+
+
+def counted_angle(angle: Array, strain: Array, found: FittedCurve) -> float | None:
+    """Factor by which the angle would repeat with the trace, of an encoder that loses pulses; None where it does."""
+    if unexplained(found) < _UNEXPLAINED:
+        return None
+    going = going_on(angle)
+    turned = going - going[0] if going[-1] >= going[0] else going[0] - going
+    turning = steady_turning(turned, strain, 1.0)
+    return turning.speed if turning.found and abs(turning.speed - 1.0) > _MISCOUNTED else None
 
 
 def behind_low_pass(

@@ -284,8 +284,8 @@ def verdict(
         word = f"differs in shape: correlation {found.likeness:.3f}"
         or_fit = "" if "shift" in found.fit else ", or fit shift"
         judged = (
-            f"{differ}: check fillet, tooth and position of the grid{or_fit}; measured strain is {by} the computed one "
-            f"({limit})"
+            f"{differ}: check relief, pitch deviations and misalignment (load sharing), fillet and tooth{or_fit}; "
+            f"measured strain is {by} the computed one ({limit})"
         )
     elif reason := otherwise.of_ratio(found.gain, together):
         judged = f"measured strain is {figures(found.gain)} times the computed one ({limit}){reason}"

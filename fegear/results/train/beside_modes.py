@@ -32,8 +32,9 @@ def measured_beside(given: list[float] | None, natural: Array) -> MeasuredModes 
     if len(given) > natural.size:
         raise InputError(
             "dynamics.measured_frequencies", f"{len(given)} frequencies",
-            f"exceeds the {natural.size} natural frequencies above zero of the train",
-            "remove those of other parts, or add bodies",
+            f"exceeds the {natural.size} natural frequencies above zero of the train "
+            f"({', '.join(f'{one:.4g}' for one in natural)} Hz)",
+            "remove those of other parts (bending, housing, supports), or add bodies",
         )  # fmt: skip
     from fegear.dynamics.train.measured_modes import beside_modes
 
