@@ -115,7 +115,7 @@ def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) ->
         known = keys_at(loc[:-1])
         return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known, words=meant))
     if kind == "missing":
-        return InputError(key, "(not given)", "is required")
+        return InputError(key, "(not given)", "is required", _train_of_a_pair(document) if key == "train.body" else "")
     if kind == "literal_error":
         return InputError(key, _show(value), f"must be {context['expected']}", of_value(key, value))
     if kind in ("too_short", "too_long"):
@@ -125,6 +125,21 @@ def _sentence(error: ErrorDetails, document: Mapping[str, Any] | None = None) ->
     rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
     remedy = of_value(key, value) or (_as_share(value) if kind == "float_type" else "")
     return InputError(key, _show(value), rule[0].lower() + rule[1:], remedy)
+
+
+def _train_of_a_pair(document: Mapping[str, Any] | None) -> str:
+    """The tables of a train of both gears of the first pair, with their own inertia between constant torques."""
+    pairs = (document or {}).get("pair")
+    for name, pair in pairs.items() if isinstance(pairs, dict) else ():
+        first, second = (pair.get(role) if isinstance(pair, dict) else None for role in ("driver", "driven"))
+        if isinstance(first, str) and isinstance(second, str):
+            bodies = f'driver = {{ gears = ["{first}"] }}, driven = {{ gears = ["{second}"] }}'
+            return (
+                f"for both gears with their own inertia set train.body = {{ {bodies} }}, train.mesh.{name}.driver = "
+                f'"driver", train.mesh.{name}.driven = "driven", train.torque = {{ driver = "..." }} and '
+                'train.balance = "driven"'
+            )
+    return ""
 
 
 def _as_share(value: object) -> str:

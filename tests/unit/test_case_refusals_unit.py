@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 from pathlib import Path
 
 import pytest
@@ -334,3 +335,20 @@ def test_as_many_combinations_as_are_said_are_taken_and_not_one_more(part, one, 
 )  # fmt: skip
 def test_a_refused_list_is_written_as_in_a_case_file(value, said):
     assert str(InputError("a.fit", value, "must be")) == f"a.fit = {said}: must be."
+
+
+def test_a_train_without_bodies_is_refused_with_the_tables_of_its_pair():
+    """What the remedy says makes a train."""
+    document = copy.deepcopy(CASE)
+    document["pair"]["I"] = {"driver": "a", "driven": "b", "torque": "5 N*m"}
+    document |= {"results": ["natural-modes"], "train": {"mesh": {"I": {"damping_ratio": 0.07}}}}
+    with pytest.raises(InputError, match=r"train\.body = \(not given\): is required; for both gears") as refused:
+        build_scene(copy.deepcopy(document), "case", Path())
+    for change in re.split(r", (?=train)| and (?=train)", refused.value.remedy.split(" set ", 1)[1]):
+        apply_override(document, change.replace("...", "5 N*m"))
+    scene = build_scene(document, "case", Path())
+    assert [body.gears for body in scene.case.train.body.values()] == [["a"], ["b"]]
+    assert scene.case.train.mesh["I"].damping_ratio == 0.07
+    del document["pair"], document["train"]["body"]
+    with pytest.raises(InputError, match=r"is required\.?$"):
+        build_scene(document, "case", Path())

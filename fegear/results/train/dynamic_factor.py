@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 #: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
 _COARSE = 0.1
+#: A relative rise of the dynamic factor towards an end of the speeds that is more than its error.
+_RISES = 2e-3
 #: Share of the time below which it is round-off.
 _ROUND_OFF = 1e-9
 
@@ -303,6 +305,16 @@ def _speed(seen: Seen) -> Axis:
     return Axis(f"speed of {seen.data.found.speed_of}", "rpm")
 
 
+def _at_the_end(held: SpeedChart, known: SpeedChart) -> str:
+    """Whether the factor rises up to an end of the speeds, so that it may be higher beyond it."""
+    factor = held.dynamic_factor
+    for at, beside, end, beyond in ((0, 1, "start", "below"), (-1, -2, "end", "above")):
+        rises = factor[at] == factor.max() and factor[at] > (1.0 + _RISES) * factor[beside]
+        if rises and held.speeds[at] == known.speeds[at]:
+            return f"; the maximum is at the {end} of the range and may be higher {beyond} it"
+    return ""
+
+
 def _lowest(seen: Seen) -> Iterator[str]:
     """Where it is lowest, of several speeds."""
     if seen.data.several:
@@ -311,7 +323,7 @@ def _lowest(seen: Seen) -> Iterator[str]:
         low, high = figures(held.speeds[0] * RPM, 4), figures(held.speeds[-1] * RPM, 4)
         yield (
             f"Mesh {seen.name}: minimum {figures(held.dynamic_factor[at])} at {figures(held.speeds[at] * RPM, 4)} rpm "
-            f"({held.speeds.size} speeds from {low} to {high} rpm)."
+            f"({held.speeds.size} speeds from {low} to {high} rpm{_at_the_end(held, seen.data.known)})."
         )
 
 
