@@ -291,7 +291,8 @@ class Bench:
 
     def _outdate(self, *, stopped: bool) -> None:
         """Say that what pages show is not of the case as it is."""
-        self._told.last["outdated"] = {"stopped": stopped}
+        refusal = None if stopped or self.desk is None else self.desk.refusal
+        self._told.last["outdated"] = {"stopped": stopped, "sentence": str(refusal or "")}
         self.tell("outdated", self._told.last["outdated"])
 
     def stop(self) -> None:

@@ -168,6 +168,25 @@ const fegear = (() => {
   const LONG = 700; // ms
   const early = () => $("first-gears")?.remove(); // what stood in the page before it could draw
   const say = (words) => { if ($("state") && $("state").textContent !== words) Object.assign($("state"), { textContent: words, title: words }); };
+  /** Why the case is refused, where the field that says so is out of sight: further down, or in a form that is folded away. */
+  let because = 0, reason = "";
+  function refusedBecause(sentence) {
+    clearTimeout(because);
+    reason = sentence ?? "";
+    if (!sentence) return $("refused-because")?.remove();
+    because = setTimeout(() => { // the form is told of it, too
+      const inSight = [...document.querySelectorAll(".inputs .q-field--error .q-field__messages, .inputs .refusal")].some((one) => {
+        const { top, bottom, width } = one.getBoundingClientRect();
+        return one.textContent.trim() && width > 0 && top < innerHeight - 20 && bottom > 60;
+      });
+      if (inSight) return $("refused-because")?.remove();
+      const line = $("refused-because") ?? Object.assign(made("p"), { id: "refused-because" });
+      line.setAttribute("role", "alert");
+      line.textContent = sentence;
+      document.body.append(line);
+    }, 300);
+  }
+  document.addEventListener("click", ({ target }) => { if (target.closest?.("#to-fold")) refusedBecause(reason); });
   const heard = {
     hands(content) { const shown = fegearHands.show(content, { made, sections }); early(); return shown; },
     harris(content) {
@@ -189,6 +208,7 @@ const fegear = (() => {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");
       if (!moving) offer("Stop");
+      refusedBecause("");
       say("computing ...");
     },
     begin({ step: number, count, title, left }) {
@@ -198,7 +218,8 @@ const fegear = (() => {
     },
     exercise(content) { fegearGlance.exercise(content); }, // what one page asked for holds for all
     advance({ fraction, left }) { say(`${step}, ${Math.round(100 * fraction)} %${leftWords(left)}`); },
-    outdated({ stopped }) { // the case is refused, or nobody computes it
+    outdated({ stopped, sentence }) { // the case is refused, or nobody computes it
+      refusedBecause(sentence);
       document.body.classList.remove("computing");
       document.body.classList.add("outdated");
       offer(stopped ? "Compute" : "");
@@ -321,6 +342,7 @@ const fegear = (() => {
     },
     laid() {
       early();
+      refusedBecause("");
       fegearMiddle.clear();
       sections.clear();
       unpainted.clear();

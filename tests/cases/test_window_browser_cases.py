@@ -185,6 +185,13 @@ def refused(browser) -> None:
     browser.until("[...document.querySelectorAll('[role=alert]')].some(one => one.textContent.startsWith("
                   "'gear.a.module = \"3 kg\": is not a length'))")  # fmt: skip
     assert largest_load(browser) == shown
+    browser.run("new Promise(done => setTimeout(done, 700))")
+    because = "document.getElementById('refused-because')"
+    assert browser.run(f"{because} === null")  # it is in sight at its field
+    browser.run("document.getElementById('to-fold').click()")
+    browser.until(f"{because} !== null && {because}.textContent.includes('is not a length')")
+    browser.run("document.getElementById('to-fold').click()")
+    browser.until(f"{because} === null")
     browser.click(button("Undo"))
     browser.until(f"{field('gear.a.module')}.value === '3 mm'")
 

@@ -155,7 +155,9 @@ def test_a_refused_case_is_not_asked_for_and_another_case_begins_anew(bench, tmp
     bench.desk.change(CASE.replace("900 N", "-1 N"))
     bench.changed()
     assert len(bench.asked_for) == count
-    assert bench.heard[-1] == ("outdated", {"stopped": False})  # what pages show is of an earlier case
+    told = {"stopped": False, "sentence": str(bench.desk.refusal)}  # what pages show is of an earlier case, and why
+    assert bench.heard[-1] == ("outdated", told)
+    assert "-1 N" in told["sentence"]
     assert bench.shown_now()[-2][0] == "outdated"
     bench._hear(Said(bench.asked_for[-1].number, "done", {"moving": False}))  # of the case before
     assert [what for what, _ in bench.heard][-2:] == ["done", "outdated"]
@@ -176,8 +178,8 @@ def test_what_is_computed_is_stopped_and_taken_up_again(bench):
     design, count = bench.asked_for[-1].number, len(bench.asked_for)
     bench.stop()
     assert bench.asked_for[-1] == Stop(design + 1)
-    assert bench.heard[-1] == ("outdated", {"stopped": True})
-    assert bench.shown_now()[-1] == ("outdated", {"stopped": True})  # and nothing is asked for
+    assert bench.heard[-1] == ("outdated", {"stopped": True, "sentence": ""})
+    assert bench.shown_now()[-1] == bench.heard[-1]  # and nothing is asked for
     # What comes late of what was given up changes no case.
     bench._hear(Said(design, "designed", {"reliefs": {"a": None}, "told": "late"}))
     assert bench.desk.text == CASE
