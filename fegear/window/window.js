@@ -177,7 +177,7 @@ const fegear = (() => {
     because = setTimeout(() => { // the form is told of it, too
       const inSight = [...document.querySelectorAll(".inputs .q-field--error .q-field__messages, .inputs .refusal")].some((one) => {
         const { top, bottom, width } = one.getBoundingClientRect();
-        return one.textContent.trim() && width > 0 && top < innerHeight - 20 && bottom > 60;
+        return one.textContent.trim() && width > 0 && top > 40 && bottom <= innerHeight; // all of it
       });
       if (inSight) return $("refused-because")?.remove();
       const line = $("refused-because") ?? Object.assign(made("p"), { id: "refused-because" });
