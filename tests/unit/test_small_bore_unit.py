@@ -111,3 +111,11 @@ def test_what_is_said_of_a_bore_or_rim_that_is_refused_is_taken_and_is_nearly_al
                 check_bore(tooth, inside, module)
                 with pytest.raises(RangeError):
                     check_bore(tooth, outside, module)
+
+
+def test_a_bore_for_more_teeth_is_refused_with_the_default_that_follows_them():
+    """19 teeth have a root radius of twice the bore, 11 teeth one of the bore."""
+    tooth = Tooth(11, BasicRack.named("C"))
+    with pytest.raises(RangeError, match=r"remove bore_radius \(default: half the root radius\)"):
+        check_bore(tooth, tooth.root_radius, 4.5e-3)
+    check_bore(tooth, 0.5 * tooth.root_radius, 4.5e-3)

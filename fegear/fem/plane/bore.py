@@ -49,7 +49,8 @@ def check_bore(tooth: InvoluteSide, bore_radius: float, module: float | None = N
         f"{bore_radius * unit:.9g} {name}",
         f"is too close to {near} for the FE mesh",
         f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name} "
-        "(radius at which the gear body is fixed to shaft or hub)",
+        "(radius at which the gear body is fixed to shaft or hub), or remove bore_radius (default: half the "
+        "root radius)",
     )
 
 
