@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Mask
     from fegear.contact.mains_hum import MainsHum
     from fegear.contact.once_per_turn import OncePerTurn
+    from fegear.contact.zero_jump import ZeroJump
 
 #: Fewest turns of a trace that tell a drift from the curve: each of its places is there twice.
 DRIFT_TURNS = 2.0
@@ -100,8 +101,8 @@ class FittedCurve:
         Spikes, dropouts and saturated samples within the computed curve, as `angle` and `measured`.
     step : float
         In which the samples were taken; zero where they have none.
-    hum : MainsHum or None
-        At 50 or 60 Hz, where it was looked for.
+    hum, jump : MainsHum or None, ZeroJump or None
+        At 50 or 60 Hz, and of the zero, where they were looked for.
     """
 
     fit: tuple[Fitted, ...]
@@ -117,7 +118,6 @@ class FittedCurve:
     angle: Array = shown("deg", "rotation of the gear, measured angle less the shift", label="rotation of the gear")
     measured: Array = shown("um/m", "measured strain, less the offset and divided by the scale", label="strain")
     computed: Array = shown("um/m", "computed strain at this angle")
-
     drift: float = shown(
         "um/m", "drift of the measured strain per turn of the gear", name="measured_drift", default=0.0
     )
@@ -143,6 +143,7 @@ class FittedCurve:
     gain_noise: float = 0.0
     step: float = 0.0
     hum: MainsHum | None = None
+    jump: ZeroJump | None = None
 
     @property
     @shows("um/m", "amplitude of the part of the trace once per turn of the gear", name="measured_runout")
@@ -178,7 +179,7 @@ class FittedCurve:
     def unfitted_runout(self) -> OncePerTurn | None:
         """Once per turn, where it is not subtracted, certain, and large beside the curve."""
         wave = self.wave
-        if wave is None or self.wave_less:
+        if wave is None or self.wave_less or self.jump is not None:
             return None
         large = wave.amplitude > _DRIFT_PART * float(np.ptp(self.computed)) * abs(self.scale)
         return wave if large and wave.amplitude > _DRIFT_ERRORS * wave.error else None
@@ -186,7 +187,7 @@ class FittedCurve:
     @property
     def unfitted_drift(self) -> float | None:
         """Per turn, where the residual has one that is certain, and large beside the curve."""
-        if "drift" in self.fit or self.trend is None or self.trend_error is None:
+        if "drift" in self.fit or self.jump is not None or self.trend is None or self.trend_error is None:
             return None
         large = abs(self.trend) * self.turns > _DRIFT_PART * float(np.ptp(self.computed)) * abs(self.scale)
         return self.trend if large and abs(self.trend) > _DRIFT_ERRORS * self.trend_error else None

@@ -217,7 +217,8 @@ class FilletProfile:
 
 
 def _written(key: PlaceKey, value: float) -> str:
-    return f"{math.degrees(value):.4g} deg" if key.endswith("angle") else f"{value * 1e3:.5g} mm"
+    # rounded first: the root circle is at 7e-15 mm
+    return f"{math.degrees(value):.4g} deg" if key.endswith("angle") else f"{round(value * 1e3, 9) + 0.0:.5g} mm"
 
 
 def grid_weights(points: Array, middle: ArrayLike, along: tuple[float, float]) -> Array:

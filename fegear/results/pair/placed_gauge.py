@@ -18,6 +18,7 @@ from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.trace_alternatives import alternatives, unexplained
 from fegear.contact.trace_low_pass import low_pass
 from fegear.contact.turns import going_on, turns_along
+from fegear.contact.zero_jump import zero_jump
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Line, Over
 from fegear.engine.sheet.each import Each
@@ -163,7 +164,8 @@ def compared(gauge: Gauge, angle: Array, strain: Array, speed: float | None = No
         if wave is not None and measured.runout:
             less = measured.strain - wave.at(measured.angle)
             found = fit_curve(measured.angle, less, angle, strain, measured.fit, found.step)
-        found = replace(found, wave=wave, wave_less=measured.runout)
+        jump = zero_jump(measured.angle, measured.strain, turns, found.shift, angle)
+        found = replace(found, wave=wave, wave_less=measured.runout, jump=jump)
         hum = mains_hum(measured.angle, measured.strain, turns, speed, found.shift, angle)
         if hum is None:
             return found

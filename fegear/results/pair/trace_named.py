@@ -54,8 +54,23 @@ def saturation(found: FittedCurve, of: str = "samples") -> str:
     return f"{found.saturated} {of} are saturated at {figures(found.saturated_at * 1e6)} µm/m"
 
 
+def jump_of(found: FittedCurve) -> str:
+    """By what the zero of a trace jumps, and where, a clause after others; empty where that is little."""
+    if (jump := found.jump) is None or abs(jump.height) < _LARGE * _range(found):
+        return ""
+    return f"jumps by {figures(jump.height * 1e6)} µm/m after {jump.turn:.2f} turns"
+
+
 def drift_named(found: FittedCurve | None) -> str:
-    """What a trace drifts by where nobody asked for it, a sentence without a subject; empty where it does not."""
+    """How the zero of a trace drifts or jumps, a sentence without a subject; empty where it does not.
+
+    A drift is named where nobody asked for it.
+    """
+    if found is not None and (jumps := jump_of(found)):
+        return (
+            f"the zero of the measured strain {jumps} (connector, slip ring, balancing of the bridge), which falsifies "
+            "offset and residual; give the trace before or after it"
+        )
     if found is None or found.trend_error is None or (drift := found.unfitted_drift) is None:
         return ""
     return (

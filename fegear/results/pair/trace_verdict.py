@@ -20,6 +20,7 @@ from fegear.results.pair.trace_named import (
     drawn_as,
     drift_named,
     hum_named,
+    jump_of,
     left_out,
     runout_named,
     saturation,
@@ -314,6 +315,7 @@ def verdict(
         judged += f"; {saturated}" if (saturated := saturation(found)) else ""
         word += _saturated_at(found)
         drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
+        drifts = f"; its zero {jumps}" if (jumps := jump_of(found)) else drifts
         steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
         if hum_named(found) and found.hum is not None:
             judged += f"; mains hum of ±{figures(found.hum.amplitude * 1e6)} µm/m at {figures(found.hum.frequency)} Hz"
