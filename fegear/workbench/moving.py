@@ -10,7 +10,7 @@ from fegear.base.solution_cache import SolutionCache
 from fegear.workbench.given import table
 from fegear.workbench.pair import Pair
 from fegear.workbench.quantities import Speed, Torque, listed
-from fegear.workbench.questions import ask_of_pair, loaded_document
+from fegear.workbench.questions import ask_of_pair, loaded_document, refuse_several
 from fegear.workbench.results import Results
 
 #: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
@@ -97,6 +97,8 @@ def vibration_revolution(
         over time and rotation) and ``vibration_orders_<pair>``. Values ``<pair>.mesh_force_max``,
         ``<pair>.dynamic_residual_kurtosis``, ...
     """
+    refuse_several("vibration_revolution", "under", {"torque": torque})
+    refuse_several("vibration_revolution", "at", {"speed": speed})
     document = _moving(pair, torque, damping_ratio, train, {"speed": speed, **table(dynamics, "dynamics")})
     found = ask_of_pair("vibration-revolution", pair, document, effects, tolerance, progress, cache, neglected=False)
     return found if train is not None else _without_train(found, damping_ratio)

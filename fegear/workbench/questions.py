@@ -79,15 +79,15 @@ def _one_load(pair: Pair, torque: object, load: object) -> None:
         )  # fmt: skip
 
 
-def _refuse_several(torque: object, load: object) -> None:
-    """Refuse lists and ranges where one load is followed; a list of one passes."""
-    for key, given in (("torque", torque), ("load", load)):
+def refuse_several(function: str, under: str, keys: Mapping[str, object]) -> None:
+    """Refuse lists and ranges where a revolution is followed under one load, at one speed; a list of one passes."""
+    for key, given in keys.items():
         several = listed(given, key) if given is not None else None
         both = ends(given) if isinstance(given, str) else None
         if both is not None or (several is not None and len(several) != 1):
             raise InputError(
-                key, shown(given), f"must be one {key}: a revolution is followed under one",
-                f"call it in a loop: {{one: fegear.mesh_stiffness_revolution(pair, {key}=one) for one in {key}s}}; "
+                key, shown(given), f"must be one {key}: a revolution is followed {under} one",
+                f"call it in a loop: {{one: fegear.{function}(pair, {key}=one) for one in {key}s}}; "
                 "solved gears are used again",
             )  # fmt: skip
 
@@ -352,7 +352,7 @@ def mesh_stiffness_revolution(
     InputError
         If several loads are given, or as in `transmission_error`.
     """
-    _refuse_several(torque, load)
+    refuse_several("mesh_stiffness_revolution", "under", {"torque": torque, "load": load})
     return ask_of_pair(
         "mesh-stiffness-revolution", pair, loaded_document(pair, torque, load), effects, tolerance, progress, cache,
         neglected=False,

@@ -2,6 +2,7 @@
 
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from fegear.fem.alike_teeth import meshing_order
 from fegear.fem.plane.odd.crack import mouth_at_tangent, straight_crack
 from fegear.formulas import potential_energy_simplified as simplified
 from fegear.formulas.sources import pair_compliance
+from fegear.results.gear.crosscheck_odd import said_of_passage, silent_on_odd_teeth
 
 NAME = "potential-energy-simplified"
 GEARS = tuple(
@@ -110,6 +112,19 @@ def test_pits_alone_leave_the_compliance_of_the_tooth():
     (found,) = odd_passages(PAIR, ordinary, ordinary, LOAD / PAIR.face_width, known)
     assert 0.0 < found.fe.loss < 0.1
     assert found.formulas[NAME].value.loss == pytest.approx(found.uncoupled.loss, rel=1e-12)
+
+
+@pytest.mark.parametrize("silent_anyway", [False, True])
+def test_an_answer_names_formulas_that_the_crack_silences(silent_anyway):
+    """Those that give nothing of ordinary teeth either are named with the compliance of one tooth pair."""
+    tooth = SimpleNamespace(tooth=5, gear="z22", what="cracked")
+    found = SimpleNamespace(tooth=tooth, fe=SimpleNamespace(odd=np.array([9e7, 8e7]), loss=0.5))
+    one = SimpleNamespace(pair="I", found=found, formulas={}, silent={NAME: "the reason"}, title="Title")
+    known = SimpleNamespace(compliance=SimpleNamespace(silent=(NAME,) if silent_anyway else ()))
+    seen = SimpleNamespace(one=one, data=SimpleNamespace(pairs={"I": known}))
+    (said,) = said_of_passage(seen)
+    assert said.endswith("FE 80 N/µm (-50 %)." if silent_anyway else ", potential energy (no fillet) not valid here.")
+    assert silent_on_odd_teeth(seen) == ([] if silent_anyway else [f"Title: {NAME} gives no value: the reason"])
 
 
 def test_other_formulas_and_bodies_are_refused():

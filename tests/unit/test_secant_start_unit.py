@@ -104,6 +104,15 @@ def test_relief_that_keeps_tips_apart_says_that_they_have_no_influence():
     assert "included (no influence)." in " ".join(found.answer.sentences)
 
 
+@pytest.mark.parametrize("given", [{"speed": ["2000 rpm", "3000 rpm"]}, {"torque": ["20 N*m", "80 N*m"]}])
+def test_a_motion_over_a_revolution_at_several_speeds_is_refused_with_a_loop(given):
+    pair = fegear.Pair(*(fegear.Gear(z, "2 mm", face_width="20 mm") for z in (25, 30)))
+    (key,) = given
+    said = rf"must be one {key}.*call it in a loop.*vibration_revolution\(pair, {key}=one"
+    with pytest.raises(fegear.InputError, match=said):
+        fegear.vibration_revolution(pair, **{"torque": "20 N*m", "speed": "2000 rpm"} | given)
+
+
 @pytest.mark.parametrize("given", [{"torque": ["20 N*m", "80 N*m"]}, {"torque": "20 to 80 N m"}, {"load": [1e3, 2e3]}])
 def test_a_revolution_under_several_loads_is_refused_with_a_loop(given):
     pair = fegear.Pair(*(fegear.Gear(z, "2 mm", face_width="20 mm") for z in (25, 30)))

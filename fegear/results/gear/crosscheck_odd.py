@@ -84,6 +84,7 @@ def said_of_passage(seen: Seen) -> list[str]:
     tooth, fe = one.found.tooth, one.found.fe
     by = [("FE", fe), *((COMPLIANCES[name], its.found) for name, its in one.formulas.items())]
     said = ", ".join(f"{name} {found.odd.min() * 1e-6:.4g} N/µm (-{percent(found.loss)})" for name, found in by)
+    said += "".join(f", {COMPLIANCES[name]} not valid here" for name in _silent_here(seen))
     return [
         (
             f"Pair {one.pair}, tooth {tooth.tooth} of gear {tooth.gear} {tooth.what}: minimum mesh stiffness on the "
@@ -108,9 +109,14 @@ def passage_values(seen: Seen) -> Iterator[Value]:
 
 def silent_on_odd_teeth(seen: Seen) -> list[str]:
     """Formulas without a column, and why, where that is not said of the compliance of one tooth pair."""
+    return [f"{seen.one.title}: {name} gives no value: {why}" for name, why in _silent_here(seen).items()]
+
+
+def _silent_here(seen: Seen) -> dict[str, str]:
+    """Formulas that give nothing of the odd tooth but something of ordinary ones, with their reasons."""
     one: PassageCompared = seen.one
     known = seen.data.pairs[one.pair].compliance.silent
-    return [f"{one.title}: {name} gives no value: {why}" for name, why in one.silent.items() if name not in known]
+    return {name: why for name, why in one.silent.items() if name not in known}
 
 
 ODD_TABLE = Rows(
