@@ -134,3 +134,17 @@ def test_the_common_sentence_is_first():
     assert joined([of("a", 1)]).sentences == ("a.",)
     nothing = [replace(of(name, 1), common=lambda _: "") for name in "ab"]
     assert joined(nothing).sentences == ("a.", "b.")
+
+
+def test_exchanged_traces_of_both_fillets_are_named():
+    place = ("I", "pinion", 1)
+    t, c = (
+        replace(gauges(0.4, alike=False)[0], name=name, explained=True, fits=(*place, side))
+        for name, side in (("t", "compression"), ("c", "tension"))
+    )
+    said = "The traces of t and c are exchanged, each fits the fillet of the other: check channels (strain_column) and "
+    assert of_all_gauges([t, c]) == f"{said}leads."
+    assert of_all_gauges([*gauges(1.0), t, c]) == f"{said}leads."
+    assert "exchanged" not in of_all_gauges([*gauges(1.0), t, replace(c, fits=(*place, "compression"))])
+    assert "exchanged" not in of_all_gauges([*gauges(1.0), t, replace(c, fits=("I", "pinion", 2, "tension"))])
+    assert of_all_gauges([t]) == ""

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Gauges from which on something is said of all of them.
 _SEVERAL = 3
+#: Gauges in the two fillets of a tooth.
+_PAIR = 2
 #: Standard errors by which a mean that is not one is more than chance.
 _CERTAIN = 2.0
 #: Gauges that a common sentence names.
@@ -54,6 +56,8 @@ class GaugeGain:
         Where its tooth is in contact, by the angle of its trace; None where that was not fitted.
     explained : bool
         Whether another description, or a low pass, explains its trace.
+    fits : tuple or None
+        Pair, gear, tooth and side of the fillet that its trace fits, where that is the other one of its tooth.
     """
 
     name: str
@@ -65,6 +69,7 @@ class GaugeGain:
     alike: bool
     zero: TraceZero | None = None
     explained: bool = False
+    fits: tuple[str, str, int, str] | None = None
 
     def within(self, factor: float) -> bool:
         """Whether the strain agrees with a computed one that is multiplied by a factor."""
@@ -98,8 +103,16 @@ def gain_of(gauge: Gauge, data: BesideTrace, peak: ComputedPeak) -> GaugeGain | 
     return GaugeGain(
         gauge.name, found.gain, limits.together(-1.0), limits.together(1.0), gauge.load_tolerance,
         judged.kind is NoteClass.INFORMATION, same, zero,
-        bool(data.otherwise.better or data.otherwise.low_pass),
+        bool(data.otherwise.better or data.otherwise.low_pass), _other_fillet(gauge, data),
     )  # fmt: skip
+
+
+def _other_fillet(gauge: Gauge, data: BesideTrace) -> tuple[str, str, int, str] | None:
+    """The place that a trace fits if it is the other fillet of its tooth and nothing else; None otherwise."""
+    better = data.otherwise.better
+    if not better or better[0].changes != ("curve",):
+        return None
+    return gauge.pair, gauge.gear, gauge.tooth, "compression" if gauge.side == "tension" else "tension"
 
 
 def common_factor(gauges: Sequence[GaugeGain]) -> float:
@@ -126,10 +139,12 @@ def of_all_gauges(gauges: Sequence[GaugeGain | PlannedGauge | None]) -> str:
 
 
 def of_ratios(measured: Sequence[GaugeGain]) -> str:
-    """Sentence about measured / computed strain of all gauges; empty for fewer than three."""
+    """Sentence about measured / computed strain of all gauges; of fewer than three only whether they are exchanged."""
+    failing = [one for one in measured if not one.agrees]
+    if exchanged := _exchanged(failing):
+        return exchanged
     if len(measured) < _SEVERAL:
         return ""
-    failing = [one for one in measured if not one.agrees]
     if not failing:
         return _all_agree(measured)
     if 2 * len(failing) >= len(measured) and (cause := _common_cause(measured)):
@@ -153,6 +168,17 @@ def of_ratios(measured: Sequence[GaugeGain]) -> str:
             f"{its} bridge, bond and position before the torque, which the others confirm."
         )
     return f"{agree} with the computed strain; no common factor explains the others: check each of them."
+
+
+def _exchanged(failing: Sequence[GaugeGain]) -> str:
+    """That the only two traces that do not agree fit the two fillets of a tooth the other way round; empty if not."""
+    places = [one.fits for one in failing if one.fits is not None]
+    if len(failing) != len(places) or len(set(places)) != len({one[:3] for one in places}) + 1 or len(places) != _PAIR:
+        return ""
+    return (
+        f"The traces of {_names(failing)} are exchanged, each fits the fillet of the other: check channels "
+        "(strain_column) and leads."
+    )
 
 
 def _all_agree(gauges: Sequence[GaugeGain]) -> str:

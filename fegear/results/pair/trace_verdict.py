@@ -35,6 +35,8 @@ _CERTAIN = 2.0
 _SMALL = 1e-4
 #: Correlation below which shapes differ.
 _ALIKE = 0.98
+#: Residual over noise below which a trace has the shape of its curve.
+_SHAPED = 2.0
 #: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
 _JUDGES = 0.1
 #: Change by effects that the computation does not have above which it judges nothing, over the rest of the limit.
@@ -306,7 +308,7 @@ def verdict(
         judged = (
             f"measured strain does not agree with the computed one: {by} it ({limit}){also}"
             + likely_causes(
-                off, peak.load_tolerance, peak.displacement, peak.gains, otherwise.fillet_ratio,
+                off, peak.load_tolerance, peak.displacement, peak.gains, _fillet_ratio(found, otherwise),
                 leads=not otherwise.second,
             )
         )  # fmt: skip
@@ -342,6 +344,11 @@ def _in_place_of_verdict(
             NoteClass.FAILS, word="opposite sign",
         )  # fmt: skip
     return None
+
+
+def _fillet_ratio(found: FittedCurve, otherwise: Otherwise) -> float:
+    """Of the other fillet, where it may be in the trace: its curve has another shape, which noise does not explain."""
+    return otherwise.fillet_ratio if found.rms > _SHAPED * found.noise else 0.0
 
 
 def _saturated_at(found: FittedCurve) -> str:
