@@ -14,6 +14,7 @@ from fegear.case.drafts.answers import Answers
 from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
 from fegear.design.flanks.lead_correction import LeadCorrection, LevelLead
+from fegear.formulas.iso6336.part1_face_load import FULL_CROWNING, manufacturing
 from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 from fegear.results.rating.rating import given, rated
 from fegear.results.shafts.at_glance import MeshAtGlance, Safety
@@ -83,6 +84,36 @@ def test_what_the_case_says_of_the_flanks_stays_and_what_is_not_rated_has_no_saf
     assert {rated_with(lead, row(*one)).factor for one in LEADS} == {1.3}
     case["gear"]["wheel"].pop("strength")
     assert rated_lead(scene_of(case), "I") is None
+
+
+def test_crowning_counts_in_the_rating_by_its_amount():
+    """0.5 µm had the credit of the whole crowning, and the search for the minimum K_Hbeta recommended it."""
+    case = drafted()
+    asked = pair_to_rate(scene_of(case), "I")
+    f_ma = manufacturing(rated(asked).quality)
+    lead = rated_lead(scene_of(case), "I")
+
+    def factors(slope, *shares):
+        return [rated_with(lead, row(slope, share * FULL_CROWNING * f_ma)).factor for share in shares]
+
+    for slope in (0.0, -4e-6):
+        none, little, half, full, more = factors(slope, 0.0, 0.01, 0.5, 1.0, 4.0)
+        assert none > little > half > full == more
+        assert little == pytest.approx(none, abs=0.02 * (none - full))
+        assert factors(slope, 0.0, 1e-9)[1] == pytest.approx(none, rel=1e-8)
+    case["gear"]["pinion"]["lead"] = {"crowning": f"{0.05 * f_ma * 1e6} um"}
+    found = rate_pair(rated(pair_to_rate(scene_of(case), "I")))
+    assert found["B_2"].value == pytest.approx(1.0 - 0.5 * 0.05 / FULL_CROWNING, rel=1e-9)
+    assert any(one.startswith("B_2: lead crowning below 0.2 f_ma") for one in found.remarks)
+    case["pair"]["I"]["shafts"] = {"modification": "crowned for manufacture", "deformation": "0 um"}
+    assert rate_pair(rated(pair_to_rate(scene_of(case), "I")))["B_2"].value == 0.5  # as specified
+
+
+def test_a_correction_with_hardly_any_crowning_is_not_recommended():
+    one = np.ones(1)
+    found = LeadCorrection(-4e-6, 5e-7, one, 1.2 * one, 1.02 * one, 0.0 * one, 1.1 * one)
+    designs = [row.design for row in _leads("I", found, (0.0, 3e-6), rated_lead(scene_of(drafted()), "I"))]
+    assert designs == ["present", "lead correction, present crowning", "lead correction"]
 
 
 def test_flanks_with_a_larger_load_factor_than_the_rating_have_its_safety_factors():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.base.notes import neglecting
@@ -14,6 +15,9 @@ from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.shafts.mesh import straight_slope
 
+if TYPE_CHECKING:
+    from fegear.case.relief import LeadPart
+
 #: The class whose helix slope a favourable contact pattern takes off.
 _CLASS_5 = 5
 
@@ -24,9 +28,12 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
     shafts, given = part.shafts, part.operation.face_load_factor
     if given is not None:
         return Alignment(face_load_factor=given)
-    modification = (shafts.modification if shafts else None) or _modification(scene, gears, said)
+    stated = shafts.modification if shafts else None
+    modification = stated or _modification(scene, gears, said)
+    crowning = None if stated else sum((lead.crowning for lead in _leads(scene, gears)), 0.0)
     if shafts is None and on_shafts(scene, name):
-        return Alignment(modification=modification, computed=_of_computed_shafts(scene, name))
+        computed = _of_computed_shafts(scene, name)
+        return Alignment(modification=modification, computed=computed, crowning=crowning)
     if shafts is None:
         said.append(
             neglecting(
@@ -34,7 +41,7 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
                 "(f_sh = 0)."
             )
         )
-        return Alignment(deformation=0.0, modification=modification)
+        return Alignment(deformation=0.0, modification=modification, crowning=crowning)
     shaft = None
     if shafts.arrangement and shafts.bearing_span and shafts.diameter:
         shaft = PinionShaft(
@@ -51,7 +58,9 @@ def pair_alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str
             rule = f"uses the helix slope tolerance of class 5, which is not defined for {error.key} = {error.value}"
             key, remedy = f"pair.{name}.shafts.contact_pattern", "remove it, or set operation.face_load_factor"
             raise InputError(key, shafts.contact_pattern, rule, remedy) from None
-    return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
+    return Alignment(
+        shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope, crowning=crowning
+    )  # fmt: skip
 
 
 def _of_computed_shafts(scene: Scene, name: str) -> float:
@@ -67,8 +76,7 @@ def _of_computed_shafts(scene: Scene, name: str) -> float:
 
 def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixModification:
     """What lead of the gears makes of the flanks, in the rows of the standard's table."""
-    each = (scene.case.gear[gear].lead_of(scene.gears[gear].tooth.working_flank)[0] for gear in gears)
-    leads = [lead for lead in each if lead is not None]
+    leads = _leads(scene, gears)
     if not leads:
         return "none"
     if not scene.case.effects.relief:
@@ -80,6 +88,12 @@ def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixM
         crowned=any(lead.crowning for lead in leads), sloped=any(lead.slope for lead in leads),
         end_relief=any(lead.end_relief for lead in leads),
     )  # fmt: skip
+
+
+def _leads(scene: Scene, gears: Sequence[str]) -> list[LeadPart]:
+    """Leads of both gears on their working flanks, where they have one."""
+    each = (scene.case.gear[gear].lead_of(scene.gears[gear].tooth.working_flank)[0] for gear in gears)
+    return [lead for lead in each if lead is not None]
 
 
 def modification_of(*, crowned: bool, sloped: bool, end_relief: bool) -> HelixModification:

@@ -56,6 +56,36 @@ MODIFICATIONS: dict[HelixModification, tuple[float, float]] = {
 }
 
 
+#: Lead crowning over f_ma from which it counts in full. Table 8 is for 0.5; drafts and practice have from 0.2 on.
+FULL_CROWNING = 0.2
+
+
+def modification_constants(alignment: Alignment, manufacture: float) -> tuple[float, float]:
+    """B_1 and B_2 of table 8; crowning of less than `FULL_CROWNING` f_ma reduces B_2 in proportion to its amount.
+
+    So they are continuous: crowning of 0 is none, and half a micrometre compensates hardly any of f_ma.
+
+    Parameters
+    ----------
+    alignment : Alignment
+    manufacture : float
+        f_ma [m].
+    """
+    b_1, b_2 = MODIFICATIONS[alignment.modification]
+    row = _WITHOUT_CROWNING.get(alignment.modification)
+    if row is None or alignment.crowning is None or not alignment.crowning < FULL_CROWNING * manufacture:
+        return b_1, b_2
+    share = alignment.crowning / (FULL_CROWNING * manufacture)
+    return b_1, b_2 + (1.0 - share) * (MODIFICATIONS[row][1] - b_2)
+
+
+#: Rows of table 8 that follow from the leads of a case, and those without their crowning.
+_WITHOUT_CROWNING: dict[HelixModification, HelixModification] = {
+    "crowned for manufacture": "none",
+    "helix corrected and crowned": "helix corrected",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Misalignment:
     """K_Hbeta by method C and what it is made of; [m].
@@ -135,7 +165,7 @@ def initial_misalignment(
     deformation, manufacture, least, helix_slope_5 : float
         f_sh, f_ma, F_betaxmin, f_Hbeta5 [m]; the last counts where the contact pattern is favourable.
     """
-    b_1, b_2 = MODIFICATIONS[alignment.modification]
+    b_1, b_2 = modification_constants(alignment, manufacture)
     if alignment.contact_pattern == "verified":
         return least
     if alignment.contact_pattern == "favourable":
@@ -202,7 +232,7 @@ def method_c(
     one, other = (running_in.helix_allowance(s, initial, velocity) for s in strength)
     worn = running_in.mean((one, other))
     factor = face_load_factor(initial - worn, stiffness, specific_load)
-    constants = MODIFICATIONS[alignment.modification]
+    constants = modification_constants(alignment, manufacture)
     return Misalignment(deformation, manufacture, constants, initial, least, worn, initial - worn, factor, remark)
 
 
@@ -325,6 +355,8 @@ class Alignment:
         K_Hbeta itself, where it is given.
     computed : float, optional
         f_sh over F_m/b of shafts that were computed [m^2/N].
+    crowning : float, optional
+        C_beta of both gears together, where `modification` follows from it; by default as much as its row requires.
     """
 
     shaft: PinionShaft | None = None
@@ -335,3 +367,4 @@ class Alignment:
     helix_slope_5: float | None = None
     face_load_factor: float | None = None
     computed: float | None = None
+    crowning: float | None = None

@@ -188,7 +188,9 @@ def _face_load(
         table.add("f_sh", found.deformation, "ISO 6336-1:2006, 7.5.2.4, Eq. 57", found.remark)
         table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2, Eq. 64")
         table.add("B_1", found.constants[0], "ISO 6336-1:2006, 7.5.2.2, table 8")
-        table.add("B_2", found.constants[1], "ISO 6336-1:2006, 7.5.2.2, table 8")
+        little = found.constants != misalignment.MODIFICATIONS[conditions.alignment.modification]
+        counts = f"B_2: lead crowning below {misalignment.FULL_CROWNING:g} f_ma counts in proportion" if little else ""
+        table.add("B_2", found.constants[1], "ISO 6336-1:2006, 7.5.2.2, table 8", counts)
         table.add("F_betaxmin", found.least, "ISO 6336-1:2006, 7.5.2, Eqs. 55 and 56")
         table.add("F_betax", found.initial, "ISO 6336-1:2006, 7.5.2.2, Eqs. 52 and 53")
         table.add("y_beta", found.run_in, "ISO 6336-1:2006, 7.5.2.1, Eqs. 44 to 48")

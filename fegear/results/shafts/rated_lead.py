@@ -32,8 +32,10 @@ class RatedLead:
     ----------
     asked : PairToRate
         With the present lead.
-    crowned, sloped : bool
-        Whether the lead of the driven gear is.
+    crowning : float
+        Lead crowning of the driven gear [m].
+    sloped : bool
+        Whether the driven gear has a helix slope.
     end_relief : bool
         Whether either gear has one.
     stated : HelixModification or None
@@ -41,7 +43,7 @@ class RatedLead:
     """
 
     asked: PairToRate
-    crowned: bool
+    crowning: float
     sloped: bool
     end_relief: bool
     stated: HelixModification | None
@@ -51,7 +53,7 @@ class RatedLead:
         if self.stated is not None:
             return self.stated
         return modification_of(
-            crowned=self.crowned or bool(crowning), sloped=self.sloped or bool(slope), end_relief=self.end_relief
+            crowned=bool(self.crowning or crowning), sloped=self.sloped or bool(slope), end_relief=self.end_relief
         )
 
 
@@ -95,7 +97,7 @@ def rated_lead(scene: Scene, pair: str) -> RatedLead | None:
     ends = any(lead is not None and lead.end_relief for lead in leads)
     driven, stated = leads[1], part.shafts.modification if part.shafts else None
     return RatedLead(
-        asked, driven is not None and bool(driven.crowning), driven is not None and bool(driven.slope), ends, stated
+        asked, 0.0 if driven is None else driven.crowning, driven is not None and bool(driven.slope), ends, stated
     )
 
 
@@ -107,7 +109,10 @@ def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
     from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum
 
     asked = lead.asked
-    alignment = replace(asked.conditions.alignment, modification=lead.modification(row.slope, row.crowning))
+    alignment = replace(
+        asked.conditions.alignment, modification=lead.modification(row.slope, row.crowning),
+        crowning=None if lead.stated is not None else lead.crowning + row.crowning,
+    )  # fmt: skip
     asked = replace(asked, conditions=replace(asked.conditions, alignment=alignment))
     try:
         conditions, own = rated(asked), given(asked)
