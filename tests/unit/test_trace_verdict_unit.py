@@ -318,3 +318,17 @@ def test_an_encoder_that_loses_pulses_is_named_and_not_the_torque(factor):
     way, pulses = ("0.40 % longer (1.4°", "lost") if factor < 1.0 else ("0.70 % shorter (2.5°", "additional")
     assert said.startswith(f"the trace fits with an angle {way} per turn): RMS of the residual 0.")
     assert said.endswith(f"check the encoder ({pulses} pulses, lines per revolution)")
+
+
+def test_a_ratio_that_agrees_with_a_shape_that_does_not_says_so():
+    wider = np.interp(ANGLE, ANGLE * 1.07, STRAIN)  # another load sharing
+    place = np.mod(TURNS + math.pi, 2.0 * math.pi) - math.pi
+    clause = "times the noise: check relief, pitch deviations (load sharing) and filters"
+    for noise, said in ((3e-6, True), (3e-5, False)):
+        trace = np.interp(place, ANGLE, wider) + np.random.default_rng(4).normal(0.0, noise, TURNS.size)
+        found = fit_curve(TURNS, trace, ANGLE, STRAIN, ("offset", "scale"))
+        judged = verdict(found, replace(PEAK, load_tolerance=0.1), brief=True)
+        assert judged.startswith("measured strain agrees with the computed one: ")
+        assert (clause in judged) is said
+    plain = fit_curve(TURNS, strain(), ANGLE, STRAIN, ("offset", "scale"))
+    assert clause not in verdict(plain, PEAK, brief=True)

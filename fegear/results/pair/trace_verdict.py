@@ -37,6 +37,8 @@ _SMALL = 1e-4
 _ALIKE = 0.98
 #: Residual over noise below which a trace has the shape of its curve.
 _SHAPED = 2.0
+#: Residual over noise, and over the peak, from which on a shape is named that agrees in correlation.
+_SYSTEMATIC, _NOTED = 5.0, 0.04
 #: Estimated error of the computed peak above which it judges no measurement within it, as a part of the peak.
 _JUDGES = 0.1
 #: Change by effects that the computation does not have above which it judges nothing, over the rest of the limit.
@@ -303,6 +305,7 @@ def verdict(
         kind, word = NoteClass.INFORMATION, f"agrees: {by} (limit {percent(together)})"
         word += ", not steady" if unsteady else ""
         judged = f"measured strain agrees with the computed one: {by} it ({limit}){_explained(peak, limits, off)}"
+        judged += _of_shape(found, size)
     else:
         also = f", {_by(with_them)} it with {effects}" if missing else ""
         judged = (
@@ -344,6 +347,16 @@ def _in_place_of_verdict(
             NoteClass.FAILS, word="opposite sign",
         )  # fmt: skip
     return None
+
+
+def _of_shape(found: FittedCurve, size: float) -> str:
+    """That the shape differs by far more than noise though the ratio agrees, a clause; empty where it does not."""
+    if found.rms < max(_SYSTEMATIC * found.noise, _NOTED * size) or found.unfitted_runout is not None:
+        return ""
+    return (
+        f"; the residual, {percent(found.rms / size)} of the peak, is {figures(found.rms / found.noise, 2)} times the "
+        "noise: check relief, pitch deviations (load sharing) and filters"
+    )
 
 
 def _fillet_ratio(found: FittedCurve, otherwise: Otherwise) -> float:
