@@ -168,7 +168,7 @@ def hardness_ratio_factor(ratio: float, pinion_hardness: float, gear_hardness: f
     if not (ratio >= 1.0 and pinion_hardness > 0.0 and gear_hardness > 0.0):
         raise RangeError("u, HB_1, HB_2", (ratio, pinion_hardness, gear_hardness), "must be at least 1, and positive")
     hard = pinion_hardness / gear_hardness
-    a = 0.0 if hard < 1.2 else 8.98e-3 * min(hard, 1.7) - 8.29e-3
+    a = 0.0 if hard < 1.2 else 8.98e-3 * hard - 8.29e-3
     if hard > 1.7:
         a = 0.00698
     return 1.0 + a * (min(ratio, 20.0) - 1.0)
