@@ -87,7 +87,8 @@ def shown(*, scattered=True, gear="both", weights=None, lead=ALLOWED):
             for label, left in (("lead", 6.0), ("profile-and-lead", 1.0), ("profile", 1.9))]  # fmt: skip
     design = SimpleNamespace(
         states=(none, exact, *ways), unrelieved=none, exact=exact, best=ways[2], least=ways[1], chosen=(ways[2],),
-        found=found, finer=0, scattered=scattered, x=X, z=Z, removal=EXACT, roll=np.array([0.0, 1e-3, 2e-3]),
+        found=found, finer=0, unrelieved_most=None, scattered=scattered, x=X, z=Z,
+        removal=EXACT, roll=np.array([0.0, 1e-3, 2e-3]),
         left_by=lambda one: one.judged.peak_to_peak.value,
         task=SimpleNamespace(
             load=1500.0, loads=(500.0, 1500.0), weights=weights, map_over_face=(-1e-6, 0.0, 1e-6),
@@ -450,6 +451,17 @@ def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its
     assert "5 µm crowning" in ground
     assert "12 -> 1.5 µm (within tolerances at most 4 µm) at 33.83 N m" in ground
     assert "is better than profile (2) as drawn" in compared
+
+
+def test_no_relief_has_deviations_within_the_tolerances_of_the_relief_too():
+    seen = speaking()
+    design = seen.data.design
+    design.best.over_most = 1e-6 * np.array([9.0, 13.0])  # more than exact flanks, less than those of the same class
+    design.unrelieved_most = 1e-6 * np.array([10.0, 16.0])
+    ground, within, *_ = sheet._grind(seen)
+    assert ground.startswith("Pair I: grind 12 µm")
+    assert "(8 µm without relief, at most 10 µm with profile slopes within the same tolerance)." in within
+    assert seen.data.recommended == design.best.label
 
 
 def test_modifications_that_nobody_can_grind_are_none_and_round_off_of_a_grid_is_no_slope():

@@ -17,7 +17,13 @@ from fegear.design.flanks.flank_design import (
     FlankState,
     design_flanks,
 )
-from fegear.design.flanks.flank_tolerance import FlankTolerance, LeadTolerance, decisive_tolerances, within_tolerances
+from fegear.design.flanks.flank_tolerance import (
+    FlankTolerance,
+    LeadTolerance,
+    decisive_tolerances,
+    unrelieved_within,
+    within_tolerances,
+)
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
 from fegear.design.flanks.scatter import NOMINAL, Scatter
@@ -339,7 +345,16 @@ def test_the_worst_within_tolerances_has_lead_and_tips_at_their_ends_and_nothing
     np.testing.assert_allclose(found[1], numbers + off * [-1, -1, 1, 1, -1, 1, 1, -1, 1], atol=1e-12)
     decides = decisive_tolerances(Valley(), pair, numbers, given, np.diag(found @ Valley.slopes.T))
     assert [(one.member, one.number, one.given) for one in decides] == [("driver", "slope", 6e-6)] * 2
+    # Without relief what is ground is off from zero, the tips' tolerance as a slope over the whole path.
+    off = np.array([5e-6, 10e-3, 5e-6, 10e-3, 4e-6, 0.0, 0.0, 6e-6, 0.0])
+    level = Valley()
+    level.slopes = Valley.slopes.copy()
+    level.slopes[:, [1, 3]] = 0.0
+    bare = unrelieved_within(level, pair, numbers, given)
+    np.testing.assert_allclose(bare[0], off, atol=1e-12)
+    np.testing.assert_allclose(bare[1], off * [-1, 1, 1, 1, -1, 1, 1, -1, 1], atol=1e-12)
     none = FlankTolerance((TipTolerance(0.0, 0.0, 0.0),) * 2)
+    np.testing.assert_array_equal(unrelieved_within(level, pair, numbers, none), np.zeros((2, 9)))
     np.testing.assert_allclose(within_tolerances(Valley(), pair, numbers, none), [numbers, numbers], atol=1e-12)
 
 
@@ -394,6 +409,7 @@ def sentences(of, design, torque, over=None, robust=None):
             torque=np.array(torque),
             peak_to_peak=np.array((over or {}).get(label, [0.0])),
             share=None,
+            slopes=None,
             named=(len(torque) - 1, 0)[: len(torque)],
         )
         for label in states

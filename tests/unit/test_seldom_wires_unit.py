@@ -221,20 +221,22 @@ def test_which_tolerance_decides_is_asked_of_what_is_to_be_ground(monkeypatch, l
     tolerance = SimpleNamespace(finest=3)
     best = SimpleNamespace(
         relief=None if lacks == "relief" else SimpleNamespace(numbers="numbers"),
-        over_most=None if lacks == "most" else "most",
+        over_most=None if lacks == "most" else np.array([3.0, 3.0]),
     )  # fmt: skip
     design = SimpleNamespace(
         task=SimpleNamespace(tolerance=None if lacks == "tolerance" else tolerance),
         found={} if lacks == "found" else {"profile": best}, best=best,
-        unrelieved=SimpleNamespace(over_peak_to_peak="none"),
+        unrelieved=SimpleNamespace(over_peak_to_peak=np.full(2, 2.0)), unrelieved_most=np.array([3.0, 6.0]),
     )  # fmt: skip
     over = SimpleNamespace(searched="searched", judge=SimpleNamespace(dense=None))
     decisive, finer = flank_design._decisive(over, "pair", design), flank_design._classes_finer(over, "pair", design)
     if lacks:
         assert (decisive, finer) == ((), 0)
     else:
-        assert decisive == ("searched", "pair", "numbers", tolerance, "most")
-        assert finer == ("most", "none", 3)
+        assert decisive[:4] == ("searched", "pair", "numbers", tolerance)
+        assert decisive[4] == pytest.approx([3.0, 3.0])
+        assert [finer[0], finer[1]] == [pytest.approx([1.0, 0.5]), pytest.approx([1.0, 1.0])]  # of no relief at most
+        assert finer[2] == 3
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,12 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest, best_of_family, led_on
-from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tolerances, within_tolerances
+from fegear.design.flanks.flank_tolerance import (
+    FlankTolerance,
+    decisive_tolerances,
+    unrelieved_within,
+    within_tolerances,
+)
 from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, Family, ReliefGrid, held_by, usual_grid
 from fegear.design.flanks.judge import FlankJudge, Judged, flank_judge, mean_over_scatter
@@ -164,10 +169,13 @@ class FlankDesign(ReadOnlyArrays):
         By the labels of what can be ground.
     grid : ReliefGrid
     finer : int or None
-        By how many classes the tolerances of `best` would have to be finer for it to leave no more than no relief under
-        any load: 0 where they do, None where none does.
+        By how many classes the tolerances of `best` would have to be finer for it to leave no more than no relief with
+        deviations inside the same tolerances under any load: 0 where they do, None where none does.
     decisive : tuple of Decisive or None
         Which tolerance decides the most that `best` leaves under each of the task's loads; empty without tolerances.
+    unrelieved_most : ndarray, shape (L,), or None
+        Largest peak-to-peak value without relief, with deviations inside the tolerances of what is ground [m]; None
+        where `best` leaves no more than no relief without deviations.
     """
 
     task: FlankDesignTask
@@ -181,6 +189,7 @@ class FlankDesign(ReadOnlyArrays):
     grid: ReliefGrid
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
+    unrelieved_most: Array | None = None
 
     @property
     def unrelieved(self) -> FlankState:
@@ -382,6 +391,7 @@ def design_flanks(
         report(0.8 + 0.2 * len(judged) / len(reliefs))
     states = tuple(judged)
     design = FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
+    design = replace(design, unrelieved_most=_unrelieved_most(over, pair, design))
     return replace(design, finer=_classes_finer(over, pair, design), decisive=_decisive(over, pair, design))
 
 
@@ -441,20 +451,41 @@ def _state(
     )  # fmt: skip
 
 
+def _left_densely(over: _OverLoads, numbers: Array) -> Array:
+    """Peak-to-peak value of nine numbers of its own under each load, shape (L,) [m]."""
+    return np.array([np.ptp(over.judge.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(numbers)])
+
+
+def _unrelieved_most(over: _OverLoads, pair: GearPair, design: FlankDesign) -> Array | None:
+    """What no relief leaves at most within the same tolerances; None where even without deviations it leaves more."""
+    tolerance, none = design.task.tolerance, design.unrelieved.over_peak_to_peak
+    if tolerance is None or not design.found:
+        return None
+    relief, most = design.best.relief, design.best.over_most
+    if relief is None or most is None or not np.any(most > none):
+        return None
+    return np.maximum(_left_densely(over, unrelieved_within(over.searched, pair, relief.numbers, tolerance)), none)
+
+
 def _classes_finer(over: _OverLoads, pair: GearPair, design: FlankDesign) -> int | None:
     """By how many classes tolerances would have to be finer for what is to be ground to pay under every load."""
-    tolerance, dense = design.task.tolerance, over.judge.dense
-    if tolerance is None or not design.found:
+    tolerance, compared = design.task.tolerance, design.unrelieved_most
+    if tolerance is None or not design.found or compared is None:
         return 0
     relief, most = design.best.relief, design.best.over_most
     if relief is None or most is None:
         return 0
 
-    def finer(classes: int) -> Array:
-        off = within_tolerances(over.searched, pair, relief.numbers, tolerance.finer(classes))
-        return np.array([np.ptp(dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(off)])
+    def share(classes: int) -> Array:
+        """Of what no relief leaves within tolerances that are so many classes finer."""
+        allowed = tolerance.finer(classes)
+        left, none = (
+            _left_densely(over, of(over.searched, pair, relief.numbers, allowed))
+            for of in (within_tolerances, unrelieved_within)
+        )
+        return np.asarray(left / np.maximum(none, design.unrelieved.over_peak_to_peak))
 
-    return classes_finer(most, design.unrelieved.over_peak_to_peak, finer, tolerance.finest)
+    return classes_finer(most / compared, np.ones(most.size), share, tolerance.finest)
 
 
 def _decisive(over: _OverLoads, pair: GearPair, design: FlankDesign) -> tuple[Decisive | None, ...]:

@@ -132,6 +132,29 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
     return _worst(lambda one: trials.of_numbers(one, near=near).peak_to_peak[0], trials, pair, numbers, tolerance)
 
 
+def unrelieved_within(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance) -> Array:
+    """Nine numbers of flanks without relief that leave most under each load, shape (L, 9).
+
+    What relief is compared with within its tolerances: each amount that it has is off by its tolerance from zero, to
+    either side; of tip reliefs the profile slope, straight over the path of contact.
+
+    Parameters
+    ----------
+    trials, pair, tolerance
+        As in `within_tolerances`; tip reliefs of the trials are straight lines.
+    numbers : ndarray, shape (9,)
+        Of the relief, which say what is ground.
+    """
+    off = np.where(numbers != 0.0, tolerance.amounts, 0.0)
+    off[_CROWNING] = max(off[_CROWNING], off[_END])  # both have one tolerance
+    off[_END] = 0.0
+    of_each = [(0.0,) if size == 0.0 else (-size, size) for size in off.tolist()]
+    both = np.array([np.zeros(len(NUMBERS)), *product(*of_each)])
+    both[:, [1, 3]] = np.where(both[:, [0, 2]] != 0.0, pair.path_length, 0.0)
+    left = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in both])
+    return np.asarray(both[left.argmax(axis=0)])
+
+
 def _worst(
     left: Callable[[Array], Array], trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance
 ) -> Array:

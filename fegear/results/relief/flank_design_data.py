@@ -299,6 +299,7 @@ class FlanksShown:
                 state.over_first, state.over_most if state.label in self.design.found else None, state.over_error,
                 mean=state.over_mean if self.scattered else None, share=shares,
                 finer=self.design.finer if state.label == best else 0,
+                slopes=self.design.unrelieved_most if state is self.design.unrelieved else None,
             )
             for state in self.design.states
         }  # fmt: skip

@@ -198,7 +198,11 @@ def _grind(seen: Seen) -> Iterator[str]:
     # What tolerances decide is not what deviations of zero leave.
     other = least is not best and not design.alike(best) and not design.within_tolerance(best)
     named = f"{best.label} " if other else ""
-    lost = "" if within is None else lost_words(none, within, torque, design.finer, allowed, named)
+    slopes = first.slopes if torque.size == first.torque.size else None
+    compared = none if slopes is None else slopes
+    lost = ""
+    if within is not None:
+        lost = lost_words(compared, within, torque, design.finer, allowed, named, slopes=slopes is not None)
     if lost:
         yield f"Pair {seen.name}: {lost}."
     if lost and other:
@@ -215,10 +219,11 @@ def _grind(seen: Seen) -> Iterator[str]:
     ground_as = seen.data.over_range[(least if lost and other else best).label]
     yield from said_of_spectrum(seen.name, first, ground_as)
     if within is not None and not lost:
-        i = int(np.argmax(within / np.maximum(none, _NONE)))
-        yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed)}."
+        i = int(np.argmax(within / np.maximum(compared, _NONE)))
+        same = None if slopes is None else float(slopes[i])
+        yield f"Pair {seen.name}: {within_words(none[i], within[i], torque[i], design.finer, allowed, same)}."
     if within is not None and design.decisive:
-        i = int(np.argmax(within / np.maximum(none, _NONE)))
+        i = int(np.argmax(within / np.maximum(compared, _NONE)))
         gears = {row.member: row.gear for row in ground}
         if decides := decisive_words(after[i], within[i], torque[i], design.decisive[i], gears):
             yield f"Pair {seen.name}: {decides}."
