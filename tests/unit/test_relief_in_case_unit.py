@@ -13,7 +13,9 @@ ROLL = np.array([30.0, 10.0, 20.0])
 REMOVAL = {"a": np.array([12.0, 0.0, 4.0]), "b": np.array([0.0, 9.0, 3.0])}
 
 
-def results(shape="linear", driver=(12.3456, 25.5), driven=(8.0, 31.25), te=None, least_error=0.02, over=None):
+def results(
+    shape="linear", driver=(12.3456, 25.5), driven=(8.0, 31.25), te=None, least_error=0.02, over=None, rounded=None
+):
     ground = {
         "linear": SimpleNamespace(candidates=12345, least=1.5e-6,
                                   least_error=least_error * 1.5e-6),
@@ -23,7 +25,8 @@ def results(shape="linear", driver=(12.3456, 25.5), driven=(8.0, 31.25), te=None
     te = {"no relief": 5.4321, "designed": 0.001, "linear tip relief": 1.5, "parabolic tip relief": 1.75} | (te or {})
     data = object.__new__(ReliefData)
     object.__setattr__(data, "design", SimpleNamespace(
-        best_ground=(shape, ground[shape]), ground=ground, task=SimpleNamespace(load=1234.567, over=over),
+        best_ground=(shape, ground[shape]), ground=ground, rounded=rounded or {},
+        task=SimpleNamespace(load=1234.567, over=over, over_loads=(600.0, 1234.567)),
         te={label: SimpleNamespace(peak_to_peak=one * 1e-6) for label, one in te.items()},
     ))  # fmt: skip
     part = SimpleNamespace(driver="a", driven="b")
@@ -74,6 +77,9 @@ def test_what_is_left_is_said_of_the_relief_that_was_taken():
     assert ground.startswith("Best linear tip relief: transmission error 1.5 um peak to peak (5.43 um without relief")
     assert "; parabolic ones 1.75 um." in ground
     assert "(after a scan of 12,345 reliefs) agree within 2.0 %." in ground
+    rounded = what_it_leaves(results(rounded={"linear": np.array([0.7e-6, 1.53e-6])}), "ground")
+    assert rounded.startswith("Best linear tip relief: transmission error 1.53 um peak to peak (5.43 um without relief")
+    assert "; parabolic ones 1.75 um." in rounded
     other = what_it_leaves(results("parabolic"), "ground")
     assert other.startswith("Best parabolic tip relief: transmission error 1.75 um")
     assert "; linear ones 1.5 um." in other
@@ -91,3 +97,5 @@ def test_of_a_range_of_torques_both_ends_are_said():
     said = what_it_leaves(made, "ground")
     left = "transmission error 1.2 to 2.4 um peak to peak (3.7 to 7 um without relief)"
     assert said.startswith(f"Best linear tip relief for 30 to 60 N m: {left}")
+    data.design.rounded = {"linear": np.array([1.3e-6, 2.3e-6, 2.5e-6])}
+    assert "transmission error 1.3 to 2.5 um peak to peak (3.7 to 7 um without" in what_it_leaves(made, "ground")

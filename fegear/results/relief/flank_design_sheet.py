@@ -456,7 +456,7 @@ FLANK_DESIGN_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        _interference, _grind, _exact, _scattered,
+        _interference, _grind, _scattered, _exact,
         figure=lambda seen: seen.said(
             "relief_over_torque_{name}" if len(seen.data.design.task.loads) > 1 else "flank_topography_{name}"
         ),

@@ -47,9 +47,10 @@ def _data(results: Results) -> ReliefData:
 
 
 def _over(data: ReliefData, label: str) -> str:
-    """Peak-to-peak values with a relief from the smallest to the largest torque of a range."""
-    found = [one.peak_to_peak * 1e6 for one in data.design.over_range[label]]
-    return f"{found[0]:.3g} to {found[-1]:.3g} um"
+    """Peak-to-peak values with a relief from the smallest to the largest torque of a range, as it is rounded."""
+    rounded = {f"{shape} tip relief": one for shape, one in data.design.rounded.items()}.get(label)
+    found = [one.peak_to_peak for one in data.design.over_range[label]] if rounded is None else rounded
+    return f"{found[0] * 1e6:.3g} to {found[-1] * 1e6:.3g} um"
 
 
 def _best_in_words(data: ReliefData, shape: str, before: str, left: float) -> str:
@@ -74,6 +75,9 @@ def what_it_leaves(results: Results, how: How) -> str:
         left = "0 um" if te["designed"] < _NOTHING else f"{te['designed']:.3g} um"
         return f"Relief by Mark's Eq. 4.6: transmission error {left} {before}."
     shape, best = design.best_ground
+    # what is written into the case has the digits of the grinding table
+    at = design.task.over_loads.index(design.task.load)
+    te |= {f"{one} tip relief": float(left[at]) * 1e6 for one, left in design.rounded.items()}
     others = [f"{one} ones {te[f'{one} tip relief']:.3g} um" for one in design.ground if one != shape]
     others = others if design.task.over is None else []
     beside = f"; {', '.join(others)}" if others else ""
