@@ -1,6 +1,7 @@
 """Which of two things a line takes: which mesh, which end, which side of a limit; by values that differ."""
 
 import math
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -21,10 +22,15 @@ from fegear.geometry.balls_on_two_flanks import BallOnTwoFlanks
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
+from fegear.geometry.shaped_side import ShapedSide
+from fegear.results.helical import drawn_rack_cutters
 from fegear.results.pair import measured_error_data
 from fegear.results.planetary import planet_load_sharing
 from fegear.results.shafts.gearbox_overview import _designation
 from fegear.results.train import dynamic_factor
+from fegear.shafts.deflection import Deflection
+from fegear.shafts.designations import envelope_of
+from fegear.window import document
 
 
 def summed(*given):
@@ -158,3 +164,54 @@ def test_planets_that_lose_contact_on_either_side_are_named():
     seen = SimpleNamespace(data=SimpleNamespace(loads=SimpleNamespace(lifted=lifted)))
     said = planet_load_sharing._apart(seen)
     assert said == "planet 1 (10 % of the cycle), planet 2 (20 % of the cycle), planet 4 (30 % of the cycle)"
+
+
+def test_the_smallest_radius_of_a_fillet_is_where_it_bends_most():
+    bends = SimpleNamespace(start=0.0, end=1.0, curvatures=lambda u: -2.0 - 2.0 * np.sin(math.pi * u))
+    assert ShapedSide.smallest_radius.fget(SimpleNamespace(fillet=bends)) == pytest.approx(0.25, rel=1e-3)
+
+
+@pytest.mark.parametrize("part", range(6))
+def test_what_is_out_of_balance_on_a_shaft_is_seen_in_every_direction(part):
+    """Two equal and opposite loads at one place, of which one is a hundredth larger in one direction."""
+    load = np.array([3.0, -2.0, 5.0, 7.0, 4.0, 6.0])
+    other = -load
+    other[part] *= 1.01
+    force, moment = Deflection.balance.fget(SimpleNamespace(acting=(np.zeros(2), np.array([load, other]))))
+    size = 0.01 * abs(load[part])
+    assert force == pytest.approx(size / 5.05 if part == 2 else size / 5.0 if part < 3 else 0.0, abs=1e-12)
+    assert moment == pytest.approx(size / 7.07 if part == 3 else size / 7.0 if part >= 3 else 0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("last", "bore"), [("00", 10), ("01", 12), ("02", 15), ("03", 17), ("04", 20), ("05", 25)])
+def test_the_last_digits_of_a_designation_are_its_bore(last, bore):
+    assert envelope_of(f"62{last}").bore == pytest.approx(bore * 1e-3)
+
+
+def test_a_departure_of_a_rack_cutter_is_drawn_a_round_number_of_times_as_large():
+    @dataclass(frozen=True)
+    class Cutter:
+        parabola: float
+        gear: SimpleNamespace
+
+    gear = SimpleNamespace(module=4e-3)
+    places = np.array([-5e-3, 5e-3])  # the parabola departs by 25e-6 times its coefficient [m]
+    drawn, words = drawn_rack_cutters._drawn(Cutter(0.2, gear), places, 0.1)  # 5 um; 80 of it are a tenth of the module
+    assert (drawn.parabola, words) == (pytest.approx(0.2 * 50), " (deviation magnified 50 times)")
+    assert drawn_rack_cutters._drawn(Cutter(9.0, gear), places, 0.1) == (Cutter(9.0, gear), "")
+    assert drawn_rack_cutters._drawn(Cutter(0.0, gear), places, 0.1) == (Cutter(0.0, gear), "")
+
+
+def test_of_long_texts_the_oldest_states_go_first(monkeypatch, tmp_path):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
+    monkeypatch.setattr(document, "_CHARACTERS", 5000)
+    desk = document.Desk("# 0", "c", tmp_path)
+    texts = [f"# {number}" + "x" * 1500 for number in range(1, 6)]
+    for text in texts:
+        desk.change(text)
+    for text in texts[-2:-4:-1]:
+        desk.undo()
+        assert desk.text == text
+    before = desk.text
+    desk.undo()
+    assert desk.text == before  # nothing older is kept
