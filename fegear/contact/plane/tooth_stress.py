@@ -20,6 +20,9 @@ from fegear.contact.plane.root_stress_history import RootStressHistory, root_str
 from fegear.geometry.pair import Member
 
 #: Both fillets of a tooth, and the sign of the stress that is looked for.
+#: Of the largest stress along a fillet that another tooth's load has, at least so much counts at the place of the
+#: tooth's own largest: where it passes through zero there, the place itself moves with the loads.
+_OF_LARGEST = 0.15
 _FILLETS: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
 
 
@@ -407,7 +410,8 @@ def _by_each_load(
                 sizes = known[like][tooth - loaded]
                 size = np.interp(radius[other], few, sizes.largest)[:, None]
                 if tooth != loaded and place is not None:
-                    size = _interpolated(roots.at_place(tooth, sizes.row, place[row].ravel()), few, radius[other])
+                    there = _interpolated(roots.at_place(tooth, sizes.row, place[row].ravel()), few, radius[other])
+                    size = np.maximum(np.abs(there), _OF_LARGEST * size)
                 by_load[row] += (apart[other] * (size / face)) ** 2
                 left = np.interp(radius[other], few, sizes.error)[:, None]
                 by_source[row] += (state.loads[other] * (left / face)) ** 2
