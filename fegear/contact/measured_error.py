@@ -18,7 +18,8 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.shown import shown, shows
-from fegear.contact.fitted_curve import FittedCurve, fit_curve
+from fegear.contact.curve_fit import fit_curve
+from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.trace_alternatives import alternatives
 from fegear.contact.trace_low_pass import low_pass
 from fegear.contact.trace_outliers import suspected

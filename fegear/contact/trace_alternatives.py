@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.curve_fit import NothingToCompareError, fit_curve
 from fegear.contact.turns import going_on
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.contact.fitted_curve import FittedCurve, NothingToCompareError, fit_curve
+from fegear.contact.curve_fit import NothingToCompareError, fit_curve
+from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.trace_alternatives import clearly_better, unexplained
 from fegear.contact.turns import turns_along
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.curve_fit import NothingToCompareError, fit_curve
 from fegear.contact.fitted_line import FITTED, standard_errors
 from fegear.fem.plane.gauge import FilletProfile, GaugesOnFillet, Grid, grid_weights
 from fegear.fem.plane.root_stress import smooth_curve

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.contact.trace_alternatives import alternatives, unexplained, whole_pitches
 from fegear.contact.trace_outliers import suspected
 from fegear.contact.trace_scatter import gains_of_turns, noise_of, of_mean, step_of

@@ -12,7 +12,7 @@ from fegear.base.errors import InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.gauges import check_gauge, gauge_of
 from fegear.case.reading import build_scene
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.contact.mains_hum import mains_hum
 from fegear.contact.turns import turns_along
 from fegear.results.pair.trace_named import hum_named, step_named

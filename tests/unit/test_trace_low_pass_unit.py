@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import bessel, butter, lfilter
 
 from fegear.base.notes import NoteClass
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.contact.measured_error import behind_low_pass, beside_computed, measured_error
 from fegear.contact.trace_low_pass import filtered, filtered_higher, low_pass
 from fegear.results.pair.gauge_otherwise import Otherwise

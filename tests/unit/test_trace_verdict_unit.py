@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fegear.base.notes import NoteClass
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import beside_computed, better_described, measured_error
 from fegear.contact.once_per_turn import OncePerTurn

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact.fitted_curve import fit_curve
+from fegear.contact.curve_fit import fit_curve
 from fegear.contact.zero_jump import zero_jump
 from fegear.results.pair.trace_named import drift_named, jump_of
 from fegear.results.pair.trace_verdict import ComputedPeak, verdict

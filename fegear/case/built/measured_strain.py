@@ -15,7 +15,7 @@ from fegear.case.built.angle_of_time import steady_turning
 from fegear.case.built.bridge_output import COLUMN_OF_STRAIN, strain_of_bridge
 from fegear.case.built.trace_levels import change_along, no_level, of_driven, said_of_rest, torque_levels
 from fegear.case.csv_file import read_columns
-from fegear.contact.fitted_curve import DRIFT_TURNS, FEWEST
+from fegear.contact.curve_fit import DRIFT_TURNS, FEWEST
 from fegear.contact.trace_outliers import suspected
 from fegear.contact.turns import turns_along
 

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.angle_of_time import steady_turning
 from fegear.case.built.gauges import Gauge, place_gauge
-from fegear.contact.fitted_curve import NothingToCompareError, fit_curve
+from fegear.contact.curve_fit import NothingToCompareError, fit_curve
 from fegear.contact.fitted_line import FITTED
 from fegear.contact.mains_hum import mains_hum
 from fegear.contact.once_per_turn import once_per_turn

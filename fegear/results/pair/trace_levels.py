@@ -17,7 +17,7 @@ from fegear.base.notes import Note, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.measured_strain import turns_of
-from fegear.contact.fitted_curve import DRIFT_TURNS, NothingToCompareError, fit_curve
+from fegear.contact.curve_fit import DRIFT_TURNS, NothingToCompareError, fit_curve
 from fegear.contact.once_per_turn import once_per_turn
 from fegear.contact.turns import turns_along
 
