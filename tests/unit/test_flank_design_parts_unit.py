@@ -8,15 +8,8 @@ import numpy as np
 import pytest
 
 from fegear.design.flanks import flank_design
-from fegear.design.flanks.flank_design import (
-    EXACT,
-    ROBUST,
-    UNRELIEVED,
-    FlankDesign,
-    FlankDesignTask,
-    FlankState,
-    design_flanks,
-)
+from fegear.design.flanks.designed_flanks import EXACT, ROBUST, UNRELIEVED, FlankDesign, FlankDesignTask, FlankState
+from fegear.design.flanks.flank_design import design_flanks
 from fegear.design.flanks.flank_tolerance import (
     FlankTolerance,
     LeadTolerance,

@@ -14,7 +14,7 @@ from fegear.case.crack_growth import CrackGrowthPart
 from fegear.case.flank_design import FlankDesignPart
 from fegear.contact.plane.neglected_effects import _load_change
 from fegear.contact.wide import spots
-from fegear.design.flanks.flank_design import FlankDesign
+from fegear.design.flanks.designed_flanks import FlankDesign
 from fegear.dynamics.motion import motion_over_revolution as over_revolution
 from fegear.dynamics.train.tooth_strain import ToothStrain
 from fegear.engine import processes

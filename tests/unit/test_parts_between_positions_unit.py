@@ -11,7 +11,7 @@ from fegear.base.errors import InputError
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
-from fegear.design.flanks.flank_design import FlankDesign
+from fegear.design.flanks.designed_flanks import FlankDesign
 from fegear.design.flanks.trials import Tried
 from fegear.design.quick_sharing import quick_sharing
 from fegear.design.tip_relief import ground
@@ -167,7 +167,7 @@ def test_pressure_counts_on_the_smooth_flank_only_at_each_misalignment_and_load(
     ],
 )
 def test_fewer_modifications_are_within_tolerance_where_all_that_they_lack_are(monkeypatch, ours, theirs, left, fewer):
-    monkeypatch.setattr("fegear.design.flanks.flank_design._AMOUNTS", slice(0, 3))
+    monkeypatch.setattr("fegear.design.flanks.designed_flanks._AMOUNTS", slice(0, 3))
     state, least = (
         SimpleNamespace(relief="r", amounts=np.array(one), over_peak_to_peak=np.array([0.3, value]))
         for one, value in ((ours, left), (theirs, 0.2))

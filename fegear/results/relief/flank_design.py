@@ -23,7 +23,7 @@ from fegear.results.relief.relief_over_face import misaligned
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
-    from fegear.design.flanks.flank_design import FlankDesignTask
+    from fegear.design.flanks.designed_flanks import FlankDesignTask
     from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.flanks.grid import ReliefGrid
     from fegear.design.load_range import LoadRange
@@ -85,7 +85,7 @@ def _task(
     part: FlankDesignPart, pair: GearPair, nominal: float, over: LoadRange | None = None,
     tolerance: FlankTolerance | None = None,
 ) -> FlankDesignTask:  # fmt: skip
-    from fegear.design.flanks.flank_design import FlankDesignTask
+    from fegear.design.flanks.designed_flanks import FlankDesignTask
     from fegear.design.flanks.scatter import NOMINAL, normal_scatter
     from fegear.design.flanks.topography import FlankLoading
     from fegear.design.loading import LoadingFunction, Ramp

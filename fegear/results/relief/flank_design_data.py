@@ -25,8 +25,8 @@ from fegear.results.relief.relief_over_range import LeftOverRange
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.design.flanks.designed_flanks import FlankDesign, FlankState
     from fegear.design.flanks.families import FamilyBest
-    from fegear.design.flanks.flank_design import FlankDesign, FlankState
     from fegear.design.flanks.flank_tolerance import FlankTolerance
     from fegear.design.load_range import LoadRange
 

@@ -42,7 +42,7 @@ from fegear.results.relief.within_words import lost_words, within_words
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.base.notes import Note
-    from fegear.design.flanks.flank_design import FlankState
+    from fegear.design.flanks.designed_flanks import FlankState
     from fegear.design.flanks.forms import GroundRelief
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.grinding import Grinding
