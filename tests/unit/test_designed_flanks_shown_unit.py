@@ -18,6 +18,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.results.relief import flank_design
+from fegear.results.relief import flank_design_answer as answer
 from fegear.results.relief import flank_design_sheet as sheet
 from fegear.results.relief.flank_design_data import FlankDesignData, FlankDesignInputs, FlanksShown
 from fegear.results.relief.ground_flank_keys import keys_of
@@ -198,14 +199,14 @@ def test_torques_have_what_every_way_leaves_and_at_most_of_those_that_are_ground
         assert (one.most is None) == (way.relief in ("no relief", "exact topography"))
     assert shown(scattered=False).over_range["lead"].mean is None
     seen = SimpleNamespace(data=found)
-    torque, left = sheet._left(seen, "lead")
+    torque, left = answer._left(seen, "lead")
     assert (torque.tolist(), left.tolist()) == (
         found.over_range["lead"].torque.tolist(), found.over_range["lead"].peak_to_peak.tolist()
     )  # fmt: skip
     one = {"lead": SimpleNamespace(torque=np.array([9.0]), peak_to_peak=np.array([7.0]))}
     data = SimpleNamespace(over_range=one, design=found.design, load=found.load, data=found.data)
     for over in (None, "spectrum"):
-        torque, left = sheet._left(SimpleNamespace(data=data, asked=SimpleNamespace(over=over)), "lead")
+        torque, left = answer._left(SimpleNamespace(data=data, asked=SimpleNamespace(over=over)), "lead")
         assert torque == pytest.approx([9.0 if over else 1500.0 * PAIR.driver.base_radius])
         assert left.tolist() == [7.0 if over else 6e-6]
 
@@ -408,7 +409,7 @@ def speaking(**more):
 def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its_tolerances():
     """Without relief 8 and 12 um are left, with the best 1.9 and 2.85, within its tolerances 5.7 and 7.6."""
     seen = speaking()
-    ground, within, further = sheet._grind(seen)
+    ground, within, further = answer._grind(seen)
     assert "grind 12 µm from d " in ground
     assert " on gear p, 24 µm from d " in ground
     assert ground.endswith(
@@ -424,20 +425,20 @@ def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its
     )
     design = seen.data.design
     design.within_tolerance = lambda state: False
-    assert list(sheet._grind(seen))[-1].endswith(
+    assert list(answer._grind(seen))[-1].endswith(
         "is better than profile (2) as drawn (1.5, not 2.8 µm at 33.83 N m), but worse within its tolerances (at most "
         "4, not 7.6 µm at 33.83 N m)."
     )
     design.alike = lambda state: True
-    assert list(sheet._grind(seen))[-1].endswith("is only 47 % better than profile (2), within the estimated error.")
+    assert list(answer._grind(seen))[-1].endswith("is only 47 % better than profile (2), within the estimated error.")
     design.least = design.best
-    assert len(list(sheet._grind(seen))) == 2
+    assert len(list(answer._grind(seen))) == 2
     design.best.over_most = None
-    (only,) = sheet._grind(seen)
+    (only,) = answer._grind(seen)
     assert "tolerances" not in only
     design.best.over_most = 1e-6 * np.array([9.0, 13.0])  # more than without relief at both torques
     design.finer = 2
-    lost, ground = sheet._grind(seen)
+    lost, ground = answer._grind(seen)
     assert "the transmission error is smaller without relief at every torque: 12 µm at 33.83 N m" in lost
     assert "± 0.5 µm on gear p, ± 1.5 µm on gear w" in lost  # two classes finer
     assert ": without deviations grind 12 µm" in ground
@@ -445,7 +446,7 @@ def test_sentences_say_what_is_ground_what_it_leaves_at_both_ends_and_within_its
     design, best = seen.data.design, seen.data.design.best
     design.within_tolerance, design.finer = (lambda state: False), 2
     best.over_most = 1e-6 * np.array([9.0, 13.0])
-    lost, ground, compared = sheet._grind(seen)
+    lost, ground, compared = answer._grind(seen)
     assert f"with {best.label} relief at most 13 µm" in lost
     assert ": without deviations grind " in ground
     assert "5 µm crowning" in ground
@@ -458,7 +459,7 @@ def test_no_relief_has_deviations_within_the_tolerances_of_the_relief_too():
     design = seen.data.design
     design.best.over_most = 1e-6 * np.array([9.0, 13.0])  # more than exact flanks, less than those of the same class
     design.unrelieved_most = 1e-6 * np.array([10.0, 16.0])
-    ground, within, *_ = sheet._grind(seen)
+    ground, within, *_ = answer._grind(seen)
     assert ground.startswith("Pair I: grind 12 µm")
     assert "(8 µm without relief, at most 10 µm with profile slopes within the same tolerance)." in within
     assert seen.data.recommended == design.best.label
@@ -469,7 +470,7 @@ def test_modifications_that_nobody_can_grind_are_none_and_round_off_of_a_grid_is
     best = seen.data.design.best
     tiny = replace(RELIEFS[best.label], driver_tip=0.1e-6, driven_tip=0.2e-6, slope=2e-19)
     seen.data.design.found[best.label] = replace(seen.data.design.found[best.label], relief=tiny)
-    (only,) = sheet._grind(seen)
+    (only,) = answer._grind(seen)
     assert only.startswith("Pair I: no modification needed: the optimum, 0.1 µm from d ")
     assert only.endswith(
         "is below a quarter of its tolerances and cannot be ground; transmission error without relief 12 µm at "
@@ -485,21 +486,21 @@ def test_modifications_that_nobody_can_grind_are_none_and_round_off_of_a_grid_is
 def test_tolerances_of_all_that_is_ground_are_said_by_their_kinds_and_finer_by_classes():
     seen = speaking()
     rows = [row for row in seen.data.grinding if row.design == "profile-and-lead"]
-    assert sheet._allowed(seen, rows, 0).endswith(", ± 1 µm crowning")
-    finer = sheet._allowed(seen, rows, 2)  # each class by the root of two
+    assert answer._allowed(seen, rows, 0).endswith(", ± 1 µm crowning")
+    finer = answer._allowed(seen, rows, 2)  # each class by the root of two
     assert finer.endswith(", ± 0.5 µm crowning")
     assert finer.startswith("± 0.5 µm on gear p, ± 1.5 µm on gear w")
     only = [row for row in seen.data.grinding if row.design == "lead"]
-    assert sheet._allowed(seen, only, 0) == "± 1 µm crowning, ± 2 µm helix slope"
+    assert answer._allowed(seen, only, 0) == "± 1 µm crowning, ± 2 µm helix slope"
 
 
 def test_the_exact_topography_is_said_to_leave_more_at_other_torques_where_it_does():
     seen = speaking()
-    assert list(sheet._exact(seen)) == [
+    assert list(answer._exact(seen)) == [
         "Pair I: the exact topography reduces the transmission error from 8 to 0 µm at 33.83 N m."
     ]
     seen.data.design.exact.over_peak_to_peak = 1e-6 * np.array([9.0, 0.0])
-    (said,) = sheet._exact(speaking_of(seen))
+    (said,) = answer._exact(speaking_of(seen))
     assert said.endswith("; at 11.28 N m it is 9 µm, more than without relief (8 µm).")
 
 
@@ -509,16 +510,16 @@ def speaking_of(seen):
 
 def test_a_relief_for_scattered_alignment_is_chosen_by_its_mean_and_another_is_better_aligned():
     seen = speaking()
-    (said,) = sheet._scattered(seen)
+    (said,) = answer._scattered(seen)
     assert "profile is chosen by the mean over the scatter of misalignment (maximum over the torques" in said
     assert ": 14 -> 3.4 µm at 33.83 N m, 9.6 -> 2.3 µm at 11.28 N m" in said
     assert said.endswith("; aligned as specified profile-and-lead leaves less, 1.5 µm at 33.83 N m.")
     seen.data.design.states[3].over_peak_to_peak = 1e-6 * np.array([1.0, 2.75])  # within five per cent
-    (said,) = sheet._scattered(speaking_of(seen))
+    (said,) = answer._scattered(speaking_of(seen))
     assert "aligned as specified" not in said
-    assert list(sheet._scattered(speaking(scattered=False))) == []
+    assert list(answer._scattered(speaking(scattered=False))) == []
     seen.data.design.ground = ()
-    assert list(sheet._scattered(seen)) == []
+    assert list(answer._scattered(seen)) == []
 
 
 def test_ends_of_the_search_are_said_of_what_is_ground_and_of_what_leaves_least(monkeypatch):

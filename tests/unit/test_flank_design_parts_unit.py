@@ -21,7 +21,7 @@ from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES
 from fegear.design.flanks.scatter import NOMINAL, Scatter
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
-from fegear.results.relief import flank_design_sheet as sheet
+from fegear.results.relief import flank_design_answer as answer
 from fegear.results.relief.lead_charts import lead_chart
 
 PITCH, START = 8e-3, -3e-3
@@ -281,7 +281,7 @@ def test_where_misalignment_scatters_the_mean_over_it_decides():
     scatter = Scatter(np.array([-1e-6, 0.0, 1e-6]), np.array([0.25, 0.5, 0.25]))
     over = replace(design, states=states, task=replace(design.task, scatter=scatter))
     assert (over.best.label, len(over.chosen)) == (ROBUST, 1)
-    assert sentences(sheet._scattered, over, [120.0], {"profile": [0.4e-6], ROBUST: [0.45e-6]}) == [
+    assert sentences(answer._scattered, over, [120.0], {"profile": [0.4e-6], ROBUST: [0.45e-6]}) == [
         (
             "Pair I: robust is chosen by the mean over the scatter of misalignment: 2 -> 0.6 µm at 120 N m; aligned as "
             "specified profile leaves less, 0.4 µm at 120 N m."
@@ -417,17 +417,17 @@ def test_the_answer_says_where_theory_leaves_more_than_no_relief_and_why_fewer_m
     design = left_by(("profile", TIPS, 0.403, 0.015), ("profile-and-lead", WITH_LEAD, 0.402, 0.018))
     exact = replace(design.exact, label=EXACT, judged=SimpleNamespace(peak_to_peak=SimpleNamespace(value=0.04e-6)))
     design = replace(design, states=(design.states[0], exact, *design.states[2:]))
-    assert sentences(sheet._exact, design, [120.0]) == [
+    assert sentences(answer._exact, design, [120.0]) == [
         "Pair I: the exact topography reduces the transmission error from 0.9 to 0.04 µm at 120 N m."
     ]
     over = {UNRELIEVED: [0.353e-6, 0.9e-6], EXACT: [0.386e-6, 0.04e-6]}
-    assert sentences(sheet._exact, design, [45.0, 120.0], over) == [
+    assert sentences(answer._exact, design, [45.0, 120.0], over) == [
         (
             "Pair I: the exact topography reduces the transmission error from 0.9 to 0.04 µm at 120 N m; at "
             "45 N m it is 0.39 µm, more than without relief (0.35 µm)."
         )
     ]
-    assert sentences(sheet._grind, design, [120.0]) == [
+    assert sentences(answer._grind, design, [120.0]) == [
         "Pair I: grind nothing: transmission error 0.9 -> 0.4 µm at 120 N m, peak to peak.",
         (
             "Pair I: profile-and-lead (4 modifications) is only 0.25 % better than profile (2), within the estimated "
@@ -446,7 +446,7 @@ def test_values_of_one_torque_say_where_another_design_is_better_as_drawn_and_wo
     ))  # fmt: skip
     assert (design.best.label, design.least.label) == ("profile", "profile-and-lead")
     found = {label: [1e-6 * x for x in over[label][0]] for label in over} | {UNRELIEVED: [3e-6, 6e-6]}
-    drawn = sentences(lambda seen: [sheet._drawn(seen, design.best, design.least)], design, [150.0, 300.0], found)
-    within = sentences(lambda seen: [sheet._within(seen, design.best, design.least)], design, [150.0, 300.0], found)
+    drawn = sentences(lambda seen: [answer._drawn(seen, design.best, design.least)], design, [150.0, 300.0], found)
+    within = sentences(lambda seen: [answer._within(seen, design.best, design.least)], design, [150.0, 300.0], found)
     assert drawn == [" (1, not 1.3 µm at 300 N m)"]
     assert within == [" (at most 2.6, not 1.8 µm at 150 N m)"]

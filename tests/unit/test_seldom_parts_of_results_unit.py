@@ -24,7 +24,7 @@ from fegear.results.helical import double_helical_data as double
 from fegear.results.helical.pair_forced_response import _lines
 from fegear.results.pair import fillet_design_sheet, load_distribution
 from fegear.results.pair.trace_levels import _less_runout
-from fegear.results.relief import flank_design_sheet, tolerance_words
+from fegear.results.relief import flank_design_answer, tolerance_words
 from fegear.results.relief.applied_fillet import applied_fillet
 from fegear.results.train.dynamic_strain import DynamicStrain
 
@@ -143,7 +143,7 @@ def ways(torque, ours, theirs):
 )  # fmt: skip
 def test_two_ways_are_compared_at_the_torque_at_which_the_one_to_grind_is_worst(torque, ours, theirs, said):
     best, least = (SimpleNamespace(label=name) for name in ("best", "least"))
-    shown = flank_design_sheet._drawn(ways(torque, ours, theirs), best, least)
+    shown = flank_design_answer._drawn(ways(torque, ours, theirs), best, least)
     numbers = [word.strip("(),") for word in shown.split()]
     wanted = [word.strip("(),") for word in said.split()]
     assert [float(numbers[k]) for k in (0, 2, 5)] == [float(wanted[k]) for k in (0, 2, 5)]
