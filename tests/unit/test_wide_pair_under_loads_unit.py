@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fegear.contact.plane.tooth_stress import LargestBetween, ToothStress
-from fegear.contact.wide.loaded_pair import LoadedWidePair, no_less_than_usual
+from fegear.contact.wide.largest_root_stress import _largest_between, no_less_than_usual
+from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 
 def test_only_the_nominal_load_alone_was_solved_before():
@@ -71,7 +72,7 @@ def test_what_gears_and_positions_leave_of_the_largest_root_stress_knows_nothing
     rooted = SimpleNamespace(x=np.array([1.0, 2.0, 3.0]), teeth=np.array([[0, 0], [1, 0], [2, 0]]), stress=felt)
     pair = SimpleNamespace(over=SimpleNamespace(found=many), places_along="z", rooted=lambda *_asked: rooted)
     off = {"tension": [0.4, 0.3], "compression": [0.6, 0.8]}
-    found = LoadedWidePair._largest_between(pair, "driver", "solution", off)
+    found = _largest_between(pair, "driver", "solution", off)
     assert (found.tension.tolist(), found.tension_x.tolist(), found.tension_z.tolist()) == (
         [9.0, 11.0],
         [2.0, 3.0],

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import permutations
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,11 +24,12 @@ from fegear.contact.loaded_teeth import (
     silent,
 )
 from fegear.contact.pair_spec import PairSpec
-from fegear.contact.plane.tooth_stress import LargestBetween, ToothStress
+from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.error import OF_GEARS_HARMONICS, OF_GEARS_MEAN, OF_GEARS_SHAPE, FlankError
 from fegear.contact.wide.flanks import open_gaps
 from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.largest_root_stress import largest_over_face
 from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
 from fegear.contact.wide.neglected_effects import neglected_effects
 from fegear.contact.wide.over_pitch import OverPitch, Stated, every_second
@@ -40,8 +40,7 @@ from fegear.contact.wide.transmission_error import (
     flank_transmission_errors,
 )
 from fegear.fem.plane.influence import Side
-from fegear.fem.plane.root_stress import curves_apart, usually_apart
-from fegear.fem.solid.influence import BESIDE_LARGEST, OF_OTHER_FILLET, SolidInfluence
+from fegear.fem.solid.influence import SolidInfluence
 from fegear.fem.solid.solution import SolidSolution
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
@@ -52,15 +51,6 @@ if TYPE_CHECKING:
 #: Places along path and face at which the state of the flanks is looked at, and the share of both at either end at
 #: which the load is known by extrapolation alone.
 _SURFACE, _MARGIN = (121, 41), 1e-3
-#: What is taken for an error of root stress, of the parts for single entries of influence: load lies all along a line
-#: (six helical gears need 0.75; one of 116 places of a seventh is 1.36 times as much off). Of the largest stress of all
-#: positions, which is one number, so much of the root mean square beside it counts (eight pairs need 0.6).
-_OF_LINES, _OF_LARGEST = 1.0, 0.7
-#: On teeth that only their neighbours' loads stress both solutions may agree by chance: no position errs by less than
-#: this part of the root mean square of all (of eight helical gears two had 1.7 times the stated error there).
-_OF_ALL_POSITIONS = 0.25
-#: Both fillets, and the sign of the stress that is looked for.
-_SIDES: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
 
 
 @dataclass(frozen=True)
@@ -285,7 +275,7 @@ class LoadedWidePair:
         across: dict[Member, tuple[float, float]] = {}
         for number, member in enumerate(MEMBERS):
             ((name, influence),) = sources[member].items()
-            largest, helical = self._largest_over_face(member, influence, over_face)
+            largest, helical = largest_over_face(self, member, influence, over_face)
             stress[member] = {name: largest}
             if self.pair.driver.helix_angle and influence.coarse:  # slices know no shear along the face
                 error = largest.error(self.at)
@@ -304,86 +294,7 @@ class LoadedWidePair:
 
     def tooth_stress(self, member: Member, influence: SolidInfluence) -> ToothStress:
         """Largest root stress over the face of one gear under every load, with its errors."""
-        return self._largest_over_face(member, influence, {})[0]
-
-    def _largest_over_face(
-        self, member: Member, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
-    ) -> tuple[ToothStress, float]:
-        """Largest over the face under every load, and of tension across the root at the nominal one.
-
-        What it is all over the face at the nominal load goes to the map.
-        """
-        coarse, z = self.error.coarse, self.places_along
-        rooted, again, across = self.rooted(member, self.found, influence.fine), None, 0.0
-        if self.estimated and influence.coarse:
-            again = self.rooted(member, coarse, influence.coarse)
-        largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
-        off: dict[Side, list[Array]] = {"tension": [], "compression": []}
-        off_largest: dict[Side, list[float]] = {"tension": [], "compression": []}
-        for i in range(self.found.load.size):
-            force = self.found.contact.force[:, :, i]
-            surface = {side: rooted.surface(side, force, z) for side, _ in _SIDES}
-            felt = {side: rooted.stress(side, force, z, surface[side]) for side, _ in _SIDES}
-            if i == self.at:
-                over_face[member] = felt
-                many = self.over.found
-                across = self.rooted(member, many, influence.fine).largest(
-                    "tension", many.contact.force[:, :, i], z, across=True
-                )
-            apart: dict[Side, Array] = {}
-            usual: dict[Side, float] = {}
-            for side, sign in _SIDES:
-                largest[side].append(felt[side].largest(sign)[0])
-                if again:
-                    other = again.stress(side, coarse.contact.force[:, :, i], z)
-                    by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)
-                    curves = sign * felt[side].value, sign * by_coarse
-                    share = _OF_LINES * influence.entry_shares[f"root_{side}"]
-                    apart[side] = no_less_than_usual(share * curves_apart(curves[0], curves[1], BESIDE_LARGEST))
-                    worst = int(np.argmax(sign * largest[side][-1]))
-                    usual[side] = share * float(usually_apart(curves[0][worst], curves[1][worst], BESIDE_LARGEST))
-                else:  # slices know how far they are off
-                    off[side].append(influence.error.get(f"root_{side}", np.nan) * np.abs(largest[side][-1]))
-                    off_largest[side].append(float(off[side][-1].max()))
-            scale = {side: np.abs(largest[side][-1]).max() for side in apart}
-            for one, two in permutations(apart, 2):
-                part = OF_OTHER_FILLET * scale[one] / scale[two]
-                off[one].append(np.maximum(apart[one], part * apart[two]))
-                off_largest[one].append(_OF_LARGEST * max(usual[one], part * usual[two]))
-        stacked = [np.stack(one, axis=1) for one in (*largest.values(), *off.values())]
-        tension, compression, tension_off, compression_off = stacked
-        between = self._largest_between(member, influence.fine, off_largest)
-        return ToothStress(rooted.x, tension, compression, tension_off, compression_off, between), across
-
-    def _largest_between(
-        self, member: Member, solution: SolidSolution, off: Mapping[Side, Sequence[float]]
-    ) -> LargestBetween:
-        """Largest root stresses at the roll positions of the whole base pitch: those of the table miss up to 6 %.
-
-        Their errors are what coarser gears leave of them under each load, `off`, and what the positions do, which knows
-        nothing of that.
-        """
-        from fegear.contact.wide.load_factors import left_of_largest
-
-        found, z = self.over.found, self.places_along
-        rooted = self.rooted(member, found, solution)
-        most, x, along, error = {}, {}, {}, {}
-
-        def left(values: Array) -> Array:
-            return left_of_largest(values, rooted.teeth[:, 0], found.lines.roll.size)
-
-        for side, sign in _SIDES:
-            felt = [rooted.stress(side, found.contact.force[:, :, i], z).largest(sign) for i in range(found.load.size)]
-            values, places = (np.stack([one[k] for one in felt], axis=1) for k in (0, 1))
-            at = first_of_largest(sign * values, axis=0), np.arange(found.load.size)
-            most[side], x[side], along[side] = values[at], rooted.x[at[0]], places[at]
-            error[side] = np.hypot(off[side], left(sign * values))
-            if side == "tension":
-                least = values.min(axis=0), left(-values)
-        return LargestBetween(
-            most["tension"], most["compression"], x["tension"], along["tension"], x["compression"], error["tension"],
-            error["compression"], *least,
-        )  # fmt: skip
+        return largest_over_face(self, member, influence, {})[0]
 
     def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], float]:
         """See `LoadedTeeth`; the error is the change by the coarser solution, and what slices miss."""
@@ -402,11 +313,6 @@ class LoadedWidePair:
         x = _between(pair.x_start, pair.x_end, along)
         z = _between(found.lines.low, found.lines.high, across)
         return FlankLoad(x, z, np.maximum(found.spread(x, z, _without_edges(found, self.at)), 0.0), True, 0.0)
-
-
-def no_less_than_usual(error: Array) -> Array:
-    """Errors at the positions of a tooth, shape (T,), none less than a part of their root mean square."""
-    return np.maximum(error, _OF_ALL_POSITIONS * float(np.sqrt(np.mean(error**2))))
 
 
 def mean_without_gaps(flanks: FlankPair, known: FlankCompliance, load: float) -> float:
