@@ -43,13 +43,17 @@ def percent(share: float, signed: bool = False, whole: bool = False) -> str:
         return f"{share} %"
     if size < _ROUNDING:
         share = size = 0.0
-    if whole or size >= 0.1 or size == 0.0:
-        decimals = 0
-    elif size >= 0.01:
-        decimals = 1
-    else:
-        decimals = 2 if size >= 0.001 else 1 - math.floor(math.log10(100.0 * size))
+    # Decimals of the share as it is rounded: the last bit of a tenth does not decide between "10 %" and "10.0 %".
+    decimals = 0 if whole else _decimals(round(size, 2 + _decimals(size)))
     return f"{100.0 * share:{'+' if signed else ''}.{decimals}f} %"
+
+
+def _decimals(size: float) -> int:
+    if size >= 0.1 or size == 0.0:
+        return 0
+    if size >= 0.01:
+        return 1
+    return 2 if size >= 0.001 else 1 - math.floor(math.log10(100.0 * size))
 
 
 def percents(low: float, high: float) -> str:

@@ -167,7 +167,7 @@ def test_what_is_not_proven_or_not_within_the_limits_is_said(outcome):
     assert "2 searches differ by 4.0 %" in both.answer.sentences[1]
     assert any("not verified" in n and class_of(n) is NoteClass.BEYOND_TOLERANCE for n in both.remarks)
     agreeing = presented(outcome, found={name: one, "bumps": replace(one, stress=1.001 * one.stress)})
-    assert "agree within 0.100 %" in agreeing.answer.sentences[1]
+    assert "agree within 0.10 %" in agreeing.answer.sentences[1]
     assert not any("not verified" in n for n in agreeing.remarks)
     # A fillet that breaks its limits is not taken, whatever its stress, unless all do.
     broken = replace(one, stress=0.9 * one.stress, room=-0.1)

@@ -46,3 +46,12 @@ def test_a_value_and_its_error_end_at_the_same_digit(value, error, text):
 def test_rounding_is_no_share():
     assert percent(5.6e-16) == percent(-3e-15) == percent(0.0)
     assert percent(1e-9) == "0.00000010 %"
+
+
+@pytest.mark.parametrize(
+    ("share", "text"), [(0.1, "10 %"), (0.01, "1.0 %"), (0.001, "0.10 %"), (1e-4, "0.010 %"), (1e-6, "0.00010 %")]
+)
+def test_the_last_bit_of_a_share_adds_no_digit(share, text):
+    """A verdict said "10 %" on one processor and "10.0 %" on another."""
+    assert percent(math.nextafter(share, 0.0)) == percent(share) == percent(math.nextafter(share, 1.0)) == text
+    assert percent(-math.nextafter(share, 0.0), signed=True) == "-" + text

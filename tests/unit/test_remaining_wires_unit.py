@@ -323,7 +323,7 @@ def test_a_shaft_is_boxes_of_its_pieces_without_those_of_no_length():
     ("own", "full", "mode", "change"),
     [
         ([0.0, 10.0, 20.0], [0.0, 11.0, 25.0], 3, "+25 %"), ([0.0, 10.0, 20.0], [0.0, 8.0, 21.0], 2, "−20 %"),
-        ([0.0, 10.0, 20.0], [5.0, 11.0, 0.0], 2, "+10.0 %"),  # what moves freely in one of both is no change
+        ([0.0, 10.0, 20.0], [5.0, 11.0, 0.0], 2, "+10 %"),  # what moves freely in one of both is no change
         ([0.0, 10.0], [3.0, 0.0], 0, ""), ([4.0, 10.0], [], 0, ""),
     ],
 )  # fmt: skip
