@@ -23,7 +23,7 @@ from fegear.contact.plane.tooth_table import RootTable
 from fegear.contact.rack import over_stroke
 from fegear.contact.rack.rack_teeth import RackTeeth
 from fegear.contact.unloaded.separation import Helix
-from fegear.contact.wide import over_revolution, spots, tip_edges
+from fegear.contact.wide import loaded_pair, over_revolution, spots, tip_edges
 from fegear.contact.wide.loaded_pair import LoadedWidePair
 from fegear.fem.plane.condensation import Condensed
 from fegear.fem.plane.gauge import Grid
@@ -223,14 +223,13 @@ def test_a_revolution_is_what_following_the_flanks_finds(monkeypatch):
     assert over_revolution.wide_over_revolution("flanks", 7, "told") == ("flanks", 7, "told")
 
 
-def test_root_stress_of_one_gear_over_the_face_is_the_first_of_what_is_found():
-    def found(member, influence, kept):
+def test_root_stress_of_one_gear_over_the_face_is_the_first_of_what_is_found(monkeypatch):
+    def found(loaded, member, influence, kept):
         assert kept == {}
-        return (member, influence), "other"
+        return (loaded, member, influence), "other"
 
-    assert LoadedWidePair.tooth_stress(SimpleNamespace(_largest_over_face=found), "driven", "solved") == (
-        "driven", "solved",
-    )  # fmt: skip
+    monkeypatch.setattr(loaded_pair, "largest_over_face", found)
+    assert LoadedWidePair.tooth_stress("pair", "driven", "solved") == ("pair", "driven", "solved")
 
 
 def test_curves_are_apart_where_the_first_counts():
