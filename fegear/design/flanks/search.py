@@ -35,6 +35,7 @@ def descend(
     box: tuple[Array, Array],
     most_factor: float = np.inf,
     ended: float = 1e-5,
+    near: Tried | None = None,
 ) -> tuple[float, Array]:
     """Lead a relief to the least nearby.
 
@@ -51,6 +52,8 @@ def descend(
         Largest K_Hbeta that is allowed, at all loads and misalignments.
     ended : float
         Gain, over the value, of which no more is promised at the end.
+    near : Tried, optional
+        What was found at the start.
 
     Returns
     -------
@@ -64,7 +67,7 @@ def descend(
         return value, start
     # Lengths of what has no amount are those of the box, so that an amount can grow.
     p = np.where((start == 0.0) & (low > 0.0), 0.5 * (low + high), start)
-    here = _Straight.of(trials, trials.of_numbers(p, slope=True), free, limit=None)
+    here = _Straight.of(trials, trials.of_numbers(p, slope=True, near=near), free, limit=None)
     trust, span = _TRUST, (high - low)[free]
     for _ in range(_ROUNDS):
         below = np.minimum(np.maximum((low - p)[free], -trust * span), 0.0)

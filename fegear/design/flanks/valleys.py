@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -44,20 +44,28 @@ def keeps(tried: Tried, most_factor: float) -> bool:
     return most_factor == np.inf or float(tried.face_load_factor.max()) <= most_factor
 
 
-def _left(one: tuple[float, Array]) -> float:
+class _Start(NamedTuple):
+    """What is left at the start of a descent [m], its nine numbers, and what was found there."""
+
+    value: float
+    at: Array
+    tried: Tried
+
+
+def _left(one: tuple[float, Array] | _Start) -> float:
     return one[0]
 
 
-def _far_apart(starts: Iterable[tuple[float, Array]], box: tuple[Array, Array]) -> Iterator[tuple[float, Array]]:
+def _far_apart(starts: Iterable[_Start], box: tuple[Array, Array]) -> Iterator[_Start]:
     """Those of starts, the best first, that are far from all before them; small amounts count more."""
     low, high = box
     span = np.where(high > low, high - low, np.inf)
     seen: list[Array] = []
-    for value, at in starts:
-        place = np.sqrt(np.clip((at - low) / span, 0.0, 1.0))
+    for start in starts:
+        place = np.sqrt(np.clip((start.at - low) / span, 0.0, 1.0))
         if len(seen) < _DESCENTS and all(np.abs(place - other).max() > _APART for other in seen):
             seen.append(place)
-            yield value, at
+            yield start
 
 
 def leaps(numbers: Array, box: tuple[Array, Array]) -> tuple[list[Array], list[Array], list[Array]]:
@@ -111,12 +119,12 @@ def deepest_valleys(
     """
     report = progress or (lambda _fraction: None)
 
-    def begun(at: Array, near: Tried | None = None) -> tuple[float, Array] | None:
+    def begun(at: Array, near: Tried | None = None) -> _Start | None:
         tried = more.of_numbers(at, near=near)
-        return (more.value(tried.peak_to_peak), at) if keeps(tried, most_factor) else None
+        return _Start(more.value(tried.peak_to_peak), at, tried) if keeps(tried, most_factor) else None
 
-    def led(start: tuple[float, Array]) -> tuple[float, Array]:
-        return descend(more, start[1], start[0], box, most_factor, _SCOUTED)
+    def led(start: _Start) -> tuple[float, Array]:
+        return descend(more, start.at, start.value, box, most_factor, _SCOUTED, start.tried)
 
     def quickly(at: Array, near: Tried) -> float:
         return few.value(few.of_numbers(at, near=near).peak_to_peak)
