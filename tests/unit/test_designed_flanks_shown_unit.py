@@ -22,6 +22,7 @@ from fegear.results.relief import flank_design_answer as answer
 from fegear.results.relief import flank_design_sheet as sheet
 from fegear.results.relief.flank_design_data import FlankDesignData, FlankDesignInputs, FlanksShown
 from fegear.results.relief.ground_flank_keys import keys_of
+from fegear.results.relief.lead_charts import lead_k_chart
 
 RACK = BasicRack(1.0, 1.25, 0.38)
 GEAR = Gear(Tooth(24, RACK), 2e-3, 0.01, face_width=0.02)
@@ -232,6 +233,19 @@ def test_rows_and_charts_begin_with_what_is_to_be_ground_then_by_what_is_left():
     assert axis.limits[0] < chart.lower.min() * 1e6
     assert axis.limits[1] > chart.upper.max() * 1e6
     assert axis.limits[1] - axis.limits[0] == pytest.approx(height + 2.0 * (chart.lower.min() * 1e6 - axis.limits[0]))
+
+
+@pytest.mark.parametrize("recommended", ["lead", "profile-and-lead", ""])
+def test_lead_charts_say_which_of_them_is_recommended(recommended):
+    """That of a design which the answer declines was drawn as the one to grind."""
+    found = shown()
+    found.__dict__["recommended"] = recommended
+    assert [label for label, one in found.lead_charts.items() if one.recommended] == [recommended] * bool(recommended)
+    seen = Seen(found, found.asked, "I")
+    (figure,) = (one.made() for one in lead_k_chart("lead_charts").figures(seen))
+    marked = [view for view in figure.views if "(recommended)" in view.panels[0].title]
+    assert [view.label for view in marked] == [f"{recommended} (recommended)"] * bool(recommended)
+    assert len(figure.views) == 2
 
 
 def test_a_tip_relief_of_one_gear_only_has_its_charts():

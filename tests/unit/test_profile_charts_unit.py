@@ -27,7 +27,8 @@ from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 from fegear.results.relief.answer_numbers import ground_microns, with_limits
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
-from fegear.results.relief.profile_charts import _abscissa, _apart, _place, _tip_side, profile_chart
+from fegear.results.relief.profile_charts import _abscissa, _apart, _tip_side, profile_chart
+from fegear.results.relief.recommended import marked
 
 LOAD = 6000.0
 EXACT = TipTolerance(0.0, 0.0, 0.0)
@@ -165,7 +166,7 @@ def test_points_of_single_contact_are_marked_and_words_stand_apart(engagement, t
     assert [mark.label for mark in _apart(close, 10.0)] == ["HPSTC", "", "", "d 71.3"]
     axis = _abscissa(SimpleNamespace(one=chart))
     assert axis.second.value == pytest.approx(np.degrees(np.array(axis.second.at) * 1e-3 / pair.driver.base_radius))
-    assert _place(chart) == " (recommended)"
+    assert marked("a", recommended=chart.recommended) == "a (recommended)"
 
 
 def test_a_tolerance_above_the_amount_is_said_by_its_limits(engagement, tips):

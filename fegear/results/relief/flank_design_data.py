@@ -352,7 +352,9 @@ class FlanksShown:
         pair, found, lead = self.data.pair, self.design.found, self.asked.tolerance.lead
         bearer = lead_bearer(pair)
         charts = {
-            label: lead_chart(self.asked.gears[bearer], found[label].relief, pair, bearer, lead)
+            label: lead_chart(
+                self.asked.gears[bearer], found[label].relief, pair, bearer, lead, recommended=label == self.recommended
+            )
             for label in dict.fromkeys(row.design for row in self.grinding)
             if lead is not None
         }

@@ -13,6 +13,7 @@ from fegear.engine.figure.axis import Axis
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.results.relief.answer_numbers import with_limits
 from fegear.results.relief.grinding import CROWNING, END, NOTHING, SLOPE
+from fegear.results.relief.recommended import marked
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -36,10 +37,13 @@ class LeadChart:
     gear : str
     words : str
         The modifications and their tolerances, in a line.
+    recommended : bool
+        Whether it is of the design to be ground.
     """
 
     gear: str
     words: str
+    recommended: bool
     z: Array = shown("mm", "face position of the gear, from mid-face", label="face position z")
     lead: Array = shown("um", "deviation of the helix from that at mid-face", label="deviation from the helix")
     upper: Array = shown("um", "upper limit of the helix")
@@ -47,8 +51,9 @@ class LeadChart:
 
 
 def lead_chart(
-    gear: str, relief: GroundRelief, pair: GearPair, member: Member, tolerance: LeadTolerance
-) -> LeadChart | None:
+    gear: str, relief: GroundRelief, pair: GearPair, member: Member, tolerance: LeadTolerance, *,
+    recommended: bool = False,
+) -> LeadChart | None:  # fmt: skip
     """The chart of the lead of the gear that has it; None where none is ground.
 
     Parameters
@@ -59,6 +64,8 @@ def lead_chart(
     pair : GearPair
     member : {"driver", "driven"}
     tolerance : LeadTolerance
+    recommended : bool
+        Whether it is of the design to be ground.
     """
     kinds = (
         ("crowning", CROWNING, tolerance.crowning), ("end_relief", END, tolerance.crowning),
@@ -79,7 +86,7 @@ def lead_chart(
     band = [removed(*offs) for offs in product(*((-off, off) for *_, off in ground))]
     words = ", ".join(f"{word} {with_limits(amount, off)}" for _, word, amount, off in ground)
     return LeadChart(
-        gear, words, z + pair.face_height(member), -removed(*(0.0 for _ in ground)), -np.min(band, axis=0),
+        gear, words, recommended, z + pair.face_height(member), -removed(*(0.0 for _ in ground)), -np.min(band, axis=0),
         -np.max(band, axis=0),
     )  # fmt: skip
 
@@ -112,8 +119,8 @@ def lead_k_chart(of: str) -> Chart:
                     Line("lower", "limits", "grey", look={**plain, "dash": "dash"}),
                 ),
                 _ordinate,
-                title="gear {one.gear}: {one.words}",
+                title=lambda seen: f"gear {marked(seen.one.gear, recommended=seen.one.recommended)}: {seen.one.words}",
             ),
         ),
-        views=of, when=of,
+        views=of, when=of, view=lambda seen: marked(seen.key, recommended=seen.one.recommended),
     )  # fmt: skip

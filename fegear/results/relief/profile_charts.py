@@ -15,6 +15,7 @@ from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.chart import Chart, Line, Over
 from fegear.geometry.relief import EndRelief, roll_in_drawing, roll_of_radius
 from fegear.results.relief.answer_numbers import microns, with_limits
+from fegear.results.relief.recommended import marked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -158,10 +159,6 @@ def _tip_side(charts: Mapping[str, Sequence[ProfileChart]]) -> str:
     return f"tip at right (of {', '.join(hollow)} at left)" if hollow else "tip at right"
 
 
-def _place(chart: ProfileChart) -> str:
-    return " (recommended)" if chart.recommended else ""
-
-
 def k_chart(of: str) -> Chart:
     """The figure of the charts of a pair, a view for each design.
 
@@ -199,9 +196,11 @@ def k_chart(of: str) -> Chart:
                     Line("present", "present relief", "present relief", look=plain, x="roll_length"),
                 ),
                 _ordinate,
-                title=lambda seen: f"{seen.one.gear}{_place(seen.one)}: {seen.one.words}", each=lambda seen: seen.one,
+                title=lambda seen: f"{marked(seen.one.gear, recommended=seen.one.recommended)}: {seen.one.words}",
+                each=lambda seen: seen.one,
                 marks=lambda seen: seen.one.marks,
             ),
         ),
-        views=of, when=of, columns=1, view=lambda seen: f"{seen.key}{_place(seen.one[0])}",
+        views=of, when=of, columns=1,
+        view=lambda seen: marked(seen.key, recommended=seen.one[0].recommended),
     )  # fmt: skip

@@ -33,6 +33,11 @@ def recommended_design(rows: Sequence[Grinding], over: Mapping[str, LeftOverRang
     return "" if lost else design
 
 
+def marked(name: str, *, recommended: bool) -> str:
+    """Name of a design or gear in a chart, with a mark where the design is the one to be ground."""
+    return f"{name} (recommended)" if recommended else name
+
+
 def nothing_words(name: str, rows: Sequence[Grinding], torque: Array, none: Array) -> str:
     """That all modifications are too small to be ground, and what remains without any.
 
