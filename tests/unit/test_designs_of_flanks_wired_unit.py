@@ -12,6 +12,7 @@ from fegear.design.flanks import flank_design, judge, lead_correction, tip_bench
 from fegear.design.flanks.flank_design import _classes_finer
 from fegear.design.flanks.judge import FlankJudge
 from fegear.design.flanks.scatter import NOMINAL, normal_scatter
+from fegear.design.flanks.trials import Tries
 from fegear.design.load_range import LoadRange
 from fegear.geometry.relief import UNMODIFIED, EndRelief
 
@@ -385,3 +386,20 @@ def test_leads_are_corrected_in_turns_in_the_gaps_of_the_shafts_that_the_last_tu
         assert one.left.tolist() == pytest.approx([1.0, 0.0])
         assert one.kept.tolist() == pytest.approx([rounds + more, load])
     assert said == pytest.approx([(turn * 3 + k) / (3 * rounds) for turn in range(rounds) for k in (1, 2)] + [1.0])
+
+
+# ---- numbers tried one after the other -------------------------------------------------------------------------------
+def test_each_try_begins_from_the_nearest_before_it_and_none_is_made_twice():
+    asked = []
+
+    def of_numbers(numbers, near=None):
+        asked.append((numbers.tolist(), near))
+        return f"found {len(asked)}"
+
+    scale = np.array([1.0, 10.0, 0.0])  # a tenth of the second counts as much as one of the first, the third does not
+    tries = Tries(SimpleNamespace(of_numbers=of_numbers), scale)
+    places = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 20.0, 9.0], [2.0, 0.0, 99.0], [1.0, 25.0, 0.0]]
+    found = [tries.of(np.array(one)) for one in places]
+    assert [near for _, near in asked] == [None, "found 1", "found 1", "found 2", "found 3"]
+    assert [tries.of(np.array(one)) for one in places] == found
+    assert len(asked) == len(places)

@@ -98,14 +98,16 @@ def edge_law(t: ArrayLike, wedge: ArrayLike = 0.0, room: ArrayLike = 0.0) -> tup
     """
     at = np.asarray(t, dtype=float)
     near = at > -1.0
-    s = np.where(near, at, -1.0)
+    psi, slope = np.zeros(at.shape), np.zeros(at.shape)
+    s = at[near]
     y = 2.0 / (s + np.sqrt(s * s + 3.0))
     inside = np.minimum(s, 0.0)
-    psi = np.where(near, 0.5 - 0.375 * y * y - np.log(0.5 * y) + inside * inside, 0.0)
-    slope = np.where(near, s * (2.0 - s * y) / (1.5 * y + s) + 2.0 * inside * inside, 0.0)
+    psi[near] = 0.5 - 0.375 * y * y - np.log(0.5 * y) + inside * inside
+    slope[near] = s * (2.0 - s * y) / (1.5 * y + s) + 2.0 * inside * inside
     gamma = np.minimum(np.asarray(wedge, dtype=float), _SOFTEST)
     if gamma.any():
-        m, m_slope = _distance(s, y, gamma)
+        s = np.where(near, at, -1.0)
+        m, m_slope = _distance(s, 2.0 / (s + np.sqrt(s * s + 3.0)), gamma)
         m = np.where(near, m, np.maximum(-at, 1.0))
         farther = np.maximum(np.maximum(-at, room), np.finfo(float).tiny)  # no room where gamma is zero
         felt = near | (farther > m)

@@ -21,7 +21,7 @@ from fegear.design.flanks.forms import GroundRelief
 from fegear.design.flanks.grid import FAMILIES, GROUPS, Family, ReliefGrid
 from fegear.design.flanks.quick import QuickFlanks, quick_flanks
 from fegear.design.flanks.search import descend
-from fegear.design.flanks.trials import FlankTrials
+from fegear.design.flanks.trials import FlankTrials, Tries
 from fegear.design.flanks.valley_floors import valley_floors
 from fegear.design.flanks.valleys import deepest_valleys, keeps
 
@@ -231,11 +231,11 @@ def _screened(
     allowed = factor <= most_factor * _FACTOR_SLACK
     order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
     seen: list[tuple[float, int]] = []
-    error, exact = 0.0, 0
+    error, exact, tries = 0.0, 0, Tries(few, np.ptp(numbers, axis=0))
     for i in order[:_MOST_EXACT].tolist():
         if exact >= least and seen and rough[i] - error > seen[0][0]:
             break
-        tried = few.of_numbers(numbers[i])
+        tried = tries.of(numbers[i])
         exact += 1
         value = few.value(tried.peak_to_peak)
         error = max(error, rough[i] - value)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import Array
 from fegear.design.flanks.forms import NUMBERS, lead_bearer
-from fegear.design.flanks.trials import FlankTrials
+from fegear.design.flanks.trials import FlankTrials, Tries
 from fegear.design.tip_relief.tip_tolerance import (
     HALVED,
     TIP_NUMBERS,
@@ -128,8 +128,14 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
         Nominal.
     tolerance : FlankTolerance
     """
-    near = trials.of_numbers(numbers)
-    return _worst(lambda one: trials.of_numbers(one, near=near).peak_to_peak[0], trials, pair, numbers, tolerance)
+    return _worst(_left_by(trials, numbers), trials, pair, numbers, tolerance)
+
+
+def _left_by(trials: FlankTrials, numbers: Array) -> Callable[[Array], Array]:
+    """What nine numbers about those given leave under each load, shape (L,) [m]."""
+    tries = Tries(trials, np.abs(numbers))
+    tries.of(numbers)
+    return lambda one: tries.of(one).peak_to_peak[0]
 
 
 def unrelieved_within(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankTolerance) -> Array:
@@ -180,15 +186,7 @@ def decisive_tolerances(
     most : ndarray, shape (L,)
         Largest peak-to-peak transmission error within all tolerances [m].
     """
-    seen: dict[bytes, Array] = {}
-    near = trials.of_numbers(numbers)
-
-    def left(one: Array) -> Array:
-        """Under each load; most combinations belong to several tolerances."""
-        key = one.tobytes()
-        if key not in seen:
-            seen[key] = trials.of_numbers(one, near=near).peak_to_peak[0]
-        return seen[key]
+    left = _left_by(trials, numbers)  # most combinations belong to several tolerances
 
     def worst(given: FlankTolerance) -> Array:
         return np.array([left(one)[i] for i, one in enumerate(_worst(left, trials, pair, numbers, given))])

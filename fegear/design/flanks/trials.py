@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -187,3 +187,32 @@ class FlankTrials:
     def value(self, peak_to_peak: Array) -> float:
         """What is to be least, of values of shape (S, L): means over the misalignments, of the worst load [m]."""
         return float((self.scatter.weights @ peak_to_peak * self.proportion).max())
+
+
+@dataclass(frozen=True)
+class Tries:
+    """Nine numbers tried one after the other, each begun from what the nearest of those before has found.
+
+    Parameters
+    ----------
+    trials : FlankTrials
+    scale : ndarray, shape (9,)
+        By which differences of numbers count beside each other; zero for those that do not.
+    before : mapping of bytes to (ndarray, Tried), optional
+        What has been tried, none to begin with.
+    """
+
+    trials: FlankTrials
+    scale: Array
+    before: dict[bytes, tuple[Array, Tried]] = field(default_factory=dict)
+
+    def of(self, numbers: Array) -> Tried:
+        """What these leave; the same numbers are tried once."""
+        key = numbers.tobytes()
+        if key not in self.before:
+            near = min(self.before.values(), key=lambda one: self._apart(one[0], numbers), default=None)
+            self.before[key] = numbers, self.trials.of_numbers(numbers, near=None if near is None else near[1])
+        return self.before[key][1]
+
+    def _apart(self, one: Array, other: Array) -> float:
+        return float(np.abs((one - other)[self.scale > 0.0] / self.scale[self.scale > 0.0]).sum())

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.design.flanks.search import descend
+from fegear.design.flanks.trials import Tries
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -119,8 +120,10 @@ def deepest_valleys(
     """
     report = progress or (lambda _fraction: None)
 
+    tries = Tries(more, box[1] - box[0])
+
     def begun(at: Array, near: Tried | None = None) -> _Start | None:
-        tried = more.of_numbers(at, near=near)
+        tried = tries.of(at) if near is None else more.of_numbers(at, near=near)
         return _Start(more.value(tried.peak_to_peak), at, tried) if keeps(tried, most_factor) else None
 
     def led(start: _Start) -> tuple[float, Array]:
