@@ -388,3 +388,19 @@ def test_the_largest_face_load_factor_is_kept_or_refused(trials, exact):
     assert float(askew.of_numbers(best.relief.numbers).face_load_factor.max()) <= most
     with pytest.raises(RangeError, match="largest_face_load_factor"):
         best_of_family(askew, "lead", GRID, force, 1.0001)
+
+
+def test_a_face_load_factor_that_few_combinations_keep_to_is_not_refused(trials, exact, monkeypatch):
+    """Only what leaves least was loaded exactly: where all of it was just above the limit, the rest was refused too."""
+    force = exact[1].force
+    askew = replace(trials, apart=normal_scatter(9e-6, 2).gaps(trials.known.lines)[1])
+    numbers, value, factor = quick_values(quick_flanks(askew.known, force, 5, askew.cells), askew, "lead", GRID)
+    exactly = np.array([float(askew.of_numbers(one).face_load_factor.max()) for one in numbers])
+    most = float(np.sort(exactly)[1]) * (1.0 + 1e-9)
+    turned = np.where(exactly <= most, value + value.max(), value)  # those that keep to it come last
+    monkeypatch.setattr(families, "quick_values", lambda *_: (numbers, turned, factor))
+    monkeypatch.setattr(families, "_FACTOR_SLACK", 10.0)
+    monkeypatch.setattr(families, "_MOST_EXACT", 1)
+    best = best_of_family(askew, "lead", GRID, force, most)
+    assert float(askew.of_numbers(best.relief.numbers).face_load_factor.max()) <= most
+    assert (best.exact, best.proven) == (best.candidates, True)

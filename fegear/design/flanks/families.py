@@ -232,9 +232,9 @@ def _screened(
     order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
     seen: list[tuple[float, int]] = []
     error, exact, tries = 0.0, 0, Tries(few, np.ptp(numbers, axis=0))
-    for i in order[:_MOST_EXACT].tolist():
-        if exact >= least and seen and rough[i] - error > seen[0][0]:
-            break
+
+    def load(i: int) -> None:
+        nonlocal error, exact, seen
         tried = tries.of(numbers[i])
         exact += 1
         value = few.value(tried.peak_to_peak)
@@ -242,7 +242,19 @@ def _screened(
         # K_Hbeta costs as much as the contact: asked only of those that a descent might start from.
         if (len(seen) < _STARTS or value < seen[-1][0]) and keeps(tried, most_factor):
             seen = sorted([*seen, (value, i)])[:_STARTS]
-    proven = bool(seen) and (exact == len(order) or float(rough[order[exact]]) - error > seen[0][0])
+
+    for i in order[:_MOST_EXACT].tolist():
+        if exact >= least and seen and rough[i] - error > seen[0][0]:
+            break
+        load(i)
+    in_order = exact
+    if not seen:  # what leaves least is above the limit by no more than the quick way may err
+        for i in sorted(order[in_order:].tolist(), key=lambda i: float(factor[i]))[:_STARTS]:
+            load(i)
+    ended = exact == len(order) or (
+        in_order < len(order) and bool(seen) and (float(rough[order[in_order]]) - error > seen[0][0])
+    )
+    proven = bool(seen) and ended
     best = [(value, numbers[i]) for value, i in seen]
     return _Screened(best, len(numbers), exact, error, proven, float(factor.min()))
 
