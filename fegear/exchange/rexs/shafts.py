@@ -161,13 +161,15 @@ def shaft_table(
     """
     sections = sections_of(said, shaft)
     begin, end = sections[0].begin, sections[-1].end
+    whole = round(end - begin, 12)
     for what, at in ((one.component.said, one.at) for one in bearings):
         _on(shaft, what, at, begin, end)
     for what, at in on.gears:
         _on(shaft, f"gear {what}", at, begin, end)
 
     def along(at: float) -> str:
-        return quantity(end - at if place.reversed else at - begin, "mm")
+        found = end - at if place.reversed else at - begin
+        return quantity(next((one for one in (0.0, whole) if abs(found - one) <= _GAP), found), "mm")
 
     start = place.u - end if place.reversed else place.u + begin
     ordered = sections[::-1] if place.reversed else sections
