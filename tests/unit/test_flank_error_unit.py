@@ -10,7 +10,9 @@ import pytest
 
 from fegear.contact.wide import error
 from fegear.contact.wide.error import FlankError, _changes, _of_largest, _share_changes, flank_error, with_misses
+from fegear.contact.wide.lines import ContactLines
 from fegear.contact.wide.over_pitch import Stated
+from fegear.contact.wide.spots import missed_of_spots
 
 LOADS = 2
 ROLL = np.array([0.1, 0.4, 0.7])
@@ -59,6 +61,7 @@ def over(values):
         largest_line_loads=np.array(values), largest_pressures=0.1 * np.array(values),
         largest_line_load=np.max(values, axis=0), largest_pressure=0.2 * np.max(values, axis=0),
         smooth=np.array([[True, True, False]]), pressure=np.array([[[3.0, 4.0], [5.0, 6.0], [99.0, 99.0]]]),
+        known="more", contact="of", bounded_line_load="loads", smooth_pressure="pressures",
     )  # fmt: skip
     return SimpleNamespace(
         found=stated, points=SimpleNamespace(x=ROLL),
@@ -117,7 +120,10 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
     monkeypatch.setattr(error, "_changes", changes)
     monkeypatch.setattr(error, "finer_changes", lambda *given: given[1:] == ("gaps", stated, 55.0) and again)
     monkeypatch.setattr(error, "long_line", lambda pair: 0.7 if pair is FOUND.pair else None)
-    monkeypatch.setattr(error, "missed_of_spots", lambda *given: 0.01 if given == ("known", "contact", 0.7) else None)
+    spots = {"loads": np.array([0.5, 0.9]), "pressures": np.array([0.07, 0.09])}
+    monkeypatch.setattr(
+        error, "missed_of_spots", lambda *given: spots[given[2]] if (*given[:2], given[3]) == ("more", "of", 0.7) else 0
+    )
     stated = over(VALUES)
     result = flank_error(flanks, FOUND, "coarse", "gaps", stated, 55.0)
     assert steps == [(FOUND, more), (more, softer)]
@@ -126,12 +132,12 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
     np.testing.assert_allclose(result.mean, np.hypot(1.0, 0.5 * 10.0) + 0.001)
     np.testing.assert_allclose(result.peak_to_peak, np.hypot(2.0, 0.6 * 20.0) + 0.002)
     np.testing.assert_allclose(result.face_load_factor, 3.0 + 0.6 * 30.0 + 0.003)
-    # Spots miss a hundredth of each largest number; a pressure read between stations six tenths of what it adds.
+    # Spots miss some of each largest number; a pressure read between stations six tenths of what it adds.
     by_panels, left = (np.array([4.0, 4.0]), 0.004) if not finer else (0.0, 1.5 * again["largest_line_load"])
-    np.testing.assert_allclose(result.largest_line_load, by_panels + 40.0 + left + 0.01 * np.array([50.0, 90.0]))
+    np.testing.assert_allclose(result.largest_line_load, by_panels + 40.0 + left + spots["loads"])
     by_panels, left = (np.array([5.0, 5.0]), 0.005) if not finer else (0.0, 1.5 * again["largest_pressure"])
     between = 0.6 * (0.2 * np.array([60.0, 90.0]) - np.array([5.0, 6.0]))
-    np.testing.assert_allclose(result.largest_pressure, by_panels + 50.0 + left + 0.01 * np.array([7.0, 9.0]) + between)
+    np.testing.assert_allclose(result.largest_pressure, by_panels + 50.0 + left + spots["pressures"] + between)
     np.testing.assert_allclose(result.transmission_error, np.tile([1.0, 0.6 * 4.0], (3, 1)))
     np.testing.assert_allclose(result.share, np.tile([0.12, 0.0], (2, 3, 1)), atol=1e-15)
 
@@ -147,6 +153,22 @@ def test_a_spot_that_comes_and_goes_leaves_a_share_of_the_mean_s_change(monkeypa
     monkeypatch.setattr(error, "missed_of_spots", lambda *given: 0.0)
     found = flank_error(flanks, FOUND, "coarse", "gaps", over(VALUES), 55.0)
     np.testing.assert_allclose(found.peak_to_peak, [0.6 * 9.0 + 0.002, 1.0 + 0.002])
+
+
+def test_an_edge_that_just_touches_says_nothing_of_the_line_that_carries_all():
+    """One roll position, lines of five stations each: one carries all along, of the other one station just touches."""
+    z = np.tile(np.linspace(-2.0, 2.0, 5), 2)[None]
+    lines = ContactLines(
+        np.zeros(1), np.repeat([[0, 1]], 5, axis=1), np.ones((1, 10), dtype=bool), z, z, -2.0, 2.0,
+        np.zeros((1, 10), dtype=bool),
+    )  # fmt: skip
+    load = np.concatenate([np.full(5, 100.0), [4.0, 0.0, 0.0, 0.0, 0.0]])[None, :, None]
+    known = SimpleNamespace(lines=lines, half_width=lambda line_load: 0.04 * np.sqrt(line_load))
+    contact = SimpleNamespace(force=load * lines.support[:, :, None], approach=np.zeros((1, 1)))
+    # Of half-lengths of 2 and 0.25 the widths 0.4 and 0.08 are 0.2 and 0.32; 0.6 of the squares is missed of each.
+    np.testing.assert_allclose(missed_of_spots(known, contact, load, 1.0), 0.6 * 0.2**2 * 100.0)
+    np.testing.assert_allclose(missed_of_spots(known, contact, load[:, ::-1], 1.0), 0.6 * 0.32**2 * 100.0)
+    np.testing.assert_allclose(missed_of_spots(known, contact, load, 5.0), 0.0)
 
 
 def test_bodies_that_miss_a_share_of_their_compliance_add_it_to_every_error():

@@ -124,10 +124,13 @@ def flank_error(
         left = left._replace(**{key: _OF_FINER * change for key, change in finer.items()})
     at_stations = np.where(over.found.smooth[:, :, None], over.found.pressure, 0.0).max(axis=(0, 1))
     between = over.found.largest_pressure - at_stations
-    missed = missed_of_spots(found.known, found.contact, long_line(found.pair))
+    by_spots = (
+        missed_of_spots(over.found.known, over.found.contact, values, long_line(found.pair))
+        for values in (over.found.bounded_line_load, over.found.smooth_pressure)
+    )
     left = left._replace(
-        largest_line_load=left.largest_line_load + missed * found.largest_line_load,
-        largest_pressure=left.largest_pressure + missed * found.largest_pressure + _BETWEEN * between,
+        largest_line_load=left.largest_line_load + next(by_spots),
+        largest_pressure=left.largest_pressure + next(by_spots) + _BETWEEN * between,
     )
     together = Stated(*map(np.add, *changes))._replace(
         mean=np.hypot(*(one.mean for one in changes)), peak_to_peak=np.hypot(*(one.peak_to_peak for one in changes))

@@ -125,13 +125,18 @@ class LoadedFlanks(ReadOnlyArrays):
         return found
 
     @cached_property
-    def largest_line_loads(self) -> Array:
-        """At each roll position [N/m], shape (P, L), on long lines; ends at tips or form circles are neglected."""
+    def bounded_line_load(self) -> Array:
+        """Line load on long lines [N/m], zero at ends at tips or form circles, where panels bound it, (P, M, L)."""
         bounded = self.smooth
         if self.lines.edges is not None:  # on tip edges line loads are finite
             on_path = (self.lines.edges.gap == 0.0) & (self.lines.edges.tilt < -_ON_EDGE * self.pair.base_pitch)
             bounded = self.long & ~(self.lines.at_edge & on_path)
-        return np.asarray(np.where(bounded[:, :, None], self.line_load, 0.0).max(axis=1))
+        return np.asarray(np.where(bounded[:, :, None], self.line_load, 0.0))
+
+    @cached_property
+    def largest_line_loads(self) -> Array:
+        """At each roll position [N/m], shape (P, L), see `bounded_line_load`."""
+        return np.asarray(self.bounded_line_load.max(axis=1))
 
     @cached_property
     def largest_pressures(self) -> Array:

@@ -92,22 +92,33 @@ def _own_width(known: FlankCompliance, gap: Array, load: Array) -> tuple[FlankCo
     return known, solve_contact(known, gap, load)
 
 
-def missed_of_spots(known: FlankCompliance, found: Contact, shortest: float) -> Array:
-    """Share by which the largest pressure of spots may be low, shape (L,): nothing of long contacts.
+def missed_of_spots(known: FlankCompliance, found: Contact, values: Array, shortest: float) -> Array:
+    """By how much the largest of `values` may be low because contacts are spots, shape (L,): nothing of long contacts.
 
-    Contact lines of less than `shortest` decide no largest pressure, and are not looked at [m].
+    Each contact line's own largest value counts with what its own shape misses: an edge that just comes into contact
+    touches at a spot, and says nothing about a line that carries all.
+
+    Parameters
+    ----------
+    known : FlankCompliance
+    found : Contact
+    values : ndarray, shape (P, M, L)
+        Loads or pressures at the stations, zero where none is looked at.
+    shortest : float
+        Contact lines of less decide no largest value, and are not looked at [m].
     """
     lines, width = known.lines, _half_width(known, found)
     loaded = lines.support[:, :, None] * (found.force > 0.0)
-    most = np.zeros(found.approach.shape[1])
+    largest = values.max(axis=(0, 1))
+    most = largest.copy()
     for p in range(lines.roll.size):
         for s in lines.at(p):
             if lines.z[p, s][-1] - lines.z[p, s][0] < shortest * (1.0 - 1e-9):
                 continue
             half = 0.5 * loaded[p, s].sum(axis=0)
             ratio = np.divide(width[p, s].max(axis=0), half, out=np.zeros_like(half), where=half > 0.0)
-            most = np.maximum(most, np.minimum(ratio, 1.0))
-    return np.asarray(_MISSED * most**2)
+            most = np.maximum(most, values[p, s].max(axis=0) * (1.0 + _MISSED * np.minimum(ratio, 1.0) ** 2))
+    return np.asarray(most - largest)
 
 
 def _half_width(known: FlankCompliance, found: Contact) -> Array:
