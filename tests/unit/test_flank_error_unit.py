@@ -117,8 +117,11 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
         return Stated(*(np.full(LOADS, size * (k + 1)) for k in range(5)))
 
     again = {"largest_line_load": np.array([6.0, 8.0]), "largest_pressure": np.array([0.6, 0.8])} if finer else {}
+    # On short panels coarser gears change the second load's pressure more than on long ones, and all else less.
+    by_gears = {"largest_line_load": np.array([39.0, 39.0]), "largest_pressure": np.array([49.0, 77.0])}
+    both = {key: (change, by_gears[key]) for key, change in again.items()}
     monkeypatch.setattr(error, "_changes", changes)
-    monkeypatch.setattr(error, "finer_changes", lambda *given: given[1:] == ("gaps", stated, 55.0) and again)
+    monkeypatch.setattr(error, "finer_changes", lambda *given: given[1:] == ("coarse", "gaps", stated, 55.0) and both)
     monkeypatch.setattr(error, "long_line", lambda pair: 0.7 if pair is FOUND.pair else None)
     spots = {"loads": np.array([0.5, 0.9]), "pressures": np.array([0.07, 0.09])}
     monkeypatch.setattr(
@@ -136,8 +139,9 @@ def test_an_error_adds_what_panels_gears_positions_and_spots_change(finer, monke
     by_panels, left = (np.array([4.0, 4.0]), 0.004) if not finer else (0.0, 1.5 * again["largest_line_load"])
     np.testing.assert_allclose(result.largest_line_load, by_panels + 40.0 + left + spots["loads"])
     by_panels, left = (np.array([5.0, 5.0]), 0.005) if not finer else (0.0, 1.5 * again["largest_pressure"])
+    gears = np.array([50.0, 77.0]) if finer else 50.0
     between = 0.6 * (0.2 * np.array([60.0, 90.0]) - np.array([5.0, 6.0]))
-    np.testing.assert_allclose(result.largest_pressure, by_panels + 50.0 + left + spots["pressures"] + between)
+    np.testing.assert_allclose(result.largest_pressure, by_panels + gears + left + spots["pressures"] + between)
     np.testing.assert_allclose(result.transmission_error, np.tile([1.0, 0.6 * 4.0], (3, 1)))
     np.testing.assert_allclose(result.share, np.tile([0.12, 0.0], (2, 3, 1)), atol=1e-15)
 

@@ -2,7 +2,8 @@
 
 Largest line loads and pressures stand beside kinks of the load along its line and at roll positions between those that
 are looked at; what longer panels change of them at one position says little about that. They are looked for once more
-where they may stand, with shorter panels at twice as many positions.
+where they may stand, with shorter panels at twice as many positions, and there with coarser gears: what these change
+beside the ends of the face is lost between long panels.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fegear.base.arrays import Array
+from fegear.base.arrays import Array, first_of_largest
 from fegear.base.errors import ConvergenceError
 from fegear.base.shown import shown
 from fegear.contact.between_positions import JUMP
@@ -119,9 +120,12 @@ def flank_error(
         face_load_factor=_OF_GEARS_FACE * by_gears.face_load_factor,
     )
     left = over.left_by_positions
-    if finer := finer_changes(flanks, gaps, over, about):  # instead of what longer panels and fewer positions change
+    if finer := finer_changes(flanks, coarse, gaps, over, about):  # instead of longer panels and fewer positions
         changes[0] = changes[0]._replace(**dict.fromkeys(finer, np.zeros(found.load.shape)))
-        left = left._replace(**{key: _OF_FINER * change for key, change in finer.items()})
+        left = left._replace(**{key: _OF_FINER * change for key, (change, _) in finer.items()})
+        # Long panels hide what gears change beside the ends of the face.
+        shown = {key: np.maximum(getattr(changes[1], key), change) for key, (_, change) in finer.items()}
+        changes[1] = changes[1]._replace(**shown)
     at_stations = np.where(over.found.smooth[:, :, None], over.found.pressure, 0.0).max(axis=(0, 1))
     between = over.found.largest_pressure - at_stations
     by_spots = (
@@ -142,12 +146,16 @@ def flank_error(
     return FlankError(te, _SHARES * np.asarray(share), fewer, other, *sums)
 
 
-def finer_changes(flanks: FlankPair, gaps: FlankGaps, over: OverPitch, about: float) -> dict[str, Array]:
-    """What shorter panels at more roll positions change of the largest line load and pressure, shape (L,) each.
+def finer_changes(
+    flanks: FlankPair, coarse: Mapping[Member, FlankBody], gaps: FlankGaps, over: OverPitch, about: float
+) -> dict[str, tuple[Array, Array]]:
+    """What shorter panels at more roll positions change of the largest line load and pressure, and on these the gears.
 
     Parameters
     ----------
     flanks : FlankPair
+    coarse : mapping of {"driver", "driven"} to FlankBody
+        On short panels they are loaded where the largest values of both stand.
     gaps : FlankGaps
     over : OverPitch
         What they were read from.
@@ -157,21 +165,28 @@ def finer_changes(flanks: FlankPair, gaps: FlankGaps, over: OverPitch, about: fl
     Returns
     -------
     dict
-        By the names of `Stated`; empty where contacts on panels so short find no balance, as spots may.
+        Both changes, shape (L,) each, by the names of `Stated`; empty where contacts on panels so short find no
+        balance, as spots may.
     """
     found, shorter = over.found, replace(flanks, panel=_SHORTER * flanks.panel)
+    softer, names = replace(shorter, gears=coarse), ("largest_line_load", "largest_pressure")
     roll = likely_positions(over.points.x, over.points.period, (found.largest_line_loads, found.largest_pressures))
     try:
         parts = [
             shorter.solve(found.load, gaps, shorter.compliance(about, roll[i : i + _AT_ONCE]))
             for i in range(0, roll.size, _AT_ONCE)
         ]
+        values = {name: np.concatenate([getattr(part, f"{name}s") for part in parts]) for name in names}
+        at = {name: first_of_largest(one, axis=0) for name, one in values.items()}
+        places = np.unique(np.concatenate(list(at.values())))
+        other = softer.solve(found.load, gaps, softer.compliance(about, roll[places]))
     except ConvergenceError:
         return {}
-    names = ("largest_line_load", "largest_pressure")
-    return {
-        name: np.abs(np.max([getattr(part, name) for part in parts], axis=0) - getattr(found, name)) for name in names
-    }
+    case, changes = np.arange(found.load.size), {}
+    for name, one in values.items():
+        largest, again = one[at[name], case], getattr(other, f"{name}s")[np.searchsorted(places, at[name]), case]
+        changes[name] = np.abs(largest - getattr(found, name)), np.abs(again - largest)
+    return changes
 
 
 def likely_positions(roll: Array, period: float, values: Sequence[Array]) -> Array:
