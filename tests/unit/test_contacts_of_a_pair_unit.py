@@ -118,7 +118,8 @@ def test_roll_positions_are_the_same_a_base_pitch_on():
 def test_pairs_below_a_contact_ratio_of_one_run_by_their_corners_or_not_at_all(monkeypatch):
     one = pair(0.5)
     assert one.contact_ratio < 1.0
-    refuse_gaps(pair(), "pair.I", corner_contact=False)
+    for enough in (pair(), pair(0.6)):  # of 1.5 and of 1.03
+        refuse_gaps(enough, "pair.I", corner_contact=False)
     refuse_gaps(one, "pair.I", corner_contact=True)
     with pytest.raises(
         InputError, match=r"pair\.I = contact ratio 0\.8758.*set effects\.corner_contact = true"

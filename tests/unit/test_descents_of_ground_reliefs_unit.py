@@ -14,7 +14,7 @@ import pytest
 from scipy.optimize import linprog
 
 from fegear.design.flanks.scatter import Scatter
-from fegear.design.flanks.search import descend
+from fegear.design.flanks.search import _Straight, descend
 
 LOW = np.array([0.0, 2e-3, 0.0, 1e-3, 0.0, 0.0, -3e-6, 0.0, 0.0])
 HIGH = np.array([9e-6, 6e-3, 9e-6, 5e-3, 0.0, 0.0, 3e-6, 0.0, 7e-6])
@@ -31,12 +31,15 @@ class Straight:
         chance = np.random.default_rng(11)
         self.base, self.slope = chance.normal(size=(2, 7, 2)) * 1e-6, chance.normal(size=(2, 9, 7, 2)) * 1e-6
         self.over, self.over_slope = 1.2 + 0.1 * chance.random((2, 4, 2)), 0.2 * chance.normal(size=(2, 9, 4, 2))
-        self.bent, self.asked = bent, []
+        self.bent, self.asked, self.steps = bent, [], []
 
     def of_numbers(self, numbers, slope=False, near=None, step=None):
         assert (numbers >= LOW).all()
         assert (numbers <= HIGH).all()
-        assert step is None or near is not None
+        if near is not None:  # a step from what was taken before
+            assert step == pytest.approx(numbers - near.numbers, abs=1e-15)
+            self.steps.append(step)
+        assert slope or near is None
         u = numbers / SCALE
         self.asked.append(numbers)
         square = self.bent * np.sum((u - 0.4) ** 2) * np.cos(np.arange(7))[None, :, None]
@@ -45,7 +48,7 @@ class Straight:
         over = self.over + np.einsum("skcl,k->scl", self.over_slope, u)
         by = (self.slope + 1e-6 * grown) / SCALE[None, :, None, None]
         return SimpleNamespace(
-            te=te, slope=by, peak_to_peak=np.ptp(te, axis=1), over_face=over, face_load_factor=over.max(axis=1),
+            numbers=numbers, te=te, slope=by, peak_to_peak=np.ptp(te, axis=1), over_face=over, face_load_factor=over.max(axis=1),
             over_face_slope=self.over_slope / SCALE[None, :, None, None],
         )  # fmt: skip
 
@@ -87,6 +90,12 @@ def test_a_straight_valley_s_floor_is_the_optimum_of_the_whole_programme():
     assert value == pytest.approx(least, rel=1e-9)
     assert found[FREE] == pytest.approx(numbers[FREE], rel=1e-6, abs=1e-12)
     assert trials.value(trials.of_numbers(found).peak_to_peak) == pytest.approx(value, rel=1e-12)
+    # The region of trust is a tenth of the box at first, and 1.6 times as large after every step that keeps its promise.
+    for k, step in enumerate(trials.steps):
+        size = np.abs(step[FREE] / (HIGH - LOW)[FREE]).max()
+        assert size <= 0.1 * 1.6**k * (1.0 + 1e-12)
+        assert size == pytest.approx(0.1 * 1.6**k) or k == len(trials.steps) - 1
+    assert len(trials.steps) <= 5
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7])
@@ -105,12 +114,14 @@ def test_a_limit_of_the_load_over_the_face_is_a_bound_of_the_programme(share):
     assert trials.of_numbers(found).face_load_factor.max() <= limit * (1.0 + 1e-9)
 
 
-def test_a_bent_valley_s_floor_is_lower_than_all_about_it():
-    trials = Straight(bent=0.4)
+@pytest.mark.parametrize(("bent", "steps"), [(0.4, 6), (2.0, 60)])
+def test_a_bent_valley_s_floor_is_lower_than_all_about_it(bent, steps):
+    trials = Straight(bent)
     at = start()
     first = trials.value(trials.of_numbers(at).peak_to_peak)
     value, found = descend(trials, at, first, (LOW, HIGH), ended=1e-9)
     assert value < first
+    assert len(trials.steps) <= steps
     chance = np.random.default_rng(5)
     for size in (1e-4, 1e-2):
         for _ in range(100):
@@ -135,3 +146,23 @@ def test_a_length_without_an_amount_starts_in_the_middle_of_its_box():
     descend(trials, at, 9e-6, (LOW, HIGH))
     assert trials.asked[0][1] == pytest.approx(4e-3)
     assert trials.asked[0][[0, 2, 3]] == pytest.approx(at[[0, 2, 3]])
+
+
+@pytest.mark.parametrize("limit", [None, 1.4])
+def test_a_step_that_bends_away_is_made_again_through_what_it_has_found(limit):
+    trials = Straight(bent=2.0)
+    at = start()
+    here = _Straight.of(trials, trials.of_numbers(at), FREE, limit)
+    step = 0.1 * (HIGH - LOW)[FREE] * np.array([1.0, -1.0, 0.5, 0.2, -0.4, 0.8])
+    ahead = at.copy()
+    ahead[FREE] += step
+    found = trials.of_numbers(ahead)
+    again = here.corrected(found, step)
+    reached = again.te + np.einsum("skpl,k->spl", here.tried.slope[:, FREE], step)
+    assert reached == pytest.approx(found.te, abs=1e-18)
+    assert again.tried is here.tried
+    assert again.limit == limit
+    assert (again.over_face is None) == (limit is None)
+    if limit:
+        over = again.over_face + np.einsum("skcl,k->scl", here.tried.over_face_slope[:, FREE], step)
+        assert over == pytest.approx(found.over_face, abs=1e-12)

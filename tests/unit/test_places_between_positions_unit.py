@@ -47,7 +47,7 @@ CASES = [  # slopes of the removals, pair, whether it parts, whether the error h
 BASE = np.array([20.2, 20.0, 20.7])
 
 
-def hand_over(met=True):
+def hand_over(beside=0.0):
     """All cases as places of one array."""
     parts = []
     for slopes, pair, leaves, _ in CASES:
@@ -57,7 +57,7 @@ def hand_over(met=True):
         without = off(slopes, BASE, bears, pair, x, np.zeros(4))
         rise = (off(slopes, BASE, bears, pair, x + STEP, np.zeros(4)) - without) / STEP
         distance, slope = np.zeros(3), np.zeros(3)
-        distance[pair], slope[pair] = without if met else 1e-4, rise
+        distance[pair], slope[pair] = without + beside, rise
         whole = shared(slopes, BASE, np.ones(3, bool), x, np.zeros(4))[2]
         parts.append((x, bears, loads, weight, error, weight @ slopes, slopes, distance, slope, pair, leaves, whole))
     x, on, loads, weight, error, rise, rises, distance, slope, pair, leaves, whole = map(
@@ -135,9 +135,12 @@ def test_a_bend_moves_with_the_numbers_and_is_the_jump_of_the_slope():
 
 
 def test_places_that_were_not_found_are_no_peaks_and_have_no_jump():
-    over = hand_over(met=False)
+    over = hand_over(1e-4)
     peak, weight = over.peaks()
     assert not over.met.any()
     assert not peak.any()
     assert weight == pytest.approx(over.found.weight)
     assert not over.bends().jump.any()
+    # Found is what lies within a millionth of the transmission error.
+    assert hand_over(0.9e-6 * over.found.error.min()).met.all()
+    assert not hand_over(1.1e-6 * over.found.error.max()).met.any()
