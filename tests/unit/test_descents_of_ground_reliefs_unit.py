@@ -48,9 +48,14 @@ class Straight:
         over = self.over + np.einsum("skcl,k->scl", self.over_slope, u)
         by = (self.slope + 1e-6 * grown) / SCALE[None, :, None, None]
         return SimpleNamespace(
-            numbers=numbers, te=te, slope=by, peak_to_peak=np.ptp(te, axis=1), over_face=over, face_load_factor=over.max(axis=1),
+            numbers=numbers,
+            te=te,
+            slope=by,
+            peak_to_peak=np.ptp(te, axis=1),
+            over_face=over,
+            face_load_factor=over.max(axis=1),
             over_face_slope=self.over_slope / SCALE[None, :, None, None],
-        )  # fmt: skip
+        )
 
     def value(self, peak_to_peak):
         return float((self.scatter.weights @ peak_to_peak * self.proportion).max())
@@ -90,7 +95,7 @@ def test_a_straight_valley_s_floor_is_the_optimum_of_the_whole_programme():
     assert value == pytest.approx(least, rel=1e-9)
     assert found[FREE] == pytest.approx(numbers[FREE], rel=1e-6, abs=1e-12)
     assert trials.value(trials.of_numbers(found).peak_to_peak) == pytest.approx(value, rel=1e-12)
-    # The region of trust is a tenth of the box at first, and 1.6 times as large after every step that keeps its promise.
+    # The region of trust is a tenth of the box at first, and 1.6 times as large after every step as promised.
     for k, step in enumerate(trials.steps):
         size = np.abs(step[FREE] / (HIGH - LOW)[FREE]).max()
         assert size <= 0.1 * 1.6**k * (1.0 + 1e-12)

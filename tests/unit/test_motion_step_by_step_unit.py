@@ -312,3 +312,15 @@ def test_a_long_step_carries_tangents():
     after = expm(300.0 * np.array([[0.0, 1.0], [-9.0, -12.0]]))
     assert np.vstack([found.x[:, 1:], found.v[:, 1:]]) == pytest.approx(after, abs=1e-9)
     assert found.x[0, 0] == pytest.approx(1.0 / 9.0, abs=1e-9)
+
+
+def test_a_record_that_is_full_keeps_the_first_steps():
+    parts = one_mesh(0)
+    whole, _ = moved(parts, [0.4, -0.1], [-1.6, -1.2], 2.0, keep=200)
+    few, _ = moved(parts, [0.4, -0.1], [-1.6, -1.2], 2.0, keep=5)
+    assert whole.steps == few.steps > 5
+    assert few.times.tolist() == whole.times[:6].tolist()
+    assert few.polynomials.tolist() == whole.polynomials[:5].tolist()
+    assert few.contact.tolist() == whole.contact[:5].tolist()
+    # Contact changes from step to step as the motion reports it.
+    assert np.abs(np.diff(whole.contact[: whole.steps], axis=0)).sum() >= whole.changes
