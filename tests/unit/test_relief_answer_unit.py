@@ -14,9 +14,10 @@ from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.grinding import TIP, Grinding
+from fegear.results.relief.grinding_words import said_at, said_of_range, said_of_undefined
 from fegear.results.relief.ground_tips import said_of_flat_optima
 from fegear.results.relief.recommended import recommended_design
-from fegear.results.relief.relief_over_range import LeftOverRange, said_at, said_of_range, said_of_undefined
+from fegear.results.relief.relief_over_range import LeftOverRange
 from fegear.results.relief.relief_robustness import as_designed
 
 CLASS = "f_Hα of class 5, assumed"

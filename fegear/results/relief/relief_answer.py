@@ -8,8 +8,8 @@ import numpy as np
 
 from fegear.engine.sheet.answer import Answer
 from fegear.results.relief.answer_numbers import microns, torque_words
+from fegear.results.relief.grinding_words import said_at, said_of_range
 from fegear.results.relief.interference_words import said_of_interference
-from fegear.results.relief.relief_over_range import said_at, said_of_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,12 +13,13 @@ from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.results.pair.loaded_teeth import BASE_PITCH, pitch_marks
 from fegear.results.relief.grinding import grinding_table
+from fegear.results.relief.grinding_words import said_at
 from fegear.results.relief.ground_tips import tip_numbers
 from fegear.results.relief.harris import HARRIS_CHART
 from fegear.results.relief.interference_words import said_of_interference
 from fegear.results.relief.profile_charts import k_chart
 from fegear.results.relief.relief_over_face_data import TipsShown
-from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS, said_at
+from fegear.results.relief.relief_over_range import OVER_RANGE, RANGE_CHART, TIME_MEANS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
