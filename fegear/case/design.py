@@ -103,6 +103,23 @@ class TipTolerancePart(Part):
     )
 
 
+class LimitsPart(Part):
+    """``limits = { amount, length, ... }``: what tip relief to be found may be at most."""
+
+    amount: PositiveLength | None = Field(default=None, description="Maximum amount of tip relief. Default: no limit.")
+    length: PositiveLength | None = Field(
+        default=None, description="Maximum length along the line of action. Default: the path of contact."
+    )
+    driver_start_diameter: PositiveLength | None = Field(
+        default=None,
+        description="Diameter on the driver that tip relief must not pass towards the root. Default: no limit.",
+    )
+    driven_start_diameter: PositiveLength | None = Field(
+        default=None,
+        description="Diameter on the driven gear that tip relief must not pass towards the root. Default: no limit.",
+    )
+
+
 class AllowablePart(Part):
     """``allowable = { root_tension, hertz_pressure }``: stresses that `peak = "least-stress"` weighs by."""
 
@@ -188,6 +205,12 @@ class DesignPart(Part):
     grind: list[Shape] = Field(
         default_factory=_both_shapes, description="Shapes of grindable tip relief; empty list: none."
     )
+    relieve: Literal["both", "driver", "driven"] = Field(
+        default="both", description="Gears that have grindable tip relief: both, or one of them only."
+    )
+    limits: LimitsPart | None = Field(
+        default=None, description="Limits of grindable tip relief. Default: none but those of the teeth."
+    )
     tolerances: TipTolerancePart | None = Field(
         default=None, description="Tolerances of grindable tip relief, for the grinding table and the profile chart."
     )
@@ -196,9 +219,10 @@ class DesignPart(Part):
         description="Roll angles on the active profile in the table `relief_points_<pair>_<gear>` (load, deflection, "
         "relief).",
     )
-    metric: Literal["effective_error", "peak_to_peak"] = Field(
+    metric: Literal["effective_error", "peak_to_peak", "peak_to_peak_max"] = Field(
         default="peak_to_peak",
-        description="Objective of the search for tip relief: peak-to-peak transmission error or effective error A_e.",
+        description="Objective of the search for tip relief: `peak_to_peak` transmission error as drawn, "
+        "`peak_to_peak_max` (its maximum within the tolerances of the grinding table), or `effective_error` A_e.",
     )
     chart: ChartPart = Field(
         default_factory=ChartPart,
@@ -207,6 +231,11 @@ class DesignPart(Part):
     robustness: RobustnessPart = Field(
         default_factory=RobustnessPart, description="Deviations to combine, for `robustness`."
     )
+
+    @property
+    def measure(self) -> Literal["effective_error", "peak_to_peak"]:
+        """What is left as drawn that `metric` is about."""
+        return "peak_to_peak" if self.metric == "peak_to_peak_max" else self.metric
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:

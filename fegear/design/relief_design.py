@@ -23,7 +23,8 @@ from fegear.design.minimum_excitation import ReliefTable, minimum_excitation, re
 from fegear.design.oil_film import OilFilm
 from fegear.design.preferred import classes_finer, preferred
 from fegear.design.root_stress_loading import Allowed, StressOptimum, design_stress, least_root_stress
-from fegear.design.tip_relief.grindable import TipReliefPair, grindable
+from fegear.design.tip_relief.grindable import TipReliefPair, grindable, tolerated
+from fegear.design.tip_relief.relief_limits import ReliefLimits
 from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
 from fegear.design.tip_relief.tolerated import decisive_tolerances, unrelieved_within, within_tolerances
 from fegear.geometry.pair import MEMBERS, Member
@@ -64,6 +65,11 @@ class DesignTask:
         Loads that reliefs to grind are designed for in place of the design load only.
     tip_tolerances : tuple of TipTolerance, optional
         Of the reliefs to grind on driver and driven gear.
+    limits : ReliefLimits, optional
+        Of what is ground.
+    at_most : bool
+        Whether what is ground is chosen by the largest peak-to-peak value within its tolerances, over the metric as
+        drawn.
     """
 
     loading: LoadingFunction
@@ -78,6 +84,8 @@ class DesignTask:
     film: OilFilm | None = None
     over: LoadRange | None = None
     tip_tolerances: tuple[TipTolerance, TipTolerance] | None = None
+    limits: ReliefLimits | None = None
+    at_most: bool = False
 
     @property
     def over_loads(self) -> tuple[float, ...]:
@@ -94,7 +102,10 @@ class DesignTask:
 
     def grind_on(self, engagement: Engagement, shape: Shape, cache: SolutionCache | None = None) -> TipReliefPair:
         """The reliefs of a shape to grind, for the range or for the design load."""
-        return grindable(engagement, self.load if self.over is None else self.over, shape, self.metric, cache=cache)
+        over = self.load if self.over is None else self.over
+        if self.at_most and self.tip_tolerances is not None:
+            return tolerated(engagement, over, shape, self.tip_tolerances, limits=self.limits, cache=cache)
+        return grindable(engagement, over, shape, self.metric, limits=self.limits, cache=cache)
 
 
 @dataclass(frozen=True)
@@ -155,6 +166,9 @@ class ReliefDesign:
     unrelieved_most : ndarray, shape (L,), or None
         Largest peak-to-peak value at each of these loads without relief, with profile slopes inside the tolerances [m];
         None where the shape to be ground leaves no more than no relief without deviations.
+    undeviated : ndarray, shape (L, 2), or None
+        Where the largest value within the tolerances is made small: what the relief of the same shape that leaves the
+        least as drawn leaves as drawn, and at most within the tolerances, at each of these loads [m].
     """
 
     task: DesignTask
@@ -172,12 +186,15 @@ class ReliefDesign:
     decisive: tuple[Decisive | None, ...] = ()
     rounded: Mapping[Shape, Array] = field(default_factory=dict)
     unrelieved_most: Array | None = None
+    undeviated: Array | None = None
 
     @property
     def shapes(self) -> list[Shape]:
         """Of the reliefs to grind, the one to be ground first: by what they leave, also within their tolerances."""
         part = proportions(np.array(self.task.over_loads), self.task.over_weights)
         within = {shape: float((both[:, 1] * part).max()) for shape, both in self.within.items()}
+        if self.task.at_most and within:
+            return sorted(within, key=lambda shape: within[shape])
         return preferred({shape: one.objective for shape, one in self.ground.items()}, within)
 
     @property
@@ -233,7 +250,9 @@ def design_relief(
         ground[shape] = task.grind_on(designed, shape, cache)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         if task.over is not None:
-            for_one_load[shape] = grindable(designed, load, shape, task.metric, banded=False, cache=cache)
+            for_one_load[shape] = grindable(
+                designed, load, shape, task.metric, banded=False, limits=task.limits, cache=cache
+            )
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
     if (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):
@@ -263,7 +282,7 @@ def design_relief(
         task, chosen, designed, reliefs, ground, for_one_load, te, curves, over_range, within, tables_leave,
         rounded=rounded,
     )  # fmt: skip
-    design = replace(design, unrelieved_most=_unrelieved_most(plain, design))
+    design = replace(design, unrelieved_most=_unrelieved_most(plain, design), undeviated=_undeviated(plain, design))
     return replace(design, finer=_classes_finer(plain, design), decisive=_decisive(plain, design))
 
 
@@ -286,6 +305,18 @@ def _unrelieved_most(plain: Engagement, design: ReliefDesign) -> Array | None:
     none = np.array([one.peak_to_peak for one in design.over_range["no relief"]])
     worse = (design.within[design.best_ground[0]][:, 1] > none) & (task.over_weights > 0.0)
     return unrelieved_within(plain, task.tip_tolerances, task.over_loads) if worse.any() else None
+
+
+def _undeviated(plain: Engagement, design: ReliefDesign) -> Array | None:
+    """What the relief that leaves the least as drawn leaves so, and at most, beside the one to be ground."""
+    task = design.task
+    tips = design.best_ground[1].undeviated if design.ground else None
+    if tips is None or task.tip_tolerances is None:
+        return None
+    state = replace(plain, driver_relief=tips[0], driven_relief=tips[1])
+    drawn = [transmission_error(state, load, _OVER_LOADS).peak_to_peak for load in task.over_loads]
+    most = within_tolerances(plain, tips, task.tip_tolerances, task.over_loads)[:, 1]
+    return np.stack([np.array(drawn), most], axis=1)
 
 
 def _classes_finer(plain: Engagement, design: ReliefDesign) -> int | None:

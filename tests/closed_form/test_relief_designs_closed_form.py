@@ -134,9 +134,10 @@ def test_the_contour_of_a_bent_valley_has_no_point_off_its_level():
 
 def test_the_equal_reliefs_named_for_comparison_have_the_minimum_of_what_is_stated_of_them():
     """A_e is least at 2 um over 1 mm, the peak-to-peak value at 3 um over 2 mm, with 4 um at the larger load."""
-    amounts, lengths, loads = np.array([2e-6, 3e-6]), np.array([0.5, 1.0]), np.array([50.0, 100.0])
-    effective, peaks = np.full((2, 2, 2), 9e-6), np.full((2, 2, 2), 8e-6)
-    effective[0, 0], peaks[1, 1] = 1e-6, (1e-6, 4e-6)
+    amounts, lengths = np.array([1e-6, 2e-6, 3e-6, 4e-6]), np.array([0.3, 0.5, 1.0, 1.2])
+    loads = np.array([50.0, 100.0])
+    effective, peaks = np.full((4, 4, 2), 9e-6), np.full((4, 4, 2), 8e-6)
+    effective[1, 1], peaks[2, 2] = 1e-6, (1e-6, 4e-6)
     chart = ReliefChart(amounts, lengths, loads, 2e-3, effective, peaks)
     tip = SimpleNamespace(relief=SimpleNamespace(amount=1e-6), member="driver")
     pair = SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(base_radius=0.1)))
@@ -149,6 +150,15 @@ def test_the_equal_reliefs_named_for_comparison_have_the_minimum_of_what_is_stat
         "Pair I: for comparison, equal linear tip relief on both gears, 3 µm over 2 mm, gives 4 µm at 10 N m, 1 µm at "
         "5 N m, peak to peak."
     )
+    data.chart = replace(chart, lengths=lengths[:2], effective_error=effective[:, :2], peak_to_peak=peaks[:, 1:3])
+    (edge,) = _optimum_in_words(Seen(data, asked, "I"))
+    assert edge == (
+        "Pair I: equal tip relief with minimum A_e is at the edge of the chart (maximum length): extend "
+        "design.chart.lengths."
+    )
+    asked.said_by_relief = False
+    _, said = _optimum_in_words(Seen(data, asked, "I"))
+    assert said.endswith("peak to peak; it is at the edge of the chart (maximum length): extend design.chart.lengths.")
 
 
 def test_a_chart_marks_optimum_present_reliefs_and_the_worst_of_all_loads():

@@ -120,13 +120,14 @@ def test_the_answer_is_about_the_relief_to_grind_beside_no_relief():
 
     first, *rest = said("parabolic tip relief")
     assert first == (
-        "Pair I, parabolic tip relief: 0.8 µm at 260 N m, at most 7 µm (260 N m, pitch deviation 4 µm, "
-        "relief +0 %); without relief 3 µm and at most 8 µm."
+        "Pair I, parabolic tip relief: 0.8 µm at 260 N m without deviations; with those of design.robustness (130 to "
+        "260 N m, pitch deviation 0 to 4 µm, amount as designed) at most 7 µm (260 N m, pitch deviation 4 µm, amount "
+        "as designed). Without relief 3 and at most 8 µm."
     )
     assert rest == [
         (
             "Pair I, parabolic tip relief: more than without relief in 1 of 4 combinations, e.g. 1.6, not 1.5 µm "
-            "(130 N m, pitch deviation 0 µm, relief +0 %)."
+            "(130 N m, pitch deviation 0 µm, amount as designed)."
         ),
         "Pair I: linear tip relief gives the smallest maximum, 6 µm.",
     ]

@@ -188,6 +188,7 @@ def test_loads_that_count_and_by_what():
 @pytest.fixture
 def designed(monkeypatch):
     """Design with searches that find a gap by shape and loads; what is left grows with the first number."""
+    slopes: dict[str, float] = {}
     seen, points = [], Panels(np.arange(8) / 8.0, np.full(8, 0.125), 1.0, np.array([0.0, 1.0]))
     known = SimpleNamespace(lines=LINES)
     reader = tip_bench.TipReader(points, *(Trials(known, np.array([ONE_LOAD]), scale=s) for s in (1.0, 1.1, 1.4, 0.8)))
@@ -216,15 +217,22 @@ def designed(monkeypatch):
         off = tolerance.size * np.linspace(1.0, 1.5, trials.loads.size) * trials.tip_power
         return np.array([numbers + one for one in off])
 
+    def unrelieved(trials, pair, numbers, tolerance):
+        """Straight slopes by the size of the tolerances; none unless a test says so."""
+        assert (trials.tip_power, trials.scale) == (1.0, 1.1)
+        return np.full((trials.loads.size, 1), slopes.get("part", 0.0) * tolerance.size)
+
     monkeypatch.setattr(tip_design, "within_tolerances", within)
+    monkeypatch.setattr(tip_design, "unrelieved_within", unrelieved)
     monkeypatch.setattr(
         tip_design,
         "decisive_tolerances",
         lambda trials, pair, numbers, tolerance, most: (trials.tip_power, numbers, most),
     )
 
-    def made(task, present=False):
+    def made(task, present=False, **more):
         said = []
+        slopes.update(more)
         gaps = FlankGaps(EndRelief(1e-5, 0.3, 0.4, 1.0), driver_spacing=np.ones(3))
         monkeypatch.setattr(FlankGaps, "at", lambda gaps, pair, lines, loads: (gaps, lines, loads.tolist()))
         found = tip_design.design_tips(
@@ -271,6 +279,18 @@ def test_a_design_of_tips_for_one_load_has_nothing_besides_and_counts_that_load_
     # At the design load 1 - 0.4 + 0.8 * 1.25 / 4 is above 1, an eighth is not; at the largest load a quarter is enough.
     assert found.finer == 2
     assert found.decisive[0] == 2.0
+
+
+def test_relief_within_tolerances_is_compared_with_no_relief_of_the_same_tolerances(designed):
+    """It was compared with exact flanks: "smaller without relief", which are as far off when they are made."""
+    task = _task(LoadRange((100.0, 400.0)), grind=("linear",))
+    found, *_ = designed(task, part=1.0)
+    assert found.unrelieved_most == pytest.approx(2.0 * np.array(LOADS) * 1.4)
+    assert found.finer == 1  # 1 - 0.15 + 1.5 * 0.2 is below 1 + 0.2, but not for 0.4
+    assert designed(task, part=2.0)[0].finer == 0
+    slack, *_ = designed(task, part=-1.0)  # at least what exact flanks leave
+    assert slack.unrelieved_most == pytest.approx(2.0 * np.array(LOADS))
+    assert slack.finer == 2
 
 
 def test_a_present_relief_is_read_without_spacing_errors(designed, monkeypatch):

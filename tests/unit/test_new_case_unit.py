@@ -193,6 +193,11 @@ def test_stages_of_a_power_have_their_own_module_and_face_whole_centre_distances
         assert of_shifts == pytest.approx(scene.pairs[name].centre_distance, abs=1e-6)
 
 
+def test_a_title_has_a_space_between_number_and_unit():
+    drafts = (draft(Answers("relief", {"teeth": "25 67", "module": one}), "case") for one in ("2.75mm", "2.75 mm"))
+    assert {tomllib.loads(one)["title"] for one in drafts} == {"case: 25/67 teeth, module 2.75 mm"}
+
+
 def test_a_torque_with_a_given_module_has_whole_centre_distances_and_backlash_too():
     """They were those of no profile shift, without backlash."""
     given = {"teeth": "19 71", "torque": "200 N*m", "module": "3 mm", "helix_angle": "14 deg"}

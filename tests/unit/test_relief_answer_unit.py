@@ -71,6 +71,25 @@ def test_a_relief_for_one_load_that_leaves_as_much_as_none_is_not_said_to_leave_
     assert not [one for one in said_of_range(seen) if "only gives" in one]
 
 
+@pytest.mark.parametrize(
+    ("grade", "amounts", "wide"),
+    [
+        (5, (3e-6, 6e-6), ("3 µm (± 5 µm) on gear p is less than its tolerance; specify finer tolerances, ± 2.5 µm "
+                          "(f_Hα of class 3), a larger amount or no relief there.")),
+        (None, (4e-6, 3e-6), ("4 µm (± 5 µm) on gear p and 3 µm (± 5 µm) on gear w are less than their tolerances; "
+                             "specify finer tolerances, ± 2.5 µm, a larger amount or no relief there.")),
+        (2, (3e-6, 6e-6), ("3 µm (± 5 µm) on gear p is less than its tolerance; specify a larger amount or no relief "
+                          "there.")),
+        (5, (5e-6, 6e-6), ""),
+        (5, (1e-6, 6e-6), ""),  # below a quarter: cannot be ground
+    ],
+)  # fmt: skip
+def test_an_amount_below_its_tolerance_is_said_with_what_to_do(grade, amounts, wide):
+    """Nothing said it: ± 5 µm of 3 µm."""
+    found = [one for one in said((3.3, 4.5), (3.5, 5.0), grade=grade, amounts=amounts) if "specify" in one]
+    assert found == ([f"Pair I: {wide}"] if wide else [])
+
+
 def test_the_first_sentence_has_what_the_rounded_numbers_leave_where_that_is_known():
     seen = made((3.3, 4.5), (3.5, 5.0))
     best = seen.data.over_range["linear tip relief"]
@@ -113,7 +132,9 @@ def test_the_torques_named_of_a_spectrum_are_its_ends_and_those_of_the_longest_t
 
 def test_a_relief_far_below_its_tolerance_is_named():
     ordinary = said((3.3, 4.5), (3.5, 5.0))
-    assert said((3.3, 4.5), (3.5, 5.0), amounts=(1.26e-6, 6e-6))[1:] == ordinary[1:]
+    _, wide, *rest = said((3.3, 4.5), (3.5, 5.0), amounts=(1.26e-6, 6e-6))
+    assert "is less than its tolerance" in wide
+    assert rest == ordinary[1:]
     *_, faint, single = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
     assert single == ordinary[-1]
     assert faint == (

@@ -16,6 +16,7 @@ from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
+from fegear.results.relief.relief_chart import at_edges
 from fegear.results.relief.relief_over_face import misaligned
 
 RACK = BasicRack(1.0, 1.25, 0.38)
@@ -98,6 +99,25 @@ def test_a_chart_has_each_amount_length_and_load_at_its_place(monkeypatch):
     assert chart.effective_error == pytest.approx(mean * float(effective_error(fourier_series(points, wave, 12))))
     assert (chart.unit_length, chart.weights.tolist()) == (unit, [0.5, 1.0])
     np.testing.assert_array_equal(chart.loads, LOADS)
+
+
+@pytest.mark.parametrize(
+    ("place", "edges"),
+    [
+        ((1, 1), ""), ((0, 1), "minimum amount): extend design.chart.amounts"),
+        ((2, 1), "maximum amount): extend design.chart.amounts"),
+        ((1, 2), "maximum length): extend design.chart.lengths"),
+        ((2, 0), "maximum amount, minimum length): extend design.chart.amounts and design.chart.lengths"),
+    ],
+)  # fmt: skip
+def test_the_best_of_a_chart_at_its_edge_says_so(place, edges):
+    """It stood beside the optimum of the design as if it were one."""
+    values = np.ones((3, 3, 1))
+    values[(*place, 0)] = 0.5
+    found = at_edges(ReliefChart(np.arange(3.0), np.arange(3.0), np.ones(1), 1.0, values, values))
+    assert found == (f"is at the edge of the chart ({edges}" if edges else "")
+    one = ReliefChart(np.ones(1), np.ones(1), np.ones(1), 1.0, values[:1, :1], values[:1, :1])
+    assert at_edges(one) == ""  # a single amount is no edge
 
 
 def test_a_quick_way_is_straight_about_each_load(monkeypatch):

@@ -317,6 +317,19 @@ def test_the_arrow_of_a_change_does_not_break_over_two_lines():
     assert text == "<p>K<sub>Hβ</sub> 1.26\N{NO-BREAK SPACE}→ 1.13, x-&gt;y</p>"
 
 
+@pytest.mark.parametrize(
+    ("sentence", "spelled"),
+    [
+        ("at most 7 µm (390 N m, amount -20 %)", "at most 7 µm (390 N m, amount −20 %)"),
+        ("(-3.2 to -.5)", "(−3.2 to −.5)"),
+        ("set profile_shift = -0.2 or [-1, 2]", "set profile_shift = -0.2 or [-1, 2]"),  # pasted into a case
+        ("ISO 6336-1, 1e-3, 10-20, +- 5 and --over", "ISO 6336-1, 1e-3, 10-20, +- 5 and --over"),
+    ],
+)
+def test_a_sentence_has_minus_signs(sentence, spelled):
+    assert "".join(fragment([Paragraph(sentence)]).split("\n")) == f"<p>{spelled}</p>"
+
+
 def test_a_stress_intensity_has_the_root_of_a_metre():
     assert pretty_unit("MPa.m^(1/2)") == unit_said("MPa.m^(1/2)") == "MPa·√m"
     assert unit_said("N.m") == "N m"

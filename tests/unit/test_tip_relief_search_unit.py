@@ -20,13 +20,13 @@ from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.search import (
     _RULE,
     FOUND,
-    _apart,
     _are_like,
     _driver_deeper,
-    _even,
     _followed,
     _mirrored,
     _of_every_region,
+    apart,
+    even_bench,
     scan,
     search,
 )
@@ -62,7 +62,7 @@ def pair():
 @pytest.mark.parametrize("loads", [[LOAD], [0.4 * LOAD, LOAD]])
 def test_were_a_relief_to_start_at_a_change_of_pairs(pair, loads):
     """Both sides of the ridge on which classic reliefs lie: there it is left out, or goes on below its start."""
-    trials = Trials(_even(pair, 12), np.array(loads), 1.0, "peak_to_peak")
+    trials = Trials(even_bench(pair, 12), np.array(loads), 1.0, "peak_to_peak")
     p = np.random.default_rng(1).uniform([5e-6, 0.15, 5e-6, 0.15], [20e-6, 0.45, 20e-6, 0.45], (30, 4))
     removal, by_number = trials._removed(p)
     by_set = trials._by_set(removal)
@@ -101,7 +101,7 @@ def test_were_a_relief_to_start_at_a_change_of_pairs(pair, loads):
 
 def test_where_all_pairs_change_at_once_nothing_hands_over_and_places_beside_stay_as_they_are(pair):
     """Between two positions at which no pair bears at both there is no load sharing to follow; elsewhere there is."""
-    trials = Trials(_even(pair, 12), np.array([0.6 * LOAD]), 1.0, "peak_to_peak")
+    trials = Trials(even_bench(pair, 12), np.array([0.6 * LOAD]), 1.0, "peak_to_peak")
     p = np.array([[18e-6, 0.3, 25e-6, 0.4], [12e-6, 0.35, 9e-6, 0.25]])
     shared = trials._shared(trials._removed(p)[0]).loads
     loads = np.moveaxis(shared.reshape(*shared.shape[:2], 2, 1), 1, 2)
@@ -227,10 +227,10 @@ def test_candidates_that_lie_apart_and_who_found_them():
     )
     p = p * UNIT
     limits, values = limits_of([1.0, 1.0]), np.array([3.0, 2.0, 5.0, 4.0, 1.0])
-    assert _apart(p, values, limits, 9) == [4, 1, 3]
-    assert _apart(p, values, limits, 2) == [4, 1]
-    assert _apart(p, values, limits, 9, 1e-3) == [4, 1, 0, 3, 2]
-    assert _apart(p, values, limits, 9, 0.5) == [4, 1]
+    assert apart(p, values, limits, 9) == [4, 1, 3]
+    assert apart(p, values, limits, 2) == [4, 1]
+    assert apart(p, values, limits, 9, 1e-3) == [4, 1, 0, 3, 2]
+    assert apart(p, values, limits, 9, 0.5) == [4, 1]
     of = np.array([[True, False], [False, True], [True, False], [True, False], [False, True]])
     chosen, who = _followed(p, values, of, limits, 2)
     np.testing.assert_array_equal(chosen, p[[4, 1, 0]])  # 0 is the best of the first search
@@ -474,7 +474,7 @@ def test_compliances_of_which_no_key_is_made_are_searched_each_time(pair, tmp_pa
 
 
 def test_even_positions_stand_on_both_sides_of_every_change_and_weigh_a_pitch(pair):
-    made = _even(pair, 20)
+    made = even_bench(pair, 20)
     x, pitch, start = made.points.x, pair.pair.base_pitch, pair.pair.x_start
     end = start + np.mod(pair.pair.path_length, pitch)
     even = start + pitch * (np.arange(20) + 0.5) / 20
@@ -494,7 +494,7 @@ def test_a_whole_path_more_of_relief_is_worth_a_hundredth_of_the_mean_error():
 @pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
 def test_differences_of_one_side_lead_where_those_of_both_do(pair, monkeypatch, loads):
     """With fewer load sharings, where no kink is near."""
-    trials = Trials(_even(pair, 56), np.array(loads), 1.0, "peak_to_peak")
+    trials = Trials(even_bench(pair, 56), np.array(loads), 1.0, "peak_to_peak")
     p = np.random.default_rng(3).uniform([20e-6, 0.2, 20e-6, 0.2], [40e-6, 0.6, 40e-6, 0.6], (6, 4))
     limits = limits_of([200e-6, 200e-6])
     p, _, _ = descend(trials.exact, trials, p, limits, 0.15, 10)
@@ -513,7 +513,7 @@ def test_differences_of_one_side_lead_where_those_of_both_do(pair, monkeypatch, 
 @pytest.mark.parametrize(("metric", "power"), [("peak_to_peak", 1.0), ("peak_to_peak", 2.0), ("effective_error", 2.0)])
 def test_gradients_are_those_of_differences(pair, by, metric, power):
     """Of what is left at the worst of two loads; harmonics take no account of how bends grow, quick sharing of more."""
-    trials = Trials(_even(pair, 40), np.array([0.5 * LOAD, LOAD]), power, metric)
+    trials = Trials(even_bench(pair, 40), np.array([0.5 * LOAD, LOAD]), power, metric)
     p = np.random.default_rng(7).uniform([15e-6, 0.3, 15e-6, 0.3], [40e-6, 0.8, 40e-6, 0.8], (6, 4))
     tried = getattr(trials, by)(p)
     value, gradient = trials.tangent(tried, np.zeros_like(p))
@@ -539,7 +539,7 @@ def test_a_step_past_a_kink_is_tried_downward_too(pair):
             return Tried(found.seen, slope, found.low, found.low_slope)
 
     loads = np.array([LOAD])
-    smooth, kinked = (of(_even(pair, 24), loads, 1.0, "peak_to_peak") for of in (Trials, Kinked))
+    smooth, kinked = (of(even_bench(pair, 24), loads, 1.0, "peak_to_peak") for of in (Trials, Kinked))
     both = {}
     for label, trials in (("smooth", smooth), ("kinked", kinked)):
         (one,), count = clouds.tried_clouds(trials, PLACE[None], UNIT, np.zeros(1, dtype=bool))

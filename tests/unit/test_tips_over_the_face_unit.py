@@ -347,7 +347,7 @@ class Design:
         design = SimpleNamespace(
             task=task, points=POINTS, found=found, left=left, shapes=["linear", "parabolic"],
             most={"linear": np.array([5.0, 6.0, 7.0]), "parabolic": np.array([8.0, 9.0, 10.0])}, finer=2,
-            decisive=("a", None, "c"),
+            unrelieved_most=None, decisive=("a", None, "c"),
         )  # fmt: skip
         tolerances = (TipTolerance(1e-6, 1e-4, 0.0), TipTolerance(3e-6, 1e-4, 0.0))
         asked = TipReliefInputs(None, self.over, tolerances, False, "I", {"driver": "p", "driven": "w"})

@@ -168,7 +168,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
     teeth = "/".join(answers.numbers("teeth"))
     stages = staged(answers) if STAGES.get(answers.kind, 1) > 1 else None
     modules = [answers["module"]] if stages is None else [one["module"] for one in stages.stages]
-    *others, last = dict.fromkeys(modules)
+    *others, last = dict.fromkeys(re.sub(r"(?<=\d)(?=[A-Za-z]+$)", " ", one) for one in modules)
     module = f"{', '.join(others)} and {last}" if others else last
     head = _HEAD.format(
         about=kind.about[0].upper() + kind.about[1:],

@@ -13,7 +13,12 @@ from fegear.contact.wide.compliance import FlankCompliance
 from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.design.flanks.families import FamilyBest
-from fegear.design.flanks.flank_tolerance import FlankTolerance, decisive_tolerances, within_tolerances
+from fegear.design.flanks.flank_tolerance import (
+    FlankTolerance,
+    decisive_tolerances,
+    unrelieved_within,
+    within_tolerances,
+)
 from fegear.design.flanks.tip_bench import Read, TipReader, tip_reader, tip_trials, without_tips
 from fegear.design.flanks.tip_search import best_tips
 from fegear.design.load_range import LoadRange, proportions
@@ -93,9 +98,13 @@ class TipDesign(ReadOnlyArrays):
         Largest peak-to-peak value within the tolerances [m].
     finer : int or None
         By how many classes these would have to be finer for the shape to be ground to leave no more than no relief
-        under any load that it is designed for: 0 where they do, None where none does.
+        with profile slopes inside the same tolerances under any load that it is designed for: 0 where they do, None
+        where none does.
     decisive : tuple of Decisive or None
         Which tolerance decides `most` of the shape to be ground under each load.
+    unrelieved_most : ndarray, shape (L,), or None
+        Largest peak-to-peak value without relief, with profile slopes inside the tolerances [m]; None where the shape
+        to be ground leaves no more than no relief without deviations.
     """
 
     task: TipDesignTask
@@ -106,6 +115,7 @@ class TipDesign(ReadOnlyArrays):
     most: Mapping[Shape, Array]
     finer: int | None = 0
     decisive: tuple[Decisive | None, ...] = ()
+    unrelieved_most: Array | None = None
 
     @property
     def shapes(self) -> list[Shape]:
@@ -164,10 +174,7 @@ def design_tips(
         found[shape] = best_tips(trials.over(task.over or task.one_load, power, apart))
         numbers = found[shape].relief.numbers
         left[f"{shape} tip relief"] = of_shape.read(numbers)
-        worst = within_tolerances(of_shape.plain, pair, numbers, task.tolerance)
-        most[shape] = np.array([
-            np.ptp(of_shape.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)
-        ])  # fmt: skip
+        most[shape] = _left(of_shape, within_tolerances(of_shape.plain, pair, numbers, task.tolerance))
         if task.over is not None:
             single[shape] = best_tips(trials.over(task.one_load, power, apart))
             left[f"{shape} tip relief for one load"] = of_shape.read(single[shape].relief.numbers)
@@ -175,20 +182,46 @@ def design_tips(
     design = TipDesign(task, reader.points, found, single, left, most)
     shape = design.shapes[0]
     of_shape, numbers = reader.shaped(POWERS[shape]), found[shape].relief.numbers
+    design = replace(design, unrelieved_most=_unrelieved_most(reader, pair, design, shape))
     return replace(
         design, finer=_classes_finer(of_shape, pair, design, shape),
         decisive=decisive_tolerances(of_shape.plain, pair, numbers, task.tolerance, most[shape]),
     )  # fmt: skip
 
 
+def _left(reader: TipReader, numbers: Array) -> Array:
+    """What the numbers that are the worst under each load leave under it, shape (L,) [m]."""
+    return np.array([np.ptp(reader.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(numbers)])
+
+
+def _unrelieved(
+    reader: TipReader, pair: GearPair, design: TipDesign, shape: Shape, tolerance: FlankTolerance
+) -> Array:  # fmt: skip
+    """What no relief leaves at most with profile slopes inside tolerances, shape (L,) [m]."""
+    straight, numbers = reader.shaped(POWERS["linear"]), design.found[shape].relief.numbers
+    most = _left(straight, unrelieved_within(straight.plain, pair, numbers, tolerance))
+    return np.maximum(most, design.left["no relief"].peak_to_peak)
+
+
+def _unrelieved_most(reader: TipReader, pair: GearPair, design: TipDesign, shape: Shape) -> Array | None:
+    """What no relief leaves at most within the same tolerances; None where even without deviations it leaves more."""
+    counts = design.task.counts
+    if not np.any(design.most[shape][counts] > design.left["no relief"].peak_to_peak[counts]):
+        return None
+    return _unrelieved(reader, pair, design, shape, design.task.tolerance)
+
+
 def _classes_finer(reader: TipReader, pair: GearPair, design: TipDesign, shape: Shape) -> int | None:
     """By how many classes tolerances would have to be finer for a shape to pay under every load that counts."""
     task, numbers = design.task, design.found[shape].relief.numbers
-    counts, none = task.counts, design.left["no relief"].peak_to_peak
+    if design.unrelieved_most is None:
+        return 0
 
-    def finer(classes: int) -> Array:
-        worst = within_tolerances(reader.plain, pair, numbers, task.tolerance.finer(classes))
-        left = [np.ptp(reader.dense.of_numbers(one).te[0, :, i]) for i, one in enumerate(worst)]
-        return np.array(left)[counts]
+    def share(classes: int) -> Array:
+        """Of what no relief leaves within tolerances that are so many classes finer."""
+        tolerance = task.tolerance.finer(classes)
+        most = _left(reader, within_tolerances(reader.plain, pair, numbers, tolerance))
+        return np.asarray((most / _unrelieved(reader, pair, design, shape, tolerance))[task.counts])
 
-    return classes_finer(design.most[shape][counts], none[counts], finer, task.tolerance.finest)
+    as_given = (design.most[shape] / design.unrelieved_most)[task.counts]
+    return classes_finer(as_given, np.ones(as_given.size), share, task.tolerance.finest)

@@ -15,8 +15,12 @@ from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import Metric
 from fegear.design.load_range import LoadRange, proportions
+from fegear.design.tip_relief.relief_limits import ReliefLimits
 from fegear.design.tip_relief.search import FOUND, SHARE, search
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
+from fegear.design.tip_relief.tolerated_search import TOLERATED, tolerated_search
 from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 
 #: Reliefs and what they leave are found again within this of themselves whatever the last digits of inputs are.
@@ -62,6 +66,8 @@ class TipReliefPair:
         How far what is left by the search's own roll positions is from `objective` [m].
     seconds : float
         Processor time of the search.
+    undeviated : tuple of EndRelief or None
+        What leaves the least as drawn, where these leave the least at the worst place within their tolerances.
     """
 
     driver: EndRelief
@@ -82,6 +88,7 @@ class TipReliefPair:
     least_error: float
     objective_error: float
     seconds: float
+    undeviated: tuple[EndRelief, EndRelief] | None = None
 
     @property
     def removal_error(self) -> float:
@@ -105,6 +112,7 @@ def optimise_tip_relief(
     weights: ArrayLike | None = None,
     *,
     banded: bool = True,
+    limits: ReliefLimits | None = None,
     cache: SolutionCache | None = None,
 ) -> TipReliefPair:
     """Find amount and length of tip relief on both gears for the least excitation over a range of loads.
@@ -124,6 +132,8 @@ def optimise_tip_relief(
         What each load counts, over the largest of them; one of weight zero does not count. All the same by default.
     banded : bool
         Whether to look for the band of equally good reliefs; without it bands are the reliefs, errors nan.
+    limits : ReliefLimits, optional
+        Of amounts and lengths; those of the teeth by default.
     cache : SolutionCache, optional
         Where searches are recalled from and kept.
 
@@ -139,11 +149,9 @@ def optimise_tip_relief(
         raise InputError("design.loads", f"{w.min()} N", "must be positive and finite")
     power = 1.0 if shape == "linear" else 2.0
     weight, counts = _weights(weights, w)
-    plain = replace(
-        engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED,
-        driver_spacing=np.empty(0), driven_spacing=np.empty(0),
-    )  # fmt: skip
-    asked = plain, w[counts], power, metric, weight, *(() if banded else (False,))
+    plain = _plain(engagement)
+    further = () if limits is None and banded else (banded,) if limits is None else (banded, limits)
+    asked = plain, w[counts], power, metric, weight, *further
     found = (cache or SolutionCache()).call_kept_if_known(FOUND, search, *asked)  # compliances may be functions
     pair = engagement.pair
     gears = pair.driver, pair.driven
@@ -158,13 +166,63 @@ def optimise_tip_relief(
     # More may be left than the search saw, or less: what is allowed moves by as much; over the whole band it is SHARE.
     off = max(abs(objective - found.left), REPEATED * objective)
     per_left = np.abs(found.band - found.best).max(axis=0) / max(SHARE * found.least, _NOTHING)
-    by_roll = np.array([v for gear in gears for v in (1.0, pair.path_length / gear.base_radius)])
+    by_roll = _by_roll(pair)
     error = np.maximum(off * per_left, REPEATED * np.abs(found.best)) * by_roll
     return TipReliefPair(
         tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
         driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
         max(found.spread, off), off, found.seconds,
     )  # fmt: skip
+
+
+def tolerated(
+    engagement: Engagement, load: float | LoadRange, shape: Shape, tolerances: tuple[TipTolerance, TipTolerance], *,
+    limits: ReliefLimits | None = None, cache: SolutionCache | None = None,
+) -> TipReliefPair:  # fmt: skip
+    """Find the tip reliefs whose largest peak-to-peak transmission error within their tolerances is least.
+
+    Parameters
+    ----------
+    engagement, load, shape, limits, cache
+        As those of `grindable`.
+    tolerances : tuple of TipTolerance
+        Of driver and driven gear.
+    """
+    over = load if isinstance(load, LoadRange) else LoadRange((load,))
+    w, power, pair = np.array(over.loads), 1.0 if shape == "linear" else 2.0, engagement.pair
+    weight, counts = _weights(over.weights, w)
+    plain = _plain(engagement)
+    asked = plain, w[counts], power, tolerances, weight, limits
+    found = (cache or SolutionCache()).call_kept_if_known(TOLERATED, tolerated_search, *asked)
+    tips, drawn = (
+        tuple(
+            relief_over_path(gear, pair.path_length, p[2 * i], p[2 * i + 1], power)
+            for i, gear in enumerate((pair.driver, pair.driven))
+        )
+        for p in (found.best, found.undeviated)
+    )
+    after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
+    objective = float((after["peak_to_peak"][counts] * proportions(w[counts], weight)).max())
+    error = np.maximum(found.error, REPEATED * np.abs(found.best)) * _by_roll(pair)
+    off = max(found.spread, REPEATED * objective)
+    return TipReliefPair(
+        tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], _left(plain, w)["peak_to_peak"],
+        objective, objective, (tips[0], tips[0]), (tips[1], tips[1]), error, np.stack([error, error]),
+        found.candidates, found.evaluations, found.starts, off, off, found.seconds, (drawn[0], drawn[1]),
+    )  # fmt: skip
+
+
+def _plain(engagement: Engagement) -> Engagement:
+    """The pair without reliefs and spacing errors."""
+    return replace(
+        engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED,
+        driver_spacing=np.empty(0), driven_spacing=np.empty(0),
+    )  # fmt: skip
+
+
+def _by_roll(pair: GearPair) -> Array:
+    """What errors of the four numbers are of amounts [m] and roll angles [rad]."""
+    return np.array([v for gear in (pair.driver, pair.driven) for v in (1.0, pair.path_length / gear.base_radius)])
 
 
 def _weights(weights: ArrayLike | None, loads: Array) -> tuple[Array | None, Mask]:
@@ -198,7 +256,7 @@ def _left(engagement: Engagement, loads: Array) -> dict[str, Array]:
 
 def grindable(
     engagement: Engagement, load: float | LoadRange, shape: Shape = "linear", metric: Metric = "peak_to_peak", *,
-    banded: bool = True, cache: SolutionCache | None = None,
+    banded: bool = True, limits: ReliefLimits | None = None, cache: SolutionCache | None = None,
 ) -> TipReliefPair:  # fmt: skip
     """Find the straight or parabolic tip reliefs that leave the least error at the design load, or over a range.
 
@@ -212,8 +270,12 @@ def grindable(
     metric : {"peak_to_peak", "effective_error"}
     banded : bool
         Whether to look for the band of equally good reliefs.
+    limits : ReliefLimits, optional
+        Of amounts and lengths.
     cache : SolutionCache, optional
         Where searches are recalled from and kept.
     """
     over = load if isinstance(load, LoadRange) else LoadRange((load,))
-    return optimise_tip_relief(engagement, over.loads, shape, metric, over.weights, banded=banded, cache=cache)
+    return optimise_tip_relief(
+        engagement, over.loads, shape, metric, over.weights, banded=banded, limits=limits, cache=cache
+    )

@@ -31,6 +31,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.relief_bench import Bench, bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.ground import refine
+from fegear.design.tip_relief.relief_limits import ReliefLimits
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.plausible_flanks import deepest_relief
@@ -108,8 +109,13 @@ def scan(trials: Trials, limits: Limits, *, like: bool = False) -> tuple[Floats,
     t = np.linspace(0.0, 1.0, side)
     axes = []
     for gear in (0, 1):
-        top = min(4.0 * limits.unit[0], limits.high[2 * gear])
-        axes += [top * (0.55 * t + 0.45 * t**3), np.maximum(0.6 * t + 0.4 * t**3, 0.03)]
+        top, longest = min(4.0 * limits.unit[0], limits.high[2 * gear]), limits.high[2 * gear + 1]
+        if top == 0.0:
+            axes += [np.zeros(1), np.full(1, longest)]
+            continue
+        axes += [
+            top * (0.55 * t + 0.45 * t**3), np.minimum(np.maximum(longest * (0.6 * t + 0.4 * t**3), 0.03), longest)
+        ]  # fmt: skip
     single = [np.stack(np.meshgrid(*axes[2 * g : 2 * g + 2], indexing="ij"), axis=-1).reshape(-1, 2) for g in (0, 1)]
     count = trials.loads.size
     parts = [
@@ -132,7 +138,7 @@ def scan(trials: Trials, limits: Limits, *, like: bool = False) -> tuple[Floats,
     flat = (np.where(np.tri(values.shape[0], dtype=bool), values, np.inf) if like else values).ravel()
     best = np.argpartition(flat, min(_BEST, flat.size - 1))[:_BEST]
     best = best[np.argsort(flat[best], kind="stable")]
-    places = np.stack(np.unravel_index(best, (side,) * 4), axis=1)
+    places = np.stack(np.unravel_index(best, [axis.size for axis in axes]), axis=1)
     open_ = np.ones(best.size, dtype=bool)
     starts: list[Index] = []
     while open_.any() and len(starts) < _STARTS:
@@ -193,7 +199,7 @@ FOUND: Codec[Found] = Codec(lambda found: pack(asdict(found)), _read)
 
 def search(
     engagement: Engagement, loads: Floats, power: float, metric: str, weights: Floats | None = None,
-    banded: bool = True,
+    banded: bool = True, within: ReliefLimits | None = None,
 ) -> Found:  # fmt: skip
     """Find the tip reliefs of both gears that leave the least over all amounts and lengths.
 
@@ -211,20 +217,17 @@ def search(
         What each load counts, positive; all the same by default.
     banded : bool
         Whether to look for the ends of the band of equally good reliefs, a third of the time.
+    within : ReliefLimits, optional
+        Limits besides those of the teeth.
     """
     begun, pair = time.process_time(), engagement.pair
     coarse = Trials(bench(engagement, 5, 6), loads, power, metric, weights)
     # Several loads and many sets of pairs cost as much as many candidates: fewer of these keep the time.
     work = sum(s.base.size for s in coarse.quick.sets) / coarse.bench.points.x.size
     thrift = 1.0 if work < _WORK else max(math.sqrt(2.6 / work), 0.4)
-    scale = coarse.mean()
-    deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
-    top = [min(_DEEPEST * scale, d) for d in deepest]
-    limits = Limits(
-        np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]),
-        np.array([scale, 1.0, scale, 1.0]),
-    )  # fmt: skip
-    like = _are_like(pair, engagement.compliance)
+    scale, within = coarse.mean(), within or ReliefLimits()
+    limits = box(pair, scale, within)
+    like = within.alike and _are_like(pair, engagement.compliance)
     p, candidates = scan(coarse, limits, like=like)
     starts, solved = p.shape[0], 0
     values, of = np.arange(float(starts)), np.eye(2, dtype=bool)[np.arange(starts) % 2]
@@ -238,7 +241,7 @@ def search(
         solved += count if step else 0
         valleys = valleys if step else p[values < _AGREED * values.min() + 1e-6 * scale]
     p, valleys = (_driver_deeper(p), _driver_deeper(valleys)) if like else (p, valleys)
-    deep = [i for i in _apart(p, values, limits, _GROUNDS) if values[i] < _HOPELESS * values.min()]
+    deep = [i for i in apart(p, values, limits, _GROUNDS) if values[i] < _HOPELESS * values.min()]
     deep += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in deep]
     grounds, lefts, _, count = refine(trials, p[deep], limits)
     solved += count
@@ -253,12 +256,32 @@ def search(
     )  # fmt: skip
 
 
+def box(pair: GearPair, scale: float, within: ReliefLimits) -> Limits:
+    """Amounts and lengths that are tried.
+
+    Parameters
+    ----------
+    pair : GearPair
+    scale : float
+        Mean transmission error of the unmodified pair [m].
+    within : ReliefLimits
+        Limits besides those of the teeth.
+    """
+    deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
+    top = [min(_DEEPEST * scale, d, most) for d, most in zip(deepest, within.amounts, strict=True)]
+    longest = [min(LONGEST, most) for most in within.lengths]
+    return Limits(
+        np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], longest[0], top[1], longest[1]]),
+        np.array([scale, 1.0, scale, 1.0]),
+    )  # fmt: skip
+
+
 def _followed(p: Floats, values: Floats, of: Mask, limits: Limits, most: int) -> tuple[Floats, Mask]:
     """The best of candidates that lie apart, and of which of both searches each is: of both, where both came to it.
 
     Of each search the best is among them.
     """
-    chosen = _apart(p, values, limits, most)
+    chosen = apart(p, values, limits, most)
     chosen += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in chosen]
     beside = (np.abs(p[chosen][:, None] - p) <= _SAME * limits.unit).all(axis=2)
     return p[chosen], np.asarray(beside @ of)
@@ -287,11 +310,11 @@ def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
     return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
 
 
-def _apart(p: Floats, values: Floats, limits: Limits, most: int, apart: float = _SAME) -> list[int]:
+def apart(p: Floats, values: Floats, limits: Limits, most: int, distance: float = _SAME) -> list[int]:
     """Which of some candidates are the best that lie apart, best first."""
     found: list[int] = []
     for i in np.argsort(values, kind="stable"):
-        if all((np.abs(p[i] - p[j]) > apart * limits.unit).any() for j in found):
+        if all((np.abs(p[i] - p[j]) > distance * limits.unit).any() for j in found):
             found.append(int(i))
         if len(found) == most:
             break
@@ -340,8 +363,8 @@ def _among_equals(
     """
     unit = limits.unit
     starts = np.concatenate([
-        some[_apart(some, some / unit @ _RULE, limits, most, apart)]
-        for some, most, apart in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _VALLEY))
+        some[apart(some, some / unit @ _RULE, limits, most, distance)]
+        for some, most, distance in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _VALLEY))
     ])  # fmt: skip
     aim = Aim(np.tile(_RULE, (starts.shape[0], 1)), allowed)
     p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 7, aim)
@@ -350,7 +373,7 @@ def _among_equals(
     each = [np.concatenate([p[i::2][held[i::2]], equals[i::2]]) for i in (0, 1)]
     each = [_driver_deeper(some) if like else some for some in each]
     known = np.concatenate(each)
-    fewest = known[_apart(known, known / unit @ _RULE, limits, _CHOSEN)]
+    fewest = known[apart(known, known / unit @ _RULE, limits, _CHOSEN)]
     if not banded:
         p, left, _, count = refine(trials, fewest, limits, Aim(np.tile(_RULE, (fewest.shape[0], 1)), allowed))
         p, left, best, more = _fewest(trials, p, left, allowed, limits, like)
@@ -374,8 +397,8 @@ def _among_equals(
     each = [np.concatenate([one, p[[best]]]) for one in ends]
     each = [np.concatenate([some, _mirrored(some)]) if like else some for some in each]
     low, high = (np.array([of(some, axis=0) for some in each]) for of in (np.min, np.max))
-    apart = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
-    error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, apart)
+    differ = np.array([np.ptp(low, axis=0), np.ptp(high, axis=0)])
+    error = np.maximum(np.maximum(doubt, _mirrored(doubt)) if like else doubt, differ)
     return _Choice(p[best], float(left[best]), np.array([low.min(axis=0), high.max(axis=0)]), error), solved
 
 
@@ -449,11 +472,11 @@ def _ends_of(
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:
     """Set up at even positions, or at Gauss points, fewer of these for several loads."""
     if positions:
-        return _even(engagement, positions)
+        return even_bench(engagement, positions)
     return bench(engagement) if loads == 1 else bench(engagement, 8, 10)
 
 
-def _even(engagement: Engagement, positions: int) -> Bench:
+def even_bench(engagement: Engagement, positions: int) -> Bench:
     """Set up at even roll positions, at both sides of every change of pairs, and closer by these.
 
     Where a relief starts beside such a change, one side of its kink is short.

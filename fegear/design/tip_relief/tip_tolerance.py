@@ -19,7 +19,7 @@ from fegear.geometry.relief import EndRelief
 #: Length of a tip relief without a tolerance of its own may be off by this part of it.
 OF_LENGTH = 0.1
 #: The shortest relief that is left, over the one of the drawing.
-_SHORTEST = 0.02
+SHORTEST_LEFT = 0.02
 #: Amounts below this are none [m].
 NOTHING = 1e-9
 #: What is left of the tolerance that is tightened: two classes of ISO 1328.
@@ -100,7 +100,7 @@ class TipTolerance:
     def off(self, gear: Gear, tip: EndRelief, amount: int, length: int) -> EndRelief:
         """The relief with amount and length at an end of their tolerances: -1, 0 or 1 each."""
         whole = tip.end - tip.start
-        longer = max(whole + length * self.length_of(gear, tip) / gear.base_radius, _SHORTEST * whole)
+        longer = max(whole + length * self.length_of(gear, tip) / gear.base_radius, SHORTEST_LEFT * whole)
         start = tip.end - longer
         if (
             tip.end > 0.0

@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 
 #: Files in archives carry this date, so that equal content is equal bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
+#: The sign of a negative number in a sentence; of `key = -0.2` it is that of the case.
+_NEGATIVE = re.compile(r"(?<![^\s(])(?<!= )-(?=\.?\d)")
 
 
 def begin_page() -> None:
@@ -167,9 +169,11 @@ def _symbols(text: str) -> list[tuple[str, str]]:
 def _known_symbols(text: str) -> list[tuple[str, str]]:
     """The same of sentences and heads, for symbols of the trade only: S_H, K_Hβ, C_β; names of gears stay.
 
-    The arrow of a change (1.26 -> 1.13) is one letter: a line may not end within it, nor before it.
+    The arrow of a change (1.26 -> 1.13) is one letter: a line may not end within it, nor before it. The hyphen before a
+    negative number is a minus sign, but for that of a key's value, which may be pasted into a case.
     """
-    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*|yield)", text.replace(" -> ", "\N{NO-BREAK SPACE}→ "))
+    text = _NEGATIVE.sub("−", text.replace(" -> ", "\N{NO-BREAK SPACE}→ "))
+    parts = re.split(r"(?<=\b[A-Zσ])_([A-Zαβ][A-Za-zαβ]*|yield)", text)
     return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
 
 

@@ -171,6 +171,7 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
         decides = decisive_words(best.peak_to_peak[i], best.most[i], best.torque[i], best.decisive[i], gears)
         if decides:
             yield f"Pair {seen.name}: {decides}."
+    yield from _said_of_wide_tolerances(seen, rows)
     weights = ", or set weights that emphasise the larger torques" if len(every) > 1 and best.share is None else ""
     for row in rows:
         if row.is_faint:
@@ -180,6 +181,31 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
                 f"Pair {seen.name}: {amount} µm on gear {row.gear} is below a quarter of its tolerance "
                 f"(± {allowed_off} µm) and cannot be ground; omit it{weights}."
             )
+
+
+def _said_of_wide_tolerances(seen: Seen, rows: Sequence[Grinding]) -> Iterator[str]:
+    """Which amounts are smaller than their tolerances, and what to do; of faint ones another sentence says it."""
+    allowed = dict(zip(MEMBERS, seen.asked.tolerances, strict=True))
+    small = [row for row in rows if not row.is_faint and abs(row.amount) < allowed[row.member].amount]
+    if not small:
+        return
+
+    def fits(classes: int) -> bool:
+        return all(allowed[row.member].finer(classes).amount <= abs(row.amount) for row in small)
+
+    finest = min(allowed[row.member].finest for row in small)
+    classes = next((one for one in range(1, finest + 1) if fits(one)), None)
+    sizes = " and ".join(
+        f"{microns(row.amount)} µm (± {microns(allowed[row.member].amount)} µm) on gear {row.gear}" for row in small
+    )
+    finer = []
+    if classes is not None:
+        tighter = [allowed[row.member].finer(classes) for row in small]
+        words = [f"± {microns(one.amount)} µm" + (f" ({one.origin})" if one.origin else "") for one in tighter]
+        finer = [f"finer tolerances, {' and '.join(dict.fromkeys(words))}"]
+    remedies = [*finer, "a larger amount", "no relief there"]
+    verb = "is less than its tolerance" if len(small) == 1 else "are less than their tolerances"
+    yield f"Pair {seen.name}: {sizes} {verb}; specify {', '.join(remedies[:-1])} or {remedies[-1]}."
 
 
 def said_of_undefined(seen: Seen, rows: Sequence[Grinding]) -> Iterator[str]:

@@ -11,6 +11,7 @@ from fegear.case.built.design_range import design_range
 from fegear.case.built.members import gear_name
 from fegear.case.built.neglected_effects import neglected_in_design
 from fegear.case.built.pair_spec import pair_spec
+from fegear.case.built.relief_limits import relief_limits
 from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.case.design import DesignPart
 from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
@@ -72,6 +73,12 @@ def _check(scene: Scene, name: str) -> None:
         rule = "is below 1: relief design requires at least 1"
         raise InputError(f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", rule, "increase the contact ratio")
     refuse_beyond_path(_loading(part, pair), pair)
+    relief_limits(part, pair)
+    if part.metric == "peak_to_peak_max" and part.film is not None:
+        raise InputError(
+            "design.metric", '"peak_to_peak_max"', "requires tolerances, which are not evaluated with an oil film",
+            'remove design.film or set metric = "peak_to_peak"',
+        )  # fmt: skip
     design_range(scene, name)
     for member in MEMBERS:
         ends = [float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)]
@@ -107,9 +114,10 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     film = None if part.film is None else OilFilm(tuple(part.film.x), tuple(part.film.thickness))
     allowed = None if limits is None else Allowed(limits.root_tension, limits.hertz_pressure, load)
     task = DesignTask(
-        _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.metric,
+        _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.measure,
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
-        inputs.over, inputs.tolerances,
+        inputs.over, inputs.tolerances, relief_limits(part, pair.engagement.pair),
+        part.metric == "peak_to_peak_max",
     )  # fmt: skip
     try:
         design = design_relief(pair.engagement, pair.shifted, task, work.progress, work.cache)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.design.load_range import proportions
 from fegear.engine.sheet.answer import Answer
+from fegear.geometry.pair import MEMBERS
 from fegear.results.relief.answer_numbers import microns, torque_words
 from fegear.results.relief.grinding_words import said_at, said_of_range
 from fegear.results.relief.interference_words import said_of_interference
@@ -15,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.engine.sheet.seen import Seen
+    from fegear.results.relief.relief_over_range import LeftOverRange
 
 #: Loads of the case between these shares of the design load count as half of it.
 _HALF = (0.3, 0.7)
@@ -36,6 +40,42 @@ def _grind(seen: Seen) -> Iterator[str]:
     elif _best(seen):
         at = (seen.data.at_design_load,)
         yield from said_at(seen, at, at)
+
+
+def _minimised(seen: Seen) -> Iterator[str]:
+    """That the maximum within the tolerances is minimised, and what the minimum as drawn would leave at most."""
+    design, shape = seen.data.data.design, _best(seen)
+    if design.undeviated is None or not shape:
+        return
+    best: LeftOverRange = seen.data.over_range[f"{shape} tip relief"]
+    part = proportions(best.load, best.weight)
+    i = int(np.argmax(part * design.undeviated[:, 1]))
+    drawn, most = design.undeviated[i]
+    own = "" if best.most is None else f", not {microns(best.most[i])} µm"
+    yield (
+        f"Pair {seen.name}: minimised: maximum within the tolerances (design.metric). Tip relief with the minimum as "
+        f"drawn: {microns(drawn)} µm at {torque_words(best.torque[i])}, within tolerances at most {microns(most)}{own}."
+    )
+
+
+def _at_limits(seen: Seen) -> Iterator[str]:
+    """Which numbers of the relief to grind lie at limits of the case: less may remain beyond them."""
+    design, shape = seen.data.data.design, _best(seen)
+    limits, pair = design.task.limits, seen.data.data.pair.pair
+    if not shape or limits is None:
+        return
+    found = []
+    for number, member in enumerate(MEMBERS):
+        gear, tip, name = pair.gear(member), getattr(design.ground[shape], member), seen.asked.gears[member]
+        length = gear.base_radius * (tip.end - tip.start) / pair.path_length
+        amount_at, length_at = limits.active(number, tip.amount, length)
+        if amount_at:
+            found.append(f"amount on gear {name} ({microns(tip.amount)} µm)")
+        if length_at:
+            diameter = 2.0 * gear.base_radius * math.hypot(1.0, tip.start)
+            found.append(f"start on gear {name} (d {diameter * 1e3:.1f} mm)")
+    if found:
+        yield f"Pair {seen.name}: at design.limits: {', '.join(found)}; less may remain with wider limits."
 
 
 def _at_half_load(seen: Seen) -> Iterator[str]:
@@ -71,4 +111,4 @@ def _figure(seen: Seen) -> str:
     return f"relief_over_torque_{seen.name}" if seen.data.for_range else f"relief_{seen.name}"
 
 
-RELIEF_ANSWER = Answer(_interference, _grind, _at_half_load, _exact, figure=_figure)
+RELIEF_ANSWER = Answer(_interference, _grind, _minimised, _at_limits, _at_half_load, _exact, figure=_figure)

@@ -11,6 +11,8 @@ import numpy as np
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.case.built.design_range import design_range
+from fegear.case.built.relief_limits import relief_limits
+from fegear.case.built.tip_tolerances import tip_tolerances
 from fegear.design.load_range import NEAR
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.items import Mark
@@ -41,6 +43,8 @@ if TYPE_CHECKING:
     from fegear.design.flanks.families import FamilyBest
     from fegear.design.load_range import LoadRange
     from fegear.design.tip_relief.grindable import TipReliefPair
+    from fegear.design.tip_relief.relief_limits import ReliefLimits
+    from fegear.design.tip_relief.tip_tolerance import TipTolerance
     from fegear.engine.sheet.seen import Seen
     from fegear.geometry.relief import Relief
     from fegear.results.relief.relief_over_face_data import Tip
@@ -222,6 +226,10 @@ class ChartInputs:
     metric : {"peak_to_peak", "effective_error"}
     over : LoadRange or None
         Loads of the chart where it has none of its own.
+    limits : ReliefLimits or None
+        Of the optimum of each gear on its own.
+    tolerances : tuple of TipTolerance or None
+        Within which its maximum is least; None where it is least as drawn.
     name : str
         Of the pair.
     said_by_relief : bool
@@ -231,6 +239,8 @@ class ChartInputs:
     part: ChartPart
     metric: Metric
     over: LoadRange | None
+    limits: ReliefLimits | None
+    tolerances: tuple[TipTolerance, TipTolerance] | None
     name: str = field(compare=False)
     said_by_relief: bool = field(default=False, compare=False)
 
@@ -240,13 +250,15 @@ def chart_inputs(scene: Scene, name: str) -> ChartInputs:
     part = design_part(scene)
     over = None if part.chart.loads else design_range(scene, name)
     said = over is not None and part.chart.shape in part.grind
-    return ChartInputs(part.chart, part.metric, over, name, said)
+    limits = relief_limits(part, scene.pairs[name]) if name in scene.plane_pairs else None
+    tolerances = tip_tolerances(scene, name) if part.metric == "peak_to_peak_max" else None
+    return ChartInputs(part.chart, part.measure, over, limits, tolerances, name, said)
 
 
 def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
     from fegear.design.charts import relief_chart, unit_amount
     from fegear.design.load_range import LoadRange
-    from fegear.design.tip_relief.grindable import grindable
+    from fegear.design.tip_relief.grindable import grindable, tolerated
 
     pair: LoadedPair
     (pair,) = upstream.values()
@@ -261,7 +273,10 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     work.progress(0.3)
     finer = relief_chart(e, *chart.finer(), loads, asked.shape, over.weights)
     work.progress(0.5)
-    best = grindable(e, over, asked.shape, inputs.metric, cache=work.cache)
+    if inputs.tolerances is None:
+        best = grindable(e, over, asked.shape, inputs.metric, limits=inputs.limits, cache=work.cache)
+    else:
+        best = tolerated(e, over, asked.shape, inputs.tolerances, limits=inputs.limits, cache=work.cache)
     return ReliefChartData(pair, chart, best, finer, delta)
 
 
@@ -270,6 +285,24 @@ def unit_in_words(seen: Seen) -> str:
     from fegear.design.charts import meaning_of_unit
 
     return meaning_of_unit(seen.data.pair.pair)
+
+
+def at_edges(chart: ReliefChart, metric: Metric = "effective_error") -> str:
+    """That the best of a chart lies at an edge of it, beyond which less may be left, and what to do; empty inside."""
+    axes = {"amounts": chart.amounts, "lengths": chart.lengths}
+    edges = [
+        f"{'maximum' if at else 'minimum'} {name.removesuffix('s')}"
+        for at, (name, axis) in zip(chart.best_point(metric), axes.items(), strict=True)
+        if axis.size > 1 and at in (0, axis.size - 1)
+    ]
+    keys = [f"design.chart.{name}" for name in axes if any(name.startswith(edge.split()[1]) for edge in edges)]
+    return f"is at the edge of the chart ({', '.join(edges)}): extend {' and '.join(keys)}" if edges else ""
+
+
+def _best_meaning(seen: Seen) -> str:
+    """How the single best of a chart is found, and whether it is at the edge."""
+    edges = at_edges(seen.data.chart)
+    return f"{_BEST}; {edges}" if edges else _BEST
 
 
 def _optimum_in_words(seen: Seen) -> Iterator[str]:
@@ -285,6 +318,9 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
             "remain at the maximum load)."
         )
     if seen.asked.said_by_relief:  # its answer states better ones, one for each gear
+        edges = at_edges(chart)
+        if edges:
+            yield f"Pair {seen.name}: equal tip relief with minimum A_e {edges}."
         return
     i, j = chart.best_point("peak_to_peak")  # what the sentence states, and the design minimises
     length = figures(chart.lengths[j] * chart.unit_length * 1e3, 2)
@@ -293,9 +329,11 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
         f"{microns(chart.peak_to_peak[i, j, k])} µm at {torque_words(torque[k])}"
         for k in dict.fromkeys((int(chart.loads.argmax()), int(chart.loads.argmin())))
     )
+    edges = at_edges(chart, "peak_to_peak")
+    edge = f"; it {edges}" if edges else ""
     yield (
         f"Pair {seen.name}: for comparison, equal {seen.asked.part.shape} tip relief on both gears, "
-        f"{microns(chart.amounts[i])} µm over {length} mm, gives {left}, peak to peak."
+        f"{microns(chart.amounts[i])} µm over {length} mm, gives {left}, peak to peak{edge}."
     )
 
 
@@ -314,8 +352,10 @@ CHART_SHEET = Sheet(
     values=(
         Number("delta", meaning="{d.unit_words}"),
         Number("unit_length", exact, "chart"),
-        Number("amounts", of="chart", si=lambda seen: seen.data.chart.best()[0], name="best_amount", meaning=_BEST),
-        Number("lengths", of="chart", si=lambda seen: seen.data.chart.best()[1], name="best_length", meaning=_BEST),
+        Number("amounts", of="chart", si=lambda seen: seen.data.chart.best()[0], name="best_amount",
+               meaning=_best_meaning),
+        Number("lengths", of="chart", si=lambda seen: seen.data.chart.best()[1], name="best_length",
+               meaning=_best_meaning),
         tip_numbers("tips", "optimum_"),
         Number(
             "{asked.metric}", of="chart", si=lambda seen: seen.data.left(seen.asked.metric),

@@ -32,6 +32,8 @@ _PLANE = (
     "length", "contact_ratio", "centre", "family", "slope", "exponent", "inner_slope", "peak", "allowable", "film",
     "roll_angles",
 )  # fmt: skip
+#: Keys of the search for tip reliefs of plane teeth only.
+_PLANE_SEARCH = ("relieve", "limits")
 #: Seconds of a contact line on both gears, and of what one shape takes under one load at 24 stations.
 _LINE, _SHAPE = 0.02, 7.0
 #: Contact lines of reading and of the search, over those of one base pitch.
@@ -60,9 +62,15 @@ def check_over_face(scene: Scene, name: str) -> None:
                 f"design.{key}", "(given)", f"is defined for the plane (2D) model; pair {name} is 3D",
                 "remove it; use flank-design for the exact topography",
             )  # fmt: skip
-    if part.metric == "effective_error":
+    for key in _PLANE_SEARCH:
+        if key in part.given:
+            raise InputError(
+                f"design.{key}", "(given)",
+                f"is defined for tip relief of the plane (2D) model; pair {name} is 3D", "remove it",
+            )  # fmt: skip
+    if part.metric != "peak_to_peak":
         raise InputError(
-            "design.metric", '"effective_error"', f"is defined for the plane (2D) model; pair {name} is 3D",
+            "design.metric", f'"{part.metric}"', f"is defined for the plane (2D) model; pair {name} is 3D",
             'set metric = "peak_to_peak"',
         )  # fmt: skip
     design_range(scene, name)

@@ -200,12 +200,14 @@ class TipsShown:
         most = {f"{shape} tip relief": one[chosen] for shape, one in design.most.items()}
         best = f"{design.shapes[0]} tip relief"
         finer = {best: design.finer}
+        slopes = None if design.unrelieved_most is None else design.unrelieved_most[chosen]
         decisive = {best: tuple(one for one, there in zip(design.decisive, chosen, strict=True) if there)}
         return {
             label: LeftOverRange(
                 load * self.data.pair.driver.base_radius, load, weights / weights.max(), read.peak_to_peak[chosen],
                 read.series.amplitude[0][chosen], most.get(label), read.error[chosen],
                 finer=finer.get(label, 0), decisive=decisive.get(label, ()), share=shares,
+                slopes=slopes if label == "no relief" else None,
             )
             for label, read in design.left.items()
         }  # fmt: skip

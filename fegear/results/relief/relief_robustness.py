@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown
 from fegear.design.preferred import CLEARLY
 from fegear.engine.figure.axis import Axis
@@ -78,7 +78,7 @@ def robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
     """Collect what a case says of the robustness of a pair's reliefs."""
     part = design_part(scene)
     radius = scene.pairs[name].driver.base_radius
-    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, radius, name)
+    return RobustnessInputs(part.robustness, part.measure, scene.case.effects.relief, radius, name)
 
 
 def load_factors(asked: RobustnessPart, over: LoadRange | None, load: float) -> list[float]:
@@ -149,7 +149,23 @@ def _combination(found: Robustness, at: tuple[np.intp, ...], design_torque: floa
         float(of[i]) for of, i in zip((found.load_factors, found.spacing_errors, found.relief_errors), at, strict=True)
     )
     torque = torque_words(factor * design_torque)
-    return f"{torque}, pitch deviation {spacing * 1e6:g} µm, relief {percent(depth, signed=True)}"
+    return f"{torque}, pitch deviation {spacing * 1e6:g} µm, {_amount(depth)}"
+
+
+def _deviations(found: Robustness, design_torque: float) -> str:
+    """What is combined: other deviations than the tolerances of the grinding table."""
+    torques = [figures(float(end(found.load_factors)) * design_torque, 4) for end in (np.min, np.max)]
+    spacing = [f"{float(end(found.spacing_errors)) * 1e6:g}" for end in (np.min, np.max)]
+    depth = [float(end(found.relief_errors)) for end in (np.min, np.max)]
+    amount = _amount(depth[0]) + (f" to {percent(depth[1], signed=True)}" if depth[1] > depth[0] else "")
+    return (
+        f"{' to '.join(dict.fromkeys(torques))} N m, pitch deviation {' to '.join(dict.fromkeys(spacing))} µm, {amount}"
+    )
+
+
+def _amount(error: float) -> str:
+    """By how much amounts of relief are off, in words."""
+    return f"amount {percent(error, signed=True)}" if error else "amount as designed"
 
 
 def _worst_in_words(seen: Seen) -> Iterator[str]:
@@ -159,9 +175,9 @@ def _worst_in_words(seen: Seen) -> Iterator[str]:
     at = np.unravel_index(int(found.values.argmax()), found.values.shape)
     nominal, worst = microns(found.nominal), microns(max(found.worst, found.nominal))
     yield (
-        f"Pair {seen.name}, {label}: {nominal} µm at {torque_words(torque)}, at most {worst} µm "
-        f"({_combination(found, at, torque)}); without relief {microns(none.nominal)} µm and at most "
-        f"{microns(none.worst)} µm."
+        f"Pair {seen.name}, {label}: {nominal} µm at {torque_words(torque)} without deviations; with those of "
+        f"design.robustness ({_deviations(found, torque)}) at most {worst} µm ({_combination(found, at, torque)}). "
+        f"Without relief {microns(none.nominal)} and at most {microns(none.worst)} µm."
     )
     if label != NO_RELIEF:
         yield f"Pair {seen.name}, {label}: {_beside_none(found, none, torque)}."
