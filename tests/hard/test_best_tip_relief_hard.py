@@ -24,7 +24,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.contact.plane.transmission_error import contact_changes, transmission_error
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief, relief_over_path
-from fegear.design.tip_relief.search import _even
+from fegear.design.tip_relief.relief_scan import even_bench
 from fegear.design.tip_relief.trials import Trials
 from fegear.fem.plane.settings import MeshSettings
 from fegear.fem.plane.solution import solve_gear
@@ -204,12 +204,12 @@ def test_a_relief_on_finite_elements_leaves_what_the_search_says(shape):
 def test_extremes_between_positions_are_those_of_a_dense_curve(teeth, addendum, power, hertz):
     """At 56 positions; lines continued to where they meet were off by up to 3e-3 of the mean error."""
     e, load = engaged(*teeth, addendum=addendum, hertz=hertz)
-    trials = Trials(_even(e, 56), np.array([load]), power, "peak_to_peak")
+    trials = Trials(even_bench(e, 56), np.array([load]), power, "peak_to_peak")
     scale = trials.mean()
     rng = np.random.default_rng(5)
     p = rng.uniform([0.1 * scale, 0.05, 0.1 * scale, 0.05], [1.5 * scale, 0.8, 1.5 * scale, 0.8], (10, 4))
     tried = trials.exact(p)
-    dense = Trials(_even(e, 6000), np.array([load]), power, "peak_to_peak")
+    dense = Trials(even_bench(e, 6000), np.array([load]), power, "peak_to_peak")
     # Values at the positions alone.
     truth = [np.ptp(dense._shared(dense._removed(one[None])[0]).transmission_error) for one in p]
     more = (trials.left(tried.seen, tried.low) - truth) / scale
@@ -481,7 +481,7 @@ def test_extremes_between_positions_count_tip_corners_that_bear(power):
     sources = [shipped_atlas("A").compliance(one) for one in gears]
     pair = PairCompliance(GearPair(*gears), *sources, hertz="load-dependent", nominal_load=3e4)
     e, loads = Engagement(pair, corner_contact=True), np.array([3e4])
-    trials, dense = (Trials(_even(e, count), loads, power, "peak_to_peak") for count in (56, 3000))
+    trials, dense = (Trials(even_bench(e, count), loads, power, "peak_to_peak") for count in (56, 3000))
     scale = trials.mean()
     p = np.random.default_rng(5).uniform([0.0, 0.05, 0.0, 0.05], [scale, 0.8, scale, 0.8], (10, 4))
     tried = trials.exact(p)

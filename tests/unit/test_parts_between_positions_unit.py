@@ -16,7 +16,8 @@ from fegear.design.flanks.trials import Tried
 from fegear.design.quick_sharing import quick_sharing
 from fegear.design.tip_relief import ground
 from fegear.design.tip_relief.grindable import relief_over_path
-from fegear.design.tip_relief.search import _are_like, _even
+from fegear.design.tip_relief.relief_scan import even_bench
+from fegear.design.tip_relief.search import _are_like
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
@@ -70,7 +71,7 @@ def reliefs(teeth, count):
 @pytest.mark.parametrize("teeth", ["pair", "high"])
 def test_places_where_pairs_part_and_touch_move_as_their_derivatives_say(request, teeth, power):
     """By differences: places, and of starts of straight reliefs also how much the slope jumps there."""
-    trials = Trials(_even(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "effective_error")
+    trials = Trials(even_bench(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "effective_error")
     step, seen = 1e-4 * np.array([20e-6, 1.0, 20e-6, 1.0]), 0
     for here in reliefs(teeth, 5):
         every = here + np.concatenate([np.zeros((1, 4)), np.diag(step), -np.diag(step)])
@@ -97,7 +98,7 @@ def test_places_where_pairs_part_and_touch_move_as_their_derivatives_say(request
 @pytest.mark.parametrize("teeth", ["pair", "high"])
 def test_peaks_and_troughs_between_positions_grow_as_their_derivatives_say(request, teeth, power):
     """As if they stayed: a peak that moves along a slope of nothing grows by what changes there."""
-    trials = Trials(_even(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "peak_to_peak")
+    trials = Trials(even_bench(request.getfixturevalue(teeth), 60), np.array([0.6 * LOAD]), power, "peak_to_peak")
     step, seen = 2e-5 * np.array([20e-6, 1.0, 20e-6, 1.0]), np.zeros(3, dtype=int)
     for here in reliefs(teeth, 6):
         every = here + np.concatenate([np.zeros((1, 4)), np.diag(step), -np.diag(step)])
@@ -221,7 +222,7 @@ def test_a_relief_is_long_enough_by_its_share_of_the_active_profile():
 def test_extremes_are_those_of_many_more_positions(pair, power):
     """What tip reliefs leave from peak to peak by 40 positions and what lies between, beside 6000 of them."""
     loads = np.array([0.6 * LOAD])
-    trials = Trials(_even(pair, 40), loads, power, "peak_to_peak")
+    trials = Trials(even_bench(pair, 40), loads, power, "peak_to_peak")
     rng = np.random.default_rng(5)
     p = np.stack([rng.uniform(*ends, 6) for ends in ((8e-6, 40e-6), (0.15, 0.6)) * 2], axis=1)
     tried = trials.exact(p)

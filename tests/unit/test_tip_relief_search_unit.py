@@ -17,6 +17,7 @@ from fegear.design.tip_relief import clouds
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.grindable import optimise_tip_relief
 from fegear.design.tip_relief.ground import refine
+from fegear.design.tip_relief.relief_scan import apart, even_bench, scan
 from fegear.design.tip_relief.search import (
     _RULE,
     FOUND,
@@ -25,9 +26,6 @@ from fegear.design.tip_relief.search import (
     _followed,
     _mirrored,
     _of_every_region,
-    apart,
-    even_bench,
-    scan,
     search,
 )
 from fegear.design.tip_relief.trials import Trials, Tried

@@ -13,7 +13,7 @@ from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.grindable import grindable, relief_over_path, tolerated
 from fegear.design.tip_relief.relief_limits import ReliefLimits
-from fegear.design.tip_relief.search import even_bench
+from fegear.design.tip_relief.relief_scan import even_bench
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.design.tip_relief.tolerated import within_tolerances
 from fegear.design.tip_relief.tolerated_search import _EVERY, ToleratedTrials

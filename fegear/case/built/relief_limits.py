@@ -6,16 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import RangeError
-from fegear.design.tip_relief.relief_limits import ReliefLimits
+from fegear.design.tip_relief.relief_limits import SHORTEST, ReliefLimits
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
     from fegear.case.design import DesignPart, LimitsPart
     from fegear.geometry.pair import GearPair, Member
-
-#: The shortest relief that a limit may ask for, over the path of contact: that of a search without one.
-_SHORTEST = 0.02
 
 
 def relief_limits(part: DesignPart, pair: GearPair) -> ReliefLimits | None:
@@ -40,10 +37,10 @@ def _longest(asked: LimitsPart, pair: GearPair, member: Member) -> float:
     """Largest length over the path of contact, by length and start diameter."""
     found, gear = [math.inf], pair.gear(member)
     if asked.length is not None:
-        if asked.length < _SHORTEST * pair.path_length:
+        if asked.length < SHORTEST * pair.path_length:
             raise RangeError(
                 "design.limits.length", f"{asked.length * 1e3:.6g} mm",
-                f"must be at least {_SHORTEST * pair.path_length * 1e3:.3g} mm, 2 % of the path of contact",
+                f"must be at least {SHORTEST * pair.path_length * 1e3:.3g} mm, 2 % of the path of contact",
             )  # fmt: skip
         found.append(asked.length / pair.path_length)
     start = asked.driver_start_diameter if member == "driver" else asked.driven_start_diameter
@@ -53,7 +50,7 @@ def _longest(asked: LimitsPart, pair: GearPair, member: Member) -> float:
         if not ends[0] <= start <= ends[1]:
             raise _outside(member, start, ends)
         length = gear.base_radius * abs(tip - float(roll_of_radius(gear, 0.5 * start))) / pair.path_length
-        if length < _SHORTEST:
+        if length < SHORTEST:
             raise _outside(member, start, ends)
         found.append(length)
     return min(found)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+#: Shortest relief that is tried, over the path of contact.
+SHORTEST = 0.02
 #: A number is at its limit within this part of it: searches end that close to it.
 _AT_LIMIT = 1e-4
 

@@ -22,31 +22,22 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from fegear.base.arrays import Floats, Index, Mask
+from fegear.base.arrays import Floats, Mask
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec
-from fegear.contact.fourier import Panels
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.relief_bench import Bench, bench
 from fegear.design.tip_relief.descent import Aim, Limits, descend
 from fegear.design.tip_relief.ground import refine
 from fegear.design.tip_relief.relief_limits import ReliefLimits
+from fegear.design.tip_relief.relief_scan import SAME, apart, box, even_bench, scan
 from fegear.design.tip_relief.trials import Trials
 from fegear.geometry.pair import MEMBERS, GearPair
-from fegear.geometry.plausible_flanks import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 #: Reliefs that leave at most this much more than the least, over it, are equally good.
 SHARE = 0.01
-#: Lengths of relief over the path of contact.
-SHORTEST, LONGEST = 0.02, 1.0
-#: Deepest relief tried, in mean transmission errors of the unmodified pair.
-_DEEPEST = 6.0
-#: What a scan may cost, and how fine it may be: amounts, and lengths, of one gear.
-_BUDGET = {"peak_to_peak": (1.2e7, 15), "effective_error": (2.4e7, 17)}
-#: Best of the scan among which starts are looked for, starts, and steps of the grid that they are apart at least.
-_BEST, _STARTS, _APART = 4000, 64, 2
 #: Even roll positions, or Gauss points (0), candidates followed from the stage before, regions of trust and rounds of
 #: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
 #: harmonics need good quadrature.
@@ -65,8 +56,6 @@ _OUTWARD, _LAST = (0.2, 15), 4
 #: Ends that leave so many times the least are not led on; a penalty below this is none, and
 #: ends of a band are known to this, in their units.
 _HOPELESS, _WITHIN = 1.03, 1e-3
-#: Candidates closer than this in all numbers, in their units, are the same.
-_SAME = 0.01
 #: Starts that agree leave at most so much times the least.
 _AGREED = 1.05
 #: A whole path of contact more of relief is worth this much more removal, in mean transmission errors.
@@ -79,72 +68,8 @@ _EQUAL = 1e-6
 _VALLEY, _REGION = 0.1, 0.3
 #: Gears are alike whose sizes and compliances differ by less, over these.
 _LIKE = 1e-9
-#: Positions beside changes of pairs, over the distance of the even ones.
-_BESIDE = (0.04, 0.14, 0.35)
 #: States of all sets of pairs to a roll position up to which nothing is saved: three pairs under one load.
 _WORK = 4.0
-
-
-def scan(trials: Trials, limits: Limits, *, like: bool = False) -> tuple[Floats, int]:
-    """Try every combination of amounts and lengths on a grid; amounts go to four mean transmission errors.
-
-    Parameters
-    ----------
-    trials : Trials
-    limits : Limits
-    like : bool
-        Whether driver and driven gear may change places: of two combinations that are each other's mirror one counts.
-
-    Returns
-    -------
-    starts : ndarray, shape (B, 4)
-        The best of the grid that lie apart, best first.
-    count : int
-        Candidates tried.
-    """
-    quick = trials.quick
-    work = sum(s.base.size for s in quick.sets)
-    budget, finest = _BUDGET[trials.metric]
-    side = int(np.clip((budget / work) ** 0.25, 7, finest))
-    t = np.linspace(0.0, 1.0, side)
-    axes = []
-    for gear in (0, 1):
-        top, longest = min(4.0 * limits.unit[0], limits.high[2 * gear]), limits.high[2 * gear + 1]
-        if top == 0.0:
-            axes += [np.zeros(1), np.full(1, longest)]
-            continue
-        axes += [
-            top * (0.55 * t + 0.45 * t**3), np.minimum(np.maximum(longest * (0.6 * t + 0.4 * t**3), 0.03), longest)
-        ]  # fmt: skip
-    single = [np.stack(np.meshgrid(*axes[2 * g : 2 * g + 2], indexing="ij"), axis=-1).reshape(-1, 2) for g in (0, 1)]
-    count = trials.loads.size
-    parts = [
-        np.repeat(s[:, 0, None, None] * trials.form(g, s[:, 1]), count, axis=-1).astype(np.float32)
-        for g, s in enumerate(single)
-    ]
-    by_set = []
-    for s in quick.sets:
-        held = [part[:, s.pairs, s.states] for part in parts]
-        by_set.append([np.einsum("jn,cjn->cn", s.weight, part) for part in held])
-    values = np.empty((single[0].shape[0], single[1].shape[0]), dtype=np.float32)
-    step = max(1, 150_000 // (single[1].shape[0] * quick.size))
-    for first in range(0, values.shape[0], step):
-        part = slice(first, first + step)
-        least = np.full((values[part].shape[0], values.shape[1], quick.size), np.inf, dtype=np.float32)
-        for s, (one, two) in zip(quick.sets, by_set, strict=True):
-            there = least[..., s.states]
-            np.minimum(there, (one[part] + s.base)[:, None] + two, out=there)
-        values[part] = trials.left(trials.seen(least.reshape(*least.shape[:2], -1, count)))
-    flat = (np.where(np.tri(values.shape[0], dtype=bool), values, np.inf) if like else values).ravel()
-    best = np.argpartition(flat, min(_BEST, flat.size - 1))[:_BEST]
-    best = best[np.argsort(flat[best], kind="stable")]
-    places = np.stack(np.unravel_index(best, [axis.size for axis in axes]), axis=1)
-    open_ = np.ones(best.size, dtype=bool)
-    starts: list[Index] = []
-    while open_.any() and len(starts) < _STARTS:
-        starts.append(places[open_.argmax()])
-        open_ &= np.abs(places - starts[-1]).max(axis=1) >= _APART
-    return np.stack([axis[np.array(starts)[:, i]] for i, axis in enumerate(axes)], axis=1), flat.size
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,26 +181,6 @@ def search(
     )  # fmt: skip
 
 
-def box(pair: GearPair, scale: float, within: ReliefLimits) -> Limits:
-    """Amounts and lengths that are tried.
-
-    Parameters
-    ----------
-    pair : GearPair
-    scale : float
-        Mean transmission error of the unmodified pair [m].
-    within : ReliefLimits
-        Limits besides those of the teeth.
-    """
-    deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
-    top = [min(_DEEPEST * scale, d, most) for d, most in zip(deepest, within.amounts, strict=True)]
-    longest = [min(LONGEST, most) for most in within.lengths]
-    return Limits(
-        np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], longest[0], top[1], longest[1]]),
-        np.array([scale, 1.0, scale, 1.0]),
-    )  # fmt: skip
-
-
 def _followed(p: Floats, values: Floats, of: Mask, limits: Limits, most: int) -> tuple[Floats, Mask]:
     """The best of candidates that lie apart, and of which of both searches each is: of both, where both came to it.
 
@@ -283,7 +188,7 @@ def _followed(p: Floats, values: Floats, of: Mask, limits: Limits, most: int) ->
     """
     chosen = apart(p, values, limits, most)
     chosen += [i for i in (int(np.where(one, values, np.inf).argmin()) for one in of.T) if i not in chosen]
-    beside = (np.abs(p[chosen][:, None] - p) <= _SAME * limits.unit).all(axis=2)
+    beside = (np.abs(p[chosen][:, None] - p) <= SAME * limits.unit).all(axis=2)
     return p[chosen], np.asarray(beside @ of)
 
 
@@ -308,17 +213,6 @@ def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
         radius = np.asarray(pair.radius(at, member))
         soft.append(np.concatenate([radius, np.asarray(compliance.source(member).own(0, radius))]))
     return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
-
-
-def apart(p: Floats, values: Floats, limits: Limits, most: int, distance: float = _SAME) -> list[int]:
-    """Which of some candidates are the best that lie apart, best first."""
-    found: list[int] = []
-    for i in np.argsort(values, kind="stable"):
-        if all((np.abs(p[i] - p[j]) > distance * limits.unit).any() for j in found):
-            found.append(int(i))
-        if len(found) == most:
-            break
-    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,7 +258,7 @@ def _among_equals(
     unit = limits.unit
     starts = np.concatenate([
         some[apart(some, some / unit @ _RULE, limits, most, distance)]
-        for some, most, distance in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _VALLEY))
+        for some, most, distance in ((equals, _CHOSEN, SAME), (valleys, _VALLEYS, _VALLEY))
     ])  # fmt: skip
     aim = Aim(np.tile(_RULE, (starts.shape[0], 1)), allowed)
     p, values, solved = descend(trials.exact, trials, starts, limits, 0.1, 7, aim)
@@ -474,23 +368,3 @@ def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:
     if positions:
         return even_bench(engagement, positions)
     return bench(engagement) if loads == 1 else bench(engagement, 8, 10)
-
-
-def even_bench(engagement: Engagement, positions: int) -> Bench:
-    """Set up at even roll positions, at both sides of every change of pairs, and closer by these.
-
-    Where a relief starts beside such a change, one side of its kink is short.
-    """
-    pair = engagement.pair
-    pitch, start = pair.base_pitch, pair.x_start
-    breaks = engagement.meshing.reduced([pair.x_start, pair.x_end])
-    beside = np.concatenate([[1e-9], np.array(_BESIDE) / positions])
-    x = np.concatenate([
-        start + pitch * (np.arange(positions) + 0.5) / positions,
-        np.add.outer(breaks, pitch * np.concatenate([-beside, beside])).ravel(),
-    ])  # fmt: skip
-    x = np.unique(engagement.meshing.reduced(x))
-    weights = 0.5 * (np.roll(x, -1) - np.roll(x, 1))
-    weights[[0, -1]] += 0.5 * pitch
-    points = Panels(x, weights, pitch, np.append(np.sort(breaks), start + pitch))
-    return Bench(engagement, points, engagement.grid(x))

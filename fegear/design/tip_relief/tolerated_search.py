@@ -24,8 +24,9 @@ from fegear.base.solution_cache import Codec
 from fegear.contact.plane.engagement import Engagement
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.descent import Limits, descend
-from fegear.design.tip_relief.relief_limits import ReliefLimits
-from fegear.design.tip_relief.search import LONGEST, SHORTEST, apart, box, even_bench, search
+from fegear.design.tip_relief.relief_limits import SHORTEST, ReliefLimits
+from fegear.design.tip_relief.relief_scan import LONGEST, apart, box, even_bench
+from fegear.design.tip_relief.search import search
 from fegear.design.tip_relief.tip_tolerance import NOTHING, OF_LENGTH, SHORTEST_LEFT, TipTolerance
 from fegear.design.tip_relief.trials import Trials, Tried
 from fegear.geometry.relief import roll_of_radius
