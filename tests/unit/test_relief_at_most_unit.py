@@ -1,0 +1,99 @@
+"""Designs by the maximum within the tolerances: key, order of shapes, refusals and the answer."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.case.design import DesignPart
+from fegear.design import relief_design
+from fegear.design.relief_design import DesignTask, ReliefDesign, _undeviated
+from fegear.engine.sheet.seen import Seen
+from fegear.results.relief import relief_over_face
+from fegear.results.relief.relief_answer import _minimised
+from fegear.results.relief.relief_over_range import LeftOverRange
+
+LOADS = (1000.0, 2000.0)
+
+
+def task(at_most):
+    return DesignTask(None, 2000.0, False, ("linear", "parabolic"), "peak_to_peak", LOADS, 8, 4, at_most=at_most,
+                      tip_tolerances=("driver's", "driven's"))  # fmt: skip
+
+
+def design(at_most, drawn, within):
+    none = {"chosen": None, "designed": None, "reliefs": {}, "for_one_load": {}, "te": {}, "curves": {}}
+    ground = {
+        shape: SimpleNamespace(objective=one, undeviated=("d", "w"))
+        for shape, one in zip(("linear", "parabolic"), drawn, strict=True)
+    }
+    bounds = {shape: np.array([[0.0, 1.0], [0.0, one]]) for shape, one in zip(ground, within, strict=True)}
+    return ReliefDesign(
+        task(at_most), ground=ground, over_range={}, within=bounds, tables_leave=0.0, **none
+    )  # fmt: skip
+
+
+def test_what_is_left_as_drawn_is_measured_by_the_peak_to_peak_value():
+    assert DesignPart(metric="peak_to_peak_max").measure == "peak_to_peak"
+    assert [DesignPart(metric=one).measure for one in ("peak_to_peak", "effective_error")] == [
+        "peak_to_peak", "effective_error",
+    ]  # fmt: skip
+
+
+def test_the_shape_with_the_smaller_maximum_is_ground_by_however_little():
+    """As drawn it has to be clearly smaller: 5 %."""
+    assert design(False, (2.0, 2.5), (5.0, 4.9)).shapes == ["linear", "parabolic"]
+    assert design(True, (2.0, 2.5), (5.0, 4.9)).shapes == ["parabolic", "linear"]
+    assert design(True, (2.0, 1.5), (5.0, 5.1)).shapes == ["linear", "parabolic"]
+
+
+def test_the_relief_that_leaves_the_least_as_drawn_is_read_as_drawn_and_at_most(monkeypatch):
+    asked = []
+
+    def within(plain, tips, tolerances, loads):
+        asked.append((tips, tolerances, loads))
+        return np.array([[1.0, 7.0], [2.0, 9.0]])
+
+    monkeypatch.setattr(relief_design, "replace", lambda plain, **reliefs: tuple(reliefs.values()))
+    monkeypatch.setattr(
+        relief_design, "transmission_error", lambda state, load, _count: SimpleNamespace(peak_to_peak=load * len(state))
+    )
+    monkeypatch.setattr(relief_design, "within_tolerances", within)
+    one = design(True, (2.0, 2.5), (5.0, 6.0))
+    found = relief_design._undeviated(None, one)
+    assert found.tolist() == [[2000.0, 7.0], [4000.0, 9.0]]
+    assert asked == [(("d", "w"), ("driver's", "driven's"), LOADS)]
+    one.ground["linear"].undeviated = None  # chosen as drawn itself
+    assert _undeviated(None, one) is None
+
+
+def test_the_answer_has_what_the_minimum_as_drawn_gives_at_most_where_that_counts_most():
+    loads = np.array(LOADS)
+    best = LeftOverRange(0.05 * loads, loads, np.ones(2), np.full(2, 4e-6), np.zeros(2), np.array([3e-6, 6.9e-6]))
+    made = SimpleNamespace(undeviated=np.array([[1e-6, 8e-6], [3.4e-6, 17.6e-6]]), shapes=["linear"])
+    data = SimpleNamespace(data=SimpleNamespace(design=made), over_range={"linear tip relief": best})
+    (said,) = _minimised(Seen(data, None, "I"))
+    assert said == (  # 8 um count twice at half the load, but are less than 17.6
+        "Pair I: minimised: maximum within the tolerances (design.metric). Tip relief with the minimum as drawn: 3.4 "
+        "µm at 100 N m, within tolerances at most 18, not 6.9 µm."
+    )
+    made.undeviated[0, 1] = 9e-6
+    (said,) = _minimised(Seen(data, None, "I"))
+    assert said.endswith("1 µm at 50 N m, within tolerances at most 9, not 3 µm.")
+    made.undeviated = None
+    assert list(_minimised(Seen(data, None, "I"))) == []
+
+
+@pytest.mark.parametrize(
+    ("keys", "rule"),
+    [
+        ({"relieve": "driver"}, "design.relieve"), ({"limits": {"amount": "5 um"}}, "design.limits"),
+        ({"metric": "peak_to_peak_max"}, '"peak_to_peak_max": is defined for the plane'),
+        ({"metric": "effective_error"}, '"effective_error": is defined for the plane'),
+    ],
+)  # fmt: skip
+def test_what_only_plane_pairs_have_is_refused_of_others(keys, rule):
+    scene = SimpleNamespace(case=SimpleNamespace(design=DesignPart.model_validate(keys)))
+    with pytest.raises(InputError, match=rule):
+        relief_over_face.check_over_face(scene, "I")
