@@ -212,7 +212,14 @@ def test_the_drawing_of_a_ring_gear_has_positive_roll_angles_and_lengths():
     assert deepest == chart.roll_length.min()  # at the tip
     assert chart.marks[0].at == pytest.approx(ring.base_radius * (0.05 - top) * 1e3)
     assert _tip_side({"linear": (chart,)}) == "tip at right (of r at left)"
-    tip = GroundTip(SimpleNamespace(driver=relief, driver_band=(relief, relief)), ring, None, None, "linear", "driver")
+    tip = GroundTip(
+        SimpleNamespace(driver=relief, driver_band=(relief, relief), undeviated=None),
+        ring,
+        None,
+        None,
+        "linear",
+        "driver",
+    )
     tip = replace(tip, ground=SimpleNamespace(**vars(tip.ground), error=np.array([1e-7, 1e-3, 0.0, 0.0])))
     row = tip_row(tip, "r", TipTolerance(2e-6, None, 0.0))
     assert row.start_roll_angle == tip.start == 0.05 - top > 0.0

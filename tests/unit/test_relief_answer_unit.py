@@ -132,9 +132,10 @@ def test_the_torques_named_of_a_spectrum_are_its_ends_and_those_of_the_longest_t
 
 def test_a_relief_far_below_its_tolerance_is_named():
     ordinary = said((3.3, 4.5), (3.5, 5.0))
-    _, wide, *rest = said((3.3, 4.5), (3.5, 5.0), amounts=(1.26e-6, 6e-6))
-    assert "is less than its tolerance" in wide
-    assert rest == ordinary[1:]
+    _, *rest = said((3.3, 4.5), (3.5, 5.0), amounts=(1.26e-6, 6e-6))
+    wide = [one for one in rest if "is less than its tolerance" in one]
+    assert len(wide) == 1
+    assert [one for one in rest if one not in wide] == ordinary[1:]
     *_, faint, single = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
     assert single == ordinary[-1]
     assert faint == (

@@ -9,8 +9,12 @@ from fegear.base.errors import InputError
 from fegear.case.design import DesignPart
 from fegear.design import relief_design
 from fegear.design.relief_design import DesignTask, ReliefDesign, _undeviated
+from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.sheet.seen import Seen
+from fegear.geometry.relief import EndRelief
 from fegear.results.relief import relief_over_face
+from fegear.results.relief.grinding import tip_row
+from fegear.results.relief.ground_tips import GroundTip
 from fegear.results.relief.relief_answer import _minimised
 from fegear.results.relief.relief_over_range import LeftOverRange
 
@@ -83,6 +87,25 @@ def test_the_answer_has_what_the_minimum_as_drawn_gives_at_most_where_that_count
     assert said.endswith("1 µm at 50 N m, within tolerances at most 9, not 3 µm.")
     made.undeviated = None
     assert list(_minimised(Seen(data, None, "I"))) == []
+
+
+def test_a_relief_chosen_by_its_maximum_has_no_band_of_equally_good_ones():
+    """It was said to be "equally good: 12.59 to 12.59 um"."""
+    relief, gear = (
+        EndRelief(12.59e-6, 0.2, 0.6, 2.0),
+        SimpleNamespace(base_radius=0.03, tooth=SimpleNamespace(side=1.0)),
+    )
+    ground = SimpleNamespace(
+        driver=relief, driver_band=(relief, relief), error=np.zeros(4), band_error=np.zeros((2, 4)), undeviated=None
+    )
+    tip = GroundTip(ground, gear, None, None, "parabolic", "driver")
+    row = tip_row(tip, "p", TipTolerance(5e-6, None, 0.0))
+    assert (row.amount_from, row.amount_to) == (12.59e-6, 12.59e-6)
+    assert tip.equal_amounts == "12.59 to 12.59 um"
+    ground.undeviated = (relief, relief)
+    row = tip_row(tip, "p", TipTolerance(5e-6, None, 0.0))
+    assert np.isnan([row.amount_from, row.amount_to, row.start_diameter_from, row.start_diameter_to]).all()
+    assert (tip.equal_amounts, tip.equal_starts) == ("", "")
 
 
 @pytest.mark.parametrize(

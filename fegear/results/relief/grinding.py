@@ -167,5 +167,5 @@ def tip_row(tip: GroundTip, gear: str, tolerance: TipTolerance) -> Grinding:
         gear, tip.member, f"{tip.shape} tip relief", TIP, tip.shape, relief.amount, float(tip.error[0]),
         tolerance.amount, diameter(relief.start), 2.0 * tip.start_radius_error, diameter(relief.end), tip.start,
         tip.base_radius * (relief.end - relief.start), tolerance.length_of(of_gear, relief), math.nan,
-        low.amount, high.amount, diameter(high.start), diameter(low.start),
+        *((low.amount, high.amount, diameter(high.start), diameter(low.start)) if tip.has_band else ()),
     )  # fmt: skip

@@ -132,14 +132,25 @@ class GroundTip:
         return self.ground.starts
 
     @property
+    def has_band(self) -> bool:
+        """Whether equally good ones were looked for: not of reliefs chosen by the maximum within their tolerances."""
+        return self.ground.undeviated is None
+
+    @property
     def equal_amounts(self) -> str:
-        """Amounts that are equally good."""
+        """Amounts that are equally good; empty where they were not looked for."""
+        if not self.has_band:
+            return ""
         return " to ".join(f"{one.amount * 1e6:.4g}" for one in self.band) + " um"
 
     @property
     def equal_starts(self) -> str:
-        """Starts that are equally good."""
-        return " to ".join(f"{math.degrees(self.drawn_start(one)):.5g}" for one in self.band[::-1]) + " deg"
+        """Starts that are equally good; empty where they were not looked for."""
+        return (
+            ""
+            if not self.has_band
+            else " to ".join(f"{math.degrees(self.drawn_start(one)):.5g}" for one in self.band[::-1]) + " deg"
+        )
 
 
 def tips_of(
@@ -193,9 +204,14 @@ def said_of_flat_optima(seen: Seen) -> Iterator[str]:
         )
 
 
-def _errors(which: str, what: int) -> Callable[[Seen], Array]:
-    """Errors of amounts or starts, a number for each row."""
-    return lambda seen: np.array([getattr(tip, which)[what] for tip in seen.data.tips])
+def _errors(which: str, what: int) -> Callable[[Seen], Array | None]:
+    """Errors of amounts or starts, a number for each row; None of the ends of a band that was not looked for."""
+
+    def found(seen: Seen) -> Array | None:
+        known = which == "error" or all(tip.has_band for tip in seen.data.tips)
+        return np.array([getattr(tip, which)[what] for tip in seen.data.tips]) if known else None
+
+    return found
 
 
 def _left(seen: Seen) -> Array | None:
@@ -205,7 +221,9 @@ def _left(seen: Seen) -> Array | None:
 
 
 def _end(which: str, quantity: str, name: str, meaning: str) -> Cell:
-    def si(seen: Seen) -> list[float]:
+    def si(seen: Seen) -> list[float] | None:
+        if not all(tip.has_band for tip in seen.data.tips):
+            return None
         ends = [(tip, tip.band[which == "high"]) for tip in seen.data.tips]
         return [tip.drawn_start(end) if quantity == "start" else end.amount for tip, end in ends]
 
