@@ -65,7 +65,7 @@ class DesignTask:
         Loads that reliefs to grind are designed for in place of the design load only.
     tip_tolerances : tuple of TipTolerance, optional
         Of the reliefs to grind on driver and driven gear.
-    limits : ReliefLimits, optional
+    tip_limits : ReliefLimits, optional
         Of what is ground.
     at_most : bool
         Whether what is ground is chosen by the largest peak-to-peak value within its tolerances, over the metric as
@@ -84,7 +84,7 @@ class DesignTask:
     film: OilFilm | None = None
     over: LoadRange | None = None
     tip_tolerances: tuple[TipTolerance, TipTolerance] | None = None
-    limits: ReliefLimits | None = None
+    tip_limits: ReliefLimits | None = None
     at_most: bool = False
 
     @property
@@ -104,8 +104,8 @@ class DesignTask:
         """The reliefs of a shape to grind, for the range or for the design load."""
         over = self.load if self.over is None else self.over
         if self.at_most and self.tip_tolerances is not None:
-            return tolerated(engagement, over, shape, self.tip_tolerances, limits=self.limits, cache=cache)
-        return grindable(engagement, over, shape, self.metric, limits=self.limits, cache=cache)
+            return tolerated(engagement, over, shape, self.tip_tolerances, limits=self.tip_limits, cache=cache)
+        return grindable(engagement, over, shape, self.metric, limits=self.tip_limits, cache=cache)
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ def design_relief(
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         if task.over is not None:
             for_one_load[shape] = grindable(
-                designed, load, shape, task.metric, banded=False, limits=task.limits, cache=cache
+                designed, load, shape, task.metric, banded=False, limits=task.tip_limits, cache=cache
             )
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))

@@ -105,7 +105,7 @@ def test_what_programs_read_is_json_without_numbers_that_json_does_not_know(caps
 
 def test_of_each_search_the_best_is_followed_though_others_lie_farther_apart(monkeypatch):
     """Two searches share the second of three candidates: the best of both, of the second search it is the best."""
-    monkeypatch.setattr("fegear.design.tip_relief.search._apart", lambda p, values, limits, most: [0])
+    monkeypatch.setattr("fegear.design.tip_relief.search.apart", lambda p, values, limits, most: [0])
     p = np.diag([1.0, 2.0, 3.0, 4.0])[:3]
     of = np.array([[True, False], [True, True], [False, True]])
     followed, by = _followed(p, np.array([1.0, 2.0, 3.0]), of, SimpleNamespace(unit=np.ones(4)), 1)

@@ -136,7 +136,7 @@ def test_limits_that_are_reached_are_named():
 
     def said(limits, shapes=("linear",)):
         ground = {"linear": SimpleNamespace(driver=tips[0], driven=tips[1])}
-        design = SimpleNamespace(task=SimpleNamespace(limits=limits), shapes=list(shapes), ground=ground)
+        design = SimpleNamespace(task=SimpleNamespace(tip_limits=limits), shapes=list(shapes), ground=ground)
         data = SimpleNamespace(data=SimpleNamespace(design=design, pair=SimpleNamespace(pair=PAIR)))
         return list(_at_limits(Seen(data, SimpleNamespace(gears={"driver": "p", "driven": "w"}), "I")))
 

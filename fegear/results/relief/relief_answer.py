@@ -61,7 +61,7 @@ def _minimised(seen: Seen) -> Iterator[str]:
 def _at_limits(seen: Seen) -> Iterator[str]:
     """Which numbers of the relief to grind lie at limits of the case: less may remain beyond them."""
     design, shape = seen.data.data.design, _best(seen)
-    limits, pair = design.task.limits, seen.data.data.pair.pair
+    limits, pair = design.task.tip_limits, seen.data.data.pair.pair
     if not shape or limits is None:
         return
     found = []
