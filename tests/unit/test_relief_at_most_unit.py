@@ -12,7 +12,7 @@ from fegear.design.relief_design import DesignTask, ReliefDesign, _undeviated
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.relief import EndRelief
-from fegear.results.relief import relief_over_face
+from fegear.results.relief import relief_answer, relief_over_face
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
 from fegear.results.relief.relief_answer import _minimised
@@ -106,6 +106,20 @@ def test_a_relief_chosen_by_its_maximum_has_no_band_of_equally_good_ones():
     row = tip_row(tip, "p", TipTolerance(5e-6, None, 0.0))
     assert np.isnan([row.amount_from, row.amount_to, row.start_diameter_from, row.start_diameter_to]).all()
     assert (tip.equal_amounts, tip.equal_starts) == ("", "")
+
+
+def test_limits_and_objective_come_second_but_behind_what_to_do_about_tolerances(monkeypatch):
+    for name, sentences in (("_ground", ["grind", "within"]), ("_at_limits", ["limits"]), ("_minimised", ["by"])):
+        monkeypatch.setattr(relief_answer, name, lambda seen, found=tuple(sentences): iter(found))
+
+    def said(finer):
+        data = SimpleNamespace(data=SimpleNamespace(design=SimpleNamespace(finer=finer)))
+        return list(relief_answer._grind(Seen(data, None, "I")))
+
+    assert said(0) == ["grind", "limits", "by", "within"]
+    assert said(2) == said(None) == ["grind", "within", "limits", "by"]
+    monkeypatch.setattr(relief_answer, "_ground", lambda seen: iter(()))
+    assert said(0) == ["limits", "by"]
 
 
 @pytest.mark.parametrize(
