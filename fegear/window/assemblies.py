@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.base.errors import FegearError
-from fegear.results.exercises import exercises_of_set
+from fegear.results.exercises.planetary_set import exercises_of_set
+from fegear.results.exercises.rack import exercises_of_rack
 from fegear.results.planetary.turning_set import turning_loads, turning_set
 from fegear.results.shafts.drawn_gearbox import drawn_gearbox, largest_shift, motions
 from fegear.window.on_gears import packed, round_factor
@@ -32,7 +33,7 @@ def assemblies_of(scene: Scene) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``sets`` by their names, and ``gearbox``, None without shafts.
+        ``sets`` by their names, ``gearbox``, None without shafts, and ``racks`` by their names: questions on them.
     """
     sets = {}
     for name in scene.case.planetary:
@@ -45,7 +46,8 @@ def assemblies_of(scene: Scene) -> dict[str, Any]:
             gearbox = _plain(asdict(drawn_gearbox(scene)))
             driving = {part.driver for part in scene.case.pair.values()}
             gearbox["drivers"] = sorted(driving & {body["name"] for body in gearbox["bodies"]})
-    return {"sets": sets, "gearbox": gearbox}
+    racks = {name: {"exercises": [one._asdict() for one in exercises_of_rack(scene, name)]} for name in scene.case.rack}
+    return {"sets": sets, "gearbox": gearbox, "racks": racks}
 
 
 def on_the_assembly(task: Task, data: Any, scene: Scene) -> dict[str, Any] | None:

@@ -15,7 +15,7 @@ from fegear.base.errors import FegearError, InputError
 from fegear.base.units import unit_size
 from fegear.case.changed_text import literal, value_at, with_value, with_values
 from fegear.output.draw_plotly.layout import darker, plotly_json
-from fegear.results.exercises import exercises_of_pair
+from fegear.results.exercises.pair import exercises_of_pair
 from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
 from fegear.window.assemblies import assemblies_of
 from fegear.window.on_gears import gears_in_mesh

@@ -5,7 +5,7 @@ const fegearGlance = (() => {
   const { plot, plain, ofPanel } = fegearPlots, numbersOf = fegearPacked.numbers;
   const $ = (id) => document.getElementById(id);
   const RATIOS = { transverse: "contact ratio", overlap: "overlap ratio" };
-  let told = null, view = {}, pair = null, pairs = {}, kind = "pair"; // the pair, or the set, that is shown
+  let told = null, view = {}, pair = null, pairs = {}, racks = {}, kind = "pair"; // the pair, or the set, that is shown
   let pinned = null; // of A: { specs, numbers }
   const specs = new Map(), numbers = new Map(); // key -> { spec, darker }; name -> number
   let halves = {}; // pair -> peak-to-peak transmission error at half the load and at all of it [um]
@@ -22,7 +22,7 @@ const fegearGlance = (() => {
   // ---- exercises ----------------------------------------------------------------------------------------------------
   const { ask } = fegearExercise({
     view: () => view,
-    shown: () => ({ kind, pair, mesh: pairs[pair]?.mesh, exercises: pairs[pair]?.exercises ?? [] }),
+    shown: () => ({ kind, pair, mesh: pairs[pair]?.mesh, exercises: pairs[pair]?.exercises ?? [], racks }),
     number: (name) => numbers.get(`${pair}.${name}`),
     half: () => halves[pair],
     spec: (key) => specs.get(key)?.spec,
@@ -277,6 +277,7 @@ const fegearGlance = (() => {
       soon();
     },
     pair: () => pair,
+    racks(content) { racks = content; ask(); }, // what is asked of them
     choose(name, of = "pair") { [pair, kind] = [name, of]; soon(); },
     pinned(content) {
       pinned = null;

@@ -203,7 +203,7 @@ const fegear = (() => {
       loadsNow.set(content.pair, content);
     },
     meshed(content) { ({ loads: fegearSets, bent: fegearGearbox, crack: fegearCrack }[content.kind] ?? fegearGears).meshed(content); },
-    assemblies({ sets, gearbox }) { fegearSets.show(sets); fegearGearbox.show(gearbox); },
+    assemblies({ sets, gearbox, racks }) { fegearSets.show(sets); fegearGearbox.show(gearbox); fegearGlance.racks(racks ?? {}); },
     asked(content) {
       if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
       document.body.classList.add("computing");

@@ -12,7 +12,9 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.results.exercises import exercises_of_pair, exercises_of_set
+from fegear.results.exercises.pair import exercises_of_pair
+from fegear.results.exercises.planetary_set import exercises_of_set
+from fegear.results.exercises.rack import exercises_of_rack
 from fegear.window.assemblies import assemblies_of
 from fegear.window.drag_handles import hands_of
 
@@ -233,3 +235,98 @@ def test_the_answer_of_a_set_has_what_the_exercise_asks():
     ring, carrier = numbers(said.split("torques")[1])[1:]
     assert 140 + ring + carrier == pytest.approx(0.0, abs=1.0)
     assert carrier == pytest.approx(-140 * ratio * (22 + 0.98 * 74) / (22 + 74), abs=1.0)
+
+
+# ---- helical teeth, racks --------------------------------------------------------------------------------------------
+
+
+def helical_pair(**keys):
+    teeth = {"helix_angle": "20 deg", "face_width": "28 mm"}
+    return pair_scene({"teeth": 18, "hand": "right", **teeth}, {"teeth": 35, "hand": "left", **teeth}, **keys)
+
+
+def test_helical_teeth_as_by_hand():
+    found = exercises_of_pair(helical_pair(), "I")
+    beta = math.radians(20.0)
+    module, angle = 3.0 / math.cos(beta), math.atan(math.tan(ALPHA) / math.cos(beta))
+    said = answer(found, "transverse section")
+    assert f"= {module:.4g} mm (as in fegear)" in said
+    assert f"α_t = {math.degrees(angle):.4g}° (as in fegear)" in said
+    assert f"driver {18 * module:.4g} mm, driven {35 * module:.4g} mm" in said
+    said = answer(found, "overlap ratio, and")
+    assert f"= {28.0 * math.sin(beta) / (3.0 * math.pi):.3f} (as in fegear)" in said
+    assert "mesh cycle: as here" in said
+    said = answer(found, "virtual spur gear")
+    base = math.asin(math.sin(beta) * math.cos(ALPHA))
+    for z in (18, 35):
+        exact = z / (math.cos(base) ** 2 * math.cos(beta))
+        assert f"= {z / math.cos(beta) ** 3:.4g} (fegear: {exact:.4g})" in said
+    said = answer(found, "axial force")
+    tangential = 100e3 / (9.0 * module)
+    assert f"{tangential:.4g} N · tan 20° = {tangential * math.tan(beta):.4g} N with" in said
+    assert f"= {tangential * math.tan(beta):.4g} N (as in fegear)" in said
+    assert f"= {tangential * math.tan(beta) * 9e-3 * module:.4g} N m" in said
+
+
+def test_an_overlap_ratio_between_integers_has_the_next_face_width_and_no_load_has_no_axial_force():
+    teeth = {"helix_angle": "20 deg", "face_width": "35 mm"}
+    scene = pair_scene({"teeth": 18, "hand": "right", **teeth}, {"teeth": 35, "hand": "left", **teeth}, torque=None)
+    found = exercises_of_pair(scene, "I")
+    assert f"the next with b = {2 * math.pi * 3.0 / math.sin(math.radians(20.0)):.4g} mm" in (
+        answer(found, "overlap ratio, and"))  # fmt: skip
+    assert not any("axial force on" in question for question in answers(found))
+
+
+def test_spur_pairs_have_no_question_on_helical_teeth():
+    spur = exercises_of_pair(pair_scene({"teeth": 18}, {"teeth": 35}), "I")
+    assert not any(one.topic == "Helical teeth" for one in spur)
+
+
+def rack_scene(helix=None, **keys):
+    teeth = {"module": "2 mm"} if helix is None else {"normal_module": "2 mm", "helix_angle": helix, "hand": "right"}
+    gear = {"teeth": 20, "profile_shift": 0.3, "bore_radius": "10 mm", "face_width": "20 mm", **teeth}
+    rack = {"pinion": "p", "teeth": 12, "reference_height": "10 mm", "backlash": "40 um", "force": "2 kN", **keys}
+    document = {"title": "t", "results": ["rack-geometry"], "gear": {"p": gear}, "rack": {"axis": rack}}
+    return build_scene(document, "t", Path())
+
+
+@pytest.mark.parametrize("helix", [None, "15 deg"])
+def test_a_rack_as_by_hand(helix):
+    beta = math.radians(15.0) if helix else 0.0
+    angle, module = math.atan(math.tan(ALPHA) / math.cos(beta)), 2.0 / math.cos(beta)
+    radius = 10.0 * module
+    found = exercises_of_rack(rack_scene(helix), "axis")
+    pitch = math.pi * module
+    assert f"= {pitch:.4g} mm per tooth (as the pitch" in answer(found, "travel")
+    assert f"= {20 * pitch:.4g} mm per revolution" in answer(found, "travel")
+    said = answer(found, "distance")
+    assert f"{radius + 0.6:.3f}".rstrip("0") in said
+    assert "= 40.0 µm." in said
+    tip, base = radius + 2.6, radius * math.cos(angle)
+    clear = 0.02 / math.tan(angle)  # 40 µm of backlash
+    ratio = (math.sqrt(tip**2 - base**2) - radius * math.sin(angle) + (2.0 - 0.6 - clear) / math.sin(angle)) / (
+        pitch * math.cos(angle)
+    )
+    assert f"= {ratio:.3f} (as in fegear)" in answer(found, "contact ratio")
+    shift = 1.0 - 10.0 * math.sin(angle) ** 2 / math.cos(beta)
+    assert f"= {shift:.3f}, the pinion has x = 0.300 (fegear: it is not undercut)" in answer(found, "undercut")
+    forces = answer(found, "torque does")
+    assert f"= {2.0 * radius:.4g} N m" in forces
+    assert f"= {2000.0 * math.tan(angle):.4g} N lifts" in forces
+    assert ("along the axis" in forces) == bool(helix)
+    if helix:
+        assert f"= {2000.0 * math.tan(beta):.4g} N along the axis" in forces
+
+
+def test_a_rack_without_force_or_mesh():
+    assert not any("torque does" in one.question for one in exercises_of_rack(rack_scene(force=None), "axis"))
+    assert exercises_of_rack(rack_scene(backlash=None, distance="15 mm"), "axis") == []
+
+
+def test_an_undercut_pinion_is_said_and_the_page_hears_the_racks():
+    scene = rack_scene(backlash="0 um")
+    assert {one["topic"] for one in assemblies_of(scene)["racks"]["axis"]["exercises"]} == {"Rack and pinion"}
+    scene.document["gear"]["p"] |= {"teeth": 14, "profile_shift": 0.0, "bore_radius": "5 mm"}
+    scene = build_scene(scene.document, "t", Path())
+    said = answer(exercises_of_rack(scene, "axis"), "undercut")
+    assert "(fegear: it is undercut)" in said

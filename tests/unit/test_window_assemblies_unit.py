@@ -122,5 +122,5 @@ def test_what_cannot_be_assembled_is_not_drawn():
     document["planetary"]["P"] |= {"planets": 5, "pin_errors": {}}
     document["shaft"]["out"]["axis"] = ["0 mm", "60 mm"]
     scene = build_scene(document, "apart", Path())
-    assert assemblies_of(scene) == {"sets": {}, "gearbox": None}
+    assert assemblies_of(scene) == {"sets": {}, "gearbox": None, "racks": {}}
     assert on_the_assembly(Task("geometry"), None, scene) is None

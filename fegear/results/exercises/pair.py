@@ -1,4 +1,4 @@
-"""Questions of a first course on gears, each with the answer by the formula of textbooks beside that of fegear.
+"""Questions of a first course on a pair of gears: answers by formulas of textbooks beside those of fegear.
 
 What needs solved gears (transmission error, double contact, root stress) the page asks and answers by itself.
 """
@@ -7,54 +7,35 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from fegear.base.errors import FegearError
-from fegear.base.printed import figures as plain_figures
-from fegear.case.built.planetary import set_inputs
 from fegear.formulas.hertz import contact_modulus, line_contact, relative_curvature
 from fegear.geometry.checks import LEAST_TIP_THICKNESS, tip_thickness, undercut_of
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.path_of_contact import specific_sliding
+from fegear.results.exercises.helical import of_helical_pair
+from fegear.results.exercises.wording import (
+    DIGITS,
+    RPM,
+    Exercise,
+    degrees,
+    distance,
+    figures,
+    mm,
+    same,
+    signed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.case.built.planetary import SetInputs
     from fegear.case.reading import Scene
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
 
-#: Digits of an answer: what students compare.
-_DIGITS = 4
-#: Two numbers that differ by less are one [parts].
-_SAME = 5e-4
-#: Radians per second in revolutions per minute.
-_RPM = 30.0 / math.pi
 #: Tip thickness that case-hardened teeth want [modules].
 _HARDENED = 0.4
-
-
-class Exercise(NamedTuple):
-    """A question and its answer.
-
-    Attributes
-    ----------
-    topic : str
-        Under which it is chosen.
-    question, answer : str
-    number : str
-        End of the name of a computed value that the page adds, empty for none.
-    words : str
-        What it adds, with ``{}`` where the value goes.
-    """
-
-    topic: str
-    question: str
-    answer: str
-    number: str = ""
-    words: str = ""
 
 
 def exercises_of_pair(scene: Scene, name: str) -> list[Exercise]:
@@ -65,42 +46,6 @@ def exercises_of_pair(scene: Scene, name: str) -> list[Exercise]:
     part = scene.case.pair[name]
     load = part.normal_load(pair)
     return list(_of_pair(_Mesh(pair, None if load is None else load * part.halves, part.speed or 0.0)))
-
-
-def exercises_of_set(scene: Scene, name: str) -> list[Exercise]:
-    """Questions on a planetary gear set; none of one that cannot be assembled, for which the case is refused."""
-    try:
-        inputs = set_inputs(scene, name)
-    except FegearError:
-        return []
-    return [_willis(inputs), _torques(inputs), _assembly(inputs), _planet_force(inputs)]
-
-
-def figures(value: float, digits: int) -> str:
-    """Rounded, with the minus sign of a formula."""
-    return plain_figures(value, digits).replace("-", "−")
-
-
-def _signed(value: float, decimals: int) -> str:
-    """With so many decimals, and the minus sign of a formula."""
-    return f"{value:.{decimals}f}".replace("-", "−")
-
-
-def _mm(length: float) -> str:
-    return f"{figures(length * 1e3, _DIGITS)} mm"
-
-
-def _distance(length: float) -> str:
-    """A centre distance, to the micrometre."""
-    return f"{length * 1e3:.3f}".rstrip("0").rstrip(".") + " mm"
-
-
-def _degrees(angle: float) -> str:
-    return f"{figures(math.degrees(angle), _DIGITS)}°"
-
-
-def _same(one: float, other: float) -> bool:
-    return abs(one - other) <= _SAME * max(abs(one), abs(other))
 
 
 @dataclass(frozen=True)
@@ -139,6 +84,8 @@ def _of_pair(mesh: _Mesh) -> Iterator[Exercise]:
     yield _centre_distance(mesh)
     yield _base_pitch(mesh)
     yield _tip_thickness(mesh.pair)
+    if mesh.helical:
+        yield from of_helical_pair(mesh.pair, mesh.load)
     if mesh.load:
         yield _forces(mesh)
         if not mesh.helical:
@@ -152,16 +99,16 @@ def _undercut(pair: GearPair) -> Exercise:
     found = {member: one for member in MEMBERS if (one := undercut_of(pair.gear(member))) is not None}
     said = [
         f"The {member} gear is undercut: {figures(one.lost * 1e3, 2)} mm of its involute above the base circle are cut "
-        f"away; profile_shift = {_signed(one.enough, 4)} and more avoid it."
+        f"away; profile_shift = {signed(one.enough, 4)} and more avoid it."
         for member, one in found.items() if one.lost > 0.0
     ]  # fmt: skip
     if not said:
-        limits = ", ".join(f"{_signed(one.enough, 4)} ({member})" for member, one in found.items())
+        limits = ", ".join(f"{signed(one.enough, 4)} ({member})" for member, one in found.items())
         begins = f"; undercut begins below profile_shift = {limits}" if limits else ""
         said = [f"Neither gear is undercut{begins}."]
     straight = {member: one.straight for member, one in found.items() if one.straight is not None}
     if straight:
-        usual = ", ".join(f"{_signed(_least_shift(pair.gear(member)), 3)} ({member})" for member in straight)
+        usual = ", ".join(f"{signed(_least_shift(pair.gear(member)), 3)} ({member})" for member in straight)
         rule = "x_min = h − z sin²α_t / (2 cos β)" if pair.driver.helix_angle else "x_min = h − z sin²α/2"
         said.append(
             f"Rule: {rule}. Textbooks take h = 1: {usual}; the flank of this rack is straight down to "
@@ -178,7 +125,7 @@ def _least_shift(gear: Gear) -> float:
 
 def _contact_ratio(pair: GearPair) -> Exercise:
     question = "How large is the contact ratio?"
-    ratio = f"{_mm(pair.path_length)} / {_mm(pair.base_pitch)} = {pair.contact_ratio:.3f}"
+    ratio = f"{mm(pair.path_length)} / {mm(pair.base_pitch)} = {pair.contact_ratio:.3f}"
     below = " Below 1 motion is not transmitted continuously." if pair.contact_ratio < 1.0 else ""
     radii = [(one.tip_radius, one.base_radius) for one in (pair.driver, pair.driven)]
     if any(tip <= base for tip, base in radii):
@@ -193,11 +140,11 @@ def _contact_ratio(pair: GearPair) -> Exercise:
         _sum(*zip((*signs, -pair.side), terms, strict=True))
         for terms in (
             ("√(r_a1² − r_b1²)", "√(r_a2² − r_b2²)", f"a sin α_w{t}"),
-            [figures(one * 1e3, _DIGITS) for one in (*tips, between)],
+            [figures(one * 1e3, DIGITS) for one in (*tips, between)],
         )
     )
-    formula = f"ε = ({roots}) / p_b{t} = ({lengths}) mm / {_mm(pair.base_pitch)} = {by_tips:.3f}"
-    if _same(by_tips, pair.contact_ratio):
+    formula = f"ε = ({roots}) / p_b{t} = ({lengths}) mm / {mm(pair.base_pitch)} = {by_tips:.3f}"
+    if same(by_tips, pair.contact_ratio):
         overlap = f"; overlap ratio {pair.overlap_ratio:.3f}" if pair.overlap_ratio else ""
         return Exercise("Geometry", question, f"{formula}{overlap}.{below}")
     return Exercise("Geometry", question, f"{formula}; fegear: {ratio}, because {_shortened_by(pair)}.{below}")
@@ -227,15 +174,15 @@ def _sliding(mesh: _Mesh) -> Exercise:
     velocity = ""
     if mesh.speed:
         fastest = mesh.speed * abs(1.0 + pair.side / pair.ratio) * abs(most[1])
-        velocity = f", {figures(fastest, 3)} m/s at {figures(mesh.speed * _RPM, _DIGITS)} rpm"
+        velocity = f", {figures(fastest, 3)} m/s at {figures(mesh.speed * RPM, DIGITS)} rpm"
     specific = ", ".join(f"{_specific(pair, member, 'A', 'E')}" for member in MEMBERS)
     return Exercise(
         "Geometry",
         "Where on the path of contact do the flanks not slide, where most, and how large is the specific sliding at A "
         "and E?",
         f"Not at C, the pitch point; the sliding velocity v_g = (ω₁ {'−' if pair.internal else '+'} ω₂) g increases "
-        f"with the distance g from it and is largest at {most[0]} (A: {_mm(abs(pair.x_start))}, E: "
-        f"{_mm(abs(pair.x_end))} from C{velocity}). Specific sliding ζ₁ = 1 − z₁ρ₂ / (z₂ρ₁), ζ₂ = 1 − z₂ρ₁ / (z₁ρ₂): "
+        f"with the distance g from it and is largest at {most[0]} (A: {mm(abs(pair.x_start))}, E: "
+        f"{mm(abs(pair.x_end))} from C{velocity}). Specific sliding ζ₁ = 1 − z₁ρ₂ / (z₂ρ₁), ζ₂ = 1 − z₂ρ₁ / (z₁ρ₂): "
         f"{specific}.",
     )
 
@@ -252,11 +199,11 @@ def _specific(pair: GearPair, member: Member, *letters: str) -> str:
 def _ratio(mesh: _Mesh) -> Exercise:
     pair = mesh.pair
     u = pair.ratio
-    said = [f"i = n₁/n₂ = z₂/z₁ = {pair.driven.teeth}/{pair.driver.teeth} = {figures(u, _DIGITS)}"]
+    said = [f"i = n₁/n₂ = z₂/z₁ = {pair.driven.teeth}/{pair.driver.teeth} = {figures(u, DIGITS)}"]
     if mesh.speed:
-        said.append(f"n₂ = {figures(mesh.speed * _RPM / u, _DIGITS)} rpm")
+        said.append(f"n₂ = {figures(mesh.speed * RPM / u, DIGITS)} rpm")
     if mesh.load:
-        said.append(f"T₂ = i T₁ = {figures(u * mesh.torque, _DIGITS)} N m without losses")
+        said.append(f"T₂ = i T₁ = {figures(u * mesh.torque, DIGITS)} N m without losses")
     sense = "the same sense of rotation" if pair.internal else "opposite senses of rotation"
     return Exercise("Geometry", "How large is the transmission ratio, and what speed and torque has the driven gear?",
                     f"{'; '.join(said)}; {sense}.")  # fmt: skip
@@ -270,7 +217,7 @@ def _centre_distance(mesh: _Mesh) -> Exercise:
     t, n, reference, cos = ("_wt", "_n", "_t", " / cos β") if mesh.helical else ("_w", "", "", "")
     between = "|z₁ − z₂|" if pair.internal else "(z₁ + z₂)"
     signed = "(z₂ − z₁)" if tooth.side < 0.0 else "(z₁ − z₂)" if pair.internal else between
-    said = f"a = m{n} {between}{cos} / 2 = {_distance(a)}"
+    said = f"a = m{n} {between}{cos} / 2 = {distance(a)}"
     tight = a
     if abs(shifts) > 1e-12:
         angle = float(pressure_angle_of_inv(
@@ -278,32 +225,32 @@ def _centre_distance(mesh: _Mesh) -> Exercise:
         ))  # fmt: skip
         tight = a * math.cos(tooth.pressure_angle) / math.cos(angle)
         said += (
-            f"; inv α{t} = inv α{reference} + 2 (x₁ + x₂) tan α{n} / {signed}: α{t} = {_degrees(angle)}, "
-            f"a_w = a cos α{reference} / cos α{t} = {_distance(tight)} without backlash"
+            f"; inv α{t} = inv α{reference} + 2 (x₁ + x₂) tan α{n} / {signed}: α{t} = {degrees(angle)}, "
+            f"a_w = a cos α{reference} / cos α{t} = {distance(tight)} without backlash"
         )
     else:
         said += ", the working centre distance without backlash, since x₁ + x₂ = 0"
     if abs(pair.centre_distance - tight) > 1e-4 * pair.driver.module:
         said += (
-            f"; the case has {_distance(pair.centre_distance)}: α{t} = {_degrees(pair.working_pressure_angle)}, normal "
-            f"backlash {_mm(pair.normal_backlash)}"
+            f"; the case has {distance(pair.centre_distance)}: α{t} = {degrees(pair.working_pressure_angle)}, normal "
+            f"backlash {mm(pair.normal_backlash)}"
         )
     elif pair.normal_backlash > 1e-4 * pair.driver.module:
-        said += f"; thinner teeth give {_mm(pair.normal_backlash)} of normal backlash at it"
+        said += f"; thinner teeth give {mm(pair.normal_backlash)} of normal backlash at it"
     return Exercise("Geometry", "How large are reference and working centre distance?", f"{said}.")
 
 
 def _base_pitch(mesh: _Mesh) -> Exercise:
     pair, gear = mesh.pair, mesh.pair.driver
     if mesh.helical:
-        angles = f"cos {_degrees(gear.transverse_pressure_angle)} / cos {_degrees(abs(gear.helix_angle))}"
-        formula = f"p_bt = π m_n cos α_t / cos β = π · {_mm(gear.module)} · {angles}"
+        angles = f"cos {degrees(gear.transverse_pressure_angle)} / cos {degrees(abs(gear.helix_angle))}"
+        formula = f"p_bt = π m_n cos α_t / cos β = π · {mm(gear.module)} · {angles}"
     else:
-        formula = f"p_b = π m cos α = π · {_mm(gear.module)} · cos {_degrees(gear.normal_pressure_angle)}"
+        formula = f"p_b = π m cos α = π · {mm(gear.module)} · cos {degrees(gear.normal_pressure_angle)}"
     return Exercise(
         "Geometry",
         "How large is the base pitch, and why must it be equal on both gears?",
-        f"{formula} = {_mm(pair.base_pitch)}: the distance of successive flanks along the line of action, on which the "
+        f"{formula} = {mm(pair.base_pitch)}: the distance of successive flanks along the line of action, on which the "
         "next tooth pair comes into contact while this one still is.",
     )
 
@@ -315,9 +262,9 @@ def _tip_thickness(pair: GearPair) -> Exercise:
         if gear.tooth.internal:
             continue
         own, usual = tip_thickness(gear), _usual_tip_thickness(gear)
-        here = f"{member} {_mm(usual)} = {figures(usual / gear.module, 3)} m"
-        if not _same(own, usual):
-            here += f" (fegear: {_mm(own)}, with thickness allowance and the end of the involute below a tip rounding)"
+        here = f"{member} {mm(usual)} = {figures(usual / gear.module, 3)} m"
+        if not same(own, usual):
+            here += f" (fegear: {mm(own)}, with thickness allowance and the end of the involute below a tip rounding)"
         said.append(here)
     n, t, helix = ("_n", "_t", " cos β_a") if pair.driver.helix_angle else ("", "", "")
     at_tip = f"α_a{t[1:]}"
@@ -345,21 +292,21 @@ def _forces(mesh: _Mesh) -> Exercise:
     pair, angle, radius = mesh.pair, mesh.pair.working_pressure_angle, mesh.working_radius
     tangential = mesh.torque / radius
     said = [
-        f"F_t = 2 T₁ / d_w1 = {figures(tangential, _DIGITS)} N",
-        f"F_r = F_t tan α_w{'t' if mesh.helical else ''} = {figures(tangential * math.tan(angle), _DIGITS)} N",
+        f"F_t = 2 T₁ / d_w1 = {figures(tangential, DIGITS)} N",
+        f"F_r = F_t tan α_w{'t' if mesh.helical else ''} = {figures(tangential * math.tan(angle), DIGITS)} N",
     ]
     normal = tangential / math.cos(angle)
     if mesh.helical:
         axial = tangential * math.tan(abs(pair.working_helix_angle))
         normal /= math.cos(pair.driver.base_helix_angle)
-        said.append(f"F_a = F_t tan β_w = {figures(axial, _DIGITS)} N")
+        said.append(f"F_a = F_t tan β_w = {figures(axial, DIGITS)} N")
     else:
         said.append("F_a = 0 (spur)")
-    said.append(f"normal to the flank F_n = {figures(normal, _DIGITS)} N")
+    said.append(f"normal to the flank F_n = {figures(normal, DIGITS)} N")
     other = ""
-    if not _same(radius, pair.driver.pitch_radius):
+    if not same(radius, pair.driver.pitch_radius):
         at_reference = mesh.torque / pair.driver.pitch_radius
-        other = f" ISO 6336 takes F_t at the reference circle: 2 T₁ / d₁ = {figures(at_reference, _DIGITS)} N."
+        other = f" ISO 6336 takes F_t at the reference circle: 2 T₁ / d₁ = {figures(at_reference, DIGITS)} N."
     along = "" if mesh.helical else " F_n is the sum of the loads of all tooth pairs in fegear."
     return Exercise("Forces and stresses", "Which forces act between the gears (tangential, radial, axial)?",
                     f"{'; '.join(said)}.{other}{along}")  # fmt: skip
@@ -378,84 +325,9 @@ def _pressure(mesh: _Mesh, load: float) -> Exercise:
     return Exercise(
         "Forces and stresses",
         "How large is the Hertzian pressure at the pitch point?",
-        f"p = √(F_n E* / (π b ρ)) = {figures(pressure * 1e-6, _DIGITS)} MPa with one tooth pair in contact: "
-        f"F_n = {figures(load, _DIGITS)} N, b = {_mm(pair.face_width)}, ρ = ρ₁ρ₂ / (ρ₁ {'−' if pair.internal else '+'} "
-        f"ρ₂) = {_mm(1.0 / curvature)}, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂; {alone}.",
+        f"p = √(F_n E* / (π b ρ)) = {figures(pressure * 1e-6, DIGITS)} MPa with one tooth pair in contact: "
+        f"F_n = {figures(load, DIGITS)} N, b = {mm(pair.face_width)}, ρ = ρ₁ρ₂ / (ρ₁ {'−' if pair.internal else '+'} "
+        f"ρ₂) = {mm(1.0 / curvature)}, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂; {alone}.",
         "largest_hertz_pressure",
         "The maximum over the path of contact in fegear is {}: elsewhere flanks are more curved, and loads shared.",
-    )
-
-
-# ---- planetary gear sets ---------------------------------------------------------------------------------------------
-
-
-def _willis(inputs: SetInputs) -> Exercise:
-    found, run = inputs.found, inputs.run
-    u = found.ring_teeth / found.sun_teeth
-    formulas = {
-        ("sun", "carrier"): "1 + z_r/z_s", ("carrier", "sun"): "1 / (1 + z_r/z_s)", ("sun", "ring"): "−z_r/z_s",
-        ("ring", "sun"): "−z_s/z_r", ("ring", "carrier"): "1 + z_s/z_r", ("carrier", "ring"): "1 / (1 + z_s/z_r)",
-    }  # fmt: skip
-    speed = ""
-    if inputs.at_speed:
-        turns = {one: figures(run.speed[one] * _RPM, _DIGITS) for one in (run.input, run.output)}
-        speed = f", {turns[run.input]} rpm at the {run.input}, {turns[run.output]} rpm at the {run.output}"
-    return Exercise(
-        "Planetary gear set",
-        "How large is the ratio of the set (Willis)?",
-        f"(n_s − n_c) / (n_r − n_c) = −z_r/z_s = −{found.ring_teeth}/{found.sun_teeth} = {figures(-u, _DIGITS)}. With "
-        f"the {run.fixed} fixed: i = n_{run.input} / n_{run.output} = {formulas[run.input, run.output]} = "
-        f"{figures(run.ratio, _DIGITS)}{speed}.",
-    )
-
-
-def _torques(inputs: SetInputs) -> Exercise:
-    found, run = inputs.found, inputs.run
-    u = found.ring_teeth / found.sun_teeth
-    shares = {"sun": 1.0, "ring": u, "carrier": -(1.0 + u)}
-    unit = run.torque[run.input] / shares[run.input]
-    ideal = ", ".join(f"{one} {figures(unit * share, _DIGITS)} N m" for one, share in shares.items())
-    real = ", ".join(f"{one} {figures(run.torque[one], _DIGITS)} N m" for one in ("sun", "ring", "carrier"))
-    losses = ""
-    if not _same(run.efficiency, 1.0):
-        losses = f" fegear, with the losses of both meshes (efficiency {figures(run.efficiency, _DIGITS)}): {real}."
-    return Exercise(
-        "Planetary gear set",
-        "Which torques act on sun, ring and carrier?",
-        f"T_s : T_r : T_c = 1 : z_r/z_s : −(1 + z_r/z_s) without losses: {ideal}, positive counter-clockwise; they "
-        f"add up to zero.{losses}",
-    )
-
-
-def _assembly(inputs: SetInputs) -> Exercise:
-    found = inputs.found
-    teeth = found.sun_teeth + found.ring_teeth
-    if found.evenly_spaced:
-        first = f"(z_s + z_r) / N = {teeth}/{found.count} = {figures(teeth / found.count, _DIGITS)} is an integer"
-    else:
-        first = f"Planets fit at integer multiples of 360° / (z_s + z_r) = {figures(360.0 / teeth, _DIGITS)}°, as here"
-    room = ""
-    if found.count > 1:
-        even = "180°/N" if found.evenly_spaced else "ψ/2"
-        room = f"; tip circles of neighbours are 2 a sin({even}) − d_a = {_mm(found.neighbour_clearance)} apart"
-    return Exercise(
-        "Planetary gear set",
-        "Can the planets be assembled at these angles, and do neighbours touch?",
-        f"Yes: {first[0].lower() if first.startswith('P') else first[0]}{first[1:]}{room}.",
-    )
-
-
-def _planet_force(inputs: SetInputs) -> Exercise:
-    found = inputs.found
-    radius = found.base_radius("sun") / math.cos(found.sun_angle)
-    tangential = inputs.sun_torque / (found.count * radius)
-    return Exercise(
-        "Planetary gear set",
-        "How large are the forces on one planet and its pin?",
-        f"F_t = T_s / (N r_ws) = {figures(inputs.sun_torque, _DIGITS)} N m / ({found.count} · {_mm(radius)}) = "
-        f"{figures(tangential, _DIGITS)} N in each of its two meshes, F_t / cos α_w = "
-        f"{figures(tangential / math.cos(found.sun_angle), _DIGITS)} N along the line of action (sun); on the pin "
-        f"2 F_t = {figures(2.0 * tangential, _DIGITS)} N (spur planets, equal loads).",
-        "K_gamma",
-        "K_γ, the load of the most loaded planet over the mean, is {} in fegear (1: equal loads).",
     )

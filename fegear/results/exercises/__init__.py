@@ -1,0 +1,1 @@
+"""Questions of a first course on gears, with their answers by formulas."""
