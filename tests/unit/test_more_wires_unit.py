@@ -62,7 +62,7 @@ def test_a_motion_over_a_revolution_is_the_mean_of_its_repetitions(monkeypatch, 
 
     path = SimpleNamespace(duration=duration, approach=signal, mesh_forces=lambda at: signal(at, 4))
     model = SimpleNamespace(parts=lambda: SimpleNamespace(frequency=np.array([9.0, 1.0])))
-    state = SimpleNamespace(trajectory=lambda: path, model=model, repeats=True, behind=np.array([0.5, 0.25]))
+    state = SimpleNamespace(trajectory=lambda **_: path, model=model, repeats=True, behind=np.array([0.5, 0.25]))
     monkeypatch.setattr(over_revolution, "without_mesh_harmonics", lambda te, n: te * n)
     pair = SimpleNamespace(driver=SimpleNamespace(teeth=20))
     found = over_revolution.motion_over_revolution(state, 1, pair, cycles, 0.25)

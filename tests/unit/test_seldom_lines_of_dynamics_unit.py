@@ -309,7 +309,8 @@ def test_a_motion_over_all_base_pitches_is_that_of_its_trajectory(times):
     """Sampled from the mesh's own phase on, the mean where it goes round so many times; orders are those of a wave."""
     pitches, phase = 5, 0.3
     state = SimpleNamespace(
-        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, 3), repeats=True, behind=np.zeros(2),
+        trajectory=lambda **_: made_up_motion(times * pitches / FREQUENCY, pitches, 3), repeats=True,
+        behind=np.zeros(2),
         model=SimpleNamespace(parts=lambda: SimpleNamespace(frequency=np.array([1.0, FREQUENCY]))),
     )  # fmt: skip
     pair = SimpleNamespace(driver=SimpleNamespace(teeth=20), gear=lambda member: SimpleNamespace(teeth=20))
@@ -344,7 +345,9 @@ def test_what_one_tooth_changes_of_a_motion_is_zero_in_all_other_base_pitches():
     pulse[4] = np.exp(-(((s - 0.5) / 0.1) ** 2))
     te, force = (usual + pulse).ravel(), (10.0 * usual - 50.0 * pulse).ravel()
     rest = without_mesh_harmonics(te, pitches)
-    found = motion_over_revolution.MotionOverRevolution(None, pitches, 1.0, 1, True, te, te, te, rest, force, te)
+    found = motion_over_revolution.MotionOverRevolution(
+        None, pitches, 1.0, 1, True, te, te, te, rest, force, te, fine_te=te, fine_force=force
+    )
     np.testing.assert_allclose(found.te_change, pulse.ravel(), atol=1e-14)
     assert found.dynamic_te_change_max == pytest.approx(1.0)
     assert found.dynamic_te_residual_max == pytest.approx(1.0 - 1.0 / pitches)
@@ -366,7 +369,7 @@ def test_a_motion_of_a_set_over_all_base_pitches_is_that_of_its_trajectory(times
         linear=SimpleNamespace(meshed=meshed), mesh_frequency=FREQUENCY, period=pitches / FREQUENCY
     )  # fmt: skip
     state = SimpleNamespace(
-        trajectory=lambda: made_up_motion(times * pitches / FREQUENCY, pitches, size), kind="periodic",
+        trajectory=lambda **_: made_up_motion(times * pitches / FREQUENCY, pitches, size), kind="periodic",
         apart=np.array([0.1, 0.4]), largest=np.array([90.0, 80.0]),
     )  # fmt: skip
     found = set_motion_over_revolution(run, state, 2, (20, 31), True)

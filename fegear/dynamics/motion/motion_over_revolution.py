@@ -6,8 +6,9 @@ The motion is averaged in step with the teeth (as in vibration monitoring), so t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,8 +24,14 @@ from fegear.contact.plane.sidebands import (
 from fegear.dynamics.motion.steady_state import SteadyState
 from fegear.geometry.pair import MEMBERS, GearPair
 
+if TYPE_CHECKING:
+    from fegear.dynamics.motion.revolution_errors import RevolutionErrors
+    from fegear.dynamics.train.mesh_resonance import MeshResonance
+
 #: Even samples over a base pitch, and over all of them at most (but so many a base pitch at least).
 _SAMPLES, _MOST, _FEWEST = 128, 20_000, 16
+#: Parts of a sample in which maxima are looked for.
+_PARTS = 8
 _TURN = 2.0 * math.pi
 
 
@@ -60,6 +67,12 @@ class MotionOverRevolution:
         Whether it repeats.
     behind : float
         Share of the time in which the non-working flanks carry load.
+    fine_te, fine_force : ndarray
+        Transmission error and mesh force at eight times as many samples, for their maxima [m], [N].
+    errors : RevolutionErrors, optional
+        Estimated; of a motion that repeats, with teeth whose errors are stated.
+    resonance : MeshResonance, optional
+        Of the mesh, and how near the speed is to it.
     """
 
     pair: GearPair
@@ -84,18 +97,22 @@ class MotionOverRevolution:
     force: Array = shown("N", "mesh force with damping", label="mesh force", table="revolution")
     acceleration: Array = shown("m/s^2", "acceleration along the line of action", table="revolution")
     behind: float = 0.0
+    fine_te: Array = field(kw_only=True)
+    fine_force: Array = field(kw_only=True)
+    errors: RevolutionErrors | None = None
+    resonance: MeshResonance | None = None
 
     @property
     @shows("N", "maximum mesh force over the base pitches")
     def mesh_force_max(self) -> float:
         """[N]."""
-        return float(self.force.max())
+        return float(self.fine_force.max())
 
     @property
     @shows("N", "maximum mesh force in an ordinary base pitch")
     def mesh_force_max_ordinary(self) -> float:
         """[N]."""
-        return float(self._ordinary(self.force).max())
+        return float(self._ordinary(self.fine_force).max())
 
     @cached_property
     @shows(
@@ -106,13 +123,26 @@ class MotionOverRevolution:
     )
     def te_change(self) -> Array:
         """Less the median of all base pitches, as the residual of a pair at rest is defined, shape (M,) [m]."""
-        return np.asarray((self.te.reshape(self.cycles, -1) - self._ordinary(self.te)).ravel())
+        return self._change(self.te)
 
     @property
     @shows("um", "maximum change: dynamic transmission error minus that of an ordinary base pitch")
     def dynamic_te_change_max(self) -> float:
         """[m]."""
-        return float(np.abs(self.te_change).max())
+        return float(self.fine_change.max())
+
+    @cached_property
+    def fine_change(self) -> Array:
+        """Amount of `te_change` at the fine samples [m]."""
+        return np.abs(self._change(self.fine_te))
+
+    @cached_property
+    def fine_residual(self) -> Array:
+        """Amount of `te_residual` at the fine samples [m]."""
+        return np.abs(without_mesh_harmonics(self.fine_te, self.cycles))
+
+    def _change(self, values: Array) -> Array:
+        return np.asarray((values.reshape(self.cycles, -1) - self._ordinary(values)).ravel())
 
     def _ordinary(self, values: Array) -> Array:
         """Of an ordinary base pitch: the median of all, sample by sample."""
@@ -122,7 +152,7 @@ class MotionOverRevolution:
     @shows("um", "maximum residual of the dynamic transmission error")
     def dynamic_te_residual_max(self) -> float:
         """[m]."""
-        return float(np.abs(self.te_residual).max())
+        return float(self.fine_residual.max())
 
     @cached_property
     def orders(self) -> MotionOrders:
@@ -139,7 +169,7 @@ class MotionOverRevolution:
 
 
 def motion_over_revolution(
-    state: SteadyState, mesh: int, pair: GearPair, cycles: int, phase: float
+    state: SteadyState, mesh: int, pair: GearPair, cycles: int, phase: float, *, tolerance: float = 1e-10
 ) -> MotionOverRevolution:
     """A steady motion as a mesh sees it over a number of base pitches.
 
@@ -154,23 +184,28 @@ def motion_over_revolution(
         Base pitches after which its excitation repeats.
     phase : float
         Its phase at time zero [base pitches].
+    tolerance : float
+        Of the steps through the motion.
     """
-    trajectory = state.trajectory()
+    trajectory = state.trajectory(tolerance=tolerance)
     model = state.model
     frequency = float(model.parts().frequency[mesh])
     samples = max(_FEWEST, min(_SAMPLES, _MOST // cycles))
     duration = trajectory.duration
     averaged = max(1, round(duration * frequency / cycles))
-    s = np.arange(averaged * cycles * samples) / samples
+    s = np.arange(averaged * cycles * samples * _PARTS) / (samples * _PARTS)
     time = np.mod((s - phase) / frequency, duration)
 
     def mean(values: Array) -> Array:
         return np.asarray(values.reshape(averaged, -1).mean(axis=0))
 
-    te, acceleration = (mean(trajectory.approach(time, order)[:, mesh]) for order in (0, 2))
-    force = mean(trajectory.mesh_forces(time)[:, mesh])
-    turned = s[: cycles * samples]
+    fine_te = mean(trajectory.approach(time, 0)[:, mesh])
+    fine_force = mean(trajectory.mesh_forces(time)[:, mesh])
+    acceleration = mean(trajectory.approach(time[::_PARTS], 2)[:, mesh])
+    te, force = fine_te[::_PARTS], fine_force[::_PARTS]
+    turned = s[: cycles * samples * _PARTS : _PARTS]
     return MotionOverRevolution(
         pair, cycles, frequency, averaged, state.repeats, _TURN / pair.driver.teeth * turned, turned / frequency, te,
         without_mesh_harmonics(te, cycles), force, acceleration, float(state.behind[mesh]),
+        fine_te=fine_te, fine_force=fine_force,
     )  # fmt: skip

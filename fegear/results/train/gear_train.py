@@ -69,7 +69,8 @@ def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
     return cast("GearTrain", upstream[Task("gear-train")])
 
 
-def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+def needs_meshes(scene: Scene, _subject: str = "") -> tuple[Task, ...]:
+    """The tasks that load the teeth of the meshes."""
     part = train_part(scene)
     needed: dict[Task, None] = {}
     for name, mesh in part.mesh.items():
@@ -430,7 +431,7 @@ def pull_remarks(pull: Pull | None) -> tuple[str, ...]:
 
 GEAR_TRAIN = Stage(
     subjects=the_train,
-    needs=_needs,
+    needs=needs_meshes,
     inputs=lambda scene, _subject: train_inputs(scene),
     compute=compute_train,
     present=_SHEET.present,
