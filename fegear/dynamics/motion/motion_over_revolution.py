@@ -25,7 +25,6 @@ from fegear.dynamics.motion.steady_state import SteadyState
 from fegear.geometry.pair import MEMBERS, GearPair
 
 if TYPE_CHECKING:
-    from fegear.dynamics.motion.revolution_errors import RevolutionErrors
     from fegear.dynamics.train.mesh_resonance import MeshResonance
 
 #: Even samples over a base pitch, and over all of them at most (but so many a base pitch at least).
@@ -47,6 +46,35 @@ class MotionOrders:
     acceleration: Array = shown(
         "m/s^2", "amplitude of the acceleration along the line of action", label="acceleration", table="orders"
     )
+
+
+@dataclass(frozen=True)
+class RevolutionErrors:
+    """Estimated errors of a `MotionOverRevolution`, by the names of its quantities.
+
+    Parameters
+    ----------
+    te, te_residual, te_change, force, acceleration : ndarray, shape (M,)
+        [m], [N], [m/s^2].
+    te_order, force_order, acceleration_order : ndarray, shape (N,)
+        Of the amplitudes of its orders.
+    mesh_force_max, mesh_force_max_ordinary, dynamic_te_change_max, dynamic_te_residual_max : float
+    indicators : ConditionIndicators
+    """
+
+    te: Array
+    te_residual: Array
+    te_change: Array
+    force: Array
+    acceleration: Array
+    te_order: Array
+    force_order: Array
+    acceleration_order: Array
+    mesh_force_max: float
+    mesh_force_max_ordinary: float
+    dynamic_te_change_max: float
+    dynamic_te_residual_max: float
+    indicators: ConditionIndicators
 
 
 @dataclass(frozen=True)

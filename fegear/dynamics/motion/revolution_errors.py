@@ -7,13 +7,14 @@ changes of a vibration pass through zero. Maxima between samples count by what h
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from fegear.contact.plane.sidebands import ConditionIndicators, indicators_of
+from fegear.dynamics.motion.motion_over_revolution import MotionOverRevolution, RevolutionErrors
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.dynamics.motion.motion_model import MotionModel
-    from fegear.dynamics.motion.motion_over_revolution import MotionOverRevolution
 
 #: Tolerance of the motion beside over that of the motion.
 COARSER = 10.0
@@ -33,35 +33,6 @@ def softer(model: MotionModel, compliances: Sequence[float]) -> MotionModel:
     """The model with the teeth of each mesh softer by a relative error of their compliance."""
     parts = zip(model.excitations, compliances, strict=True)
     return replace(model, excitations=tuple(one.widened(1.0 / (1.0 + part)) for one, part in parts))
-
-
-@dataclass(frozen=True)
-class RevolutionErrors:
-    """Estimated errors of a `MotionOverRevolution`, by the names of its quantities.
-
-    Parameters
-    ----------
-    te, te_residual, te_change, force, acceleration : ndarray, shape (M,)
-        [m], [N], [m/s^2].
-    te_order, force_order, acceleration_order : ndarray, shape (N,)
-        Of the amplitudes of its orders.
-    mesh_force_max, mesh_force_max_ordinary, dynamic_te_change_max, dynamic_te_residual_max : float
-    indicators : ConditionIndicators
-    """
-
-    te: Array
-    te_residual: Array
-    te_change: Array
-    force: Array
-    acceleration: Array
-    te_order: Array
-    force_order: Array
-    acceleration_order: Array
-    mesh_force_max: float
-    mesh_force_max_ordinary: float
-    dynamic_te_change_max: float
-    dynamic_te_residual_max: float
-    indicators: ConditionIndicators
 
 
 def revolution_errors(

@@ -30,27 +30,27 @@ class MeshResonance:
 
     Parameters
     ----------
-    frequency : float
-        Of the mode with the largest share of its strain energy in the mesh [Hz].
-    speed : float
-        At which the mesh frequency meets it [rad/s], of the body that speeds refer to.
     harmonic : int
         Of the mesh frequency, the nearest to a mode of the mesh at the given speed.
     at : float
         Speed at which it meets that mode [rad/s].
     off : float
         By how much the given speed is above that, as a share.
+    frequency : float
+        Of the mode with the largest share of its strain energy in the mesh [Hz].
+    speed : float
+        At which the mesh frequency meets it [rad/s], of the body that speeds refer to.
     doubt : float, optional
         Relative error of the compliance of the mesh.
     """
 
+    harmonic: int
+    at: float
+    off: float
     frequency: float = shown(
         "Hz", "natural frequency of the mesh (undamped, mean stiffness)", name="mesh_natural_frequency"
     )
     speed: float = shown("rpm", "speed at which the mesh frequency meets it", name="resonance_speed")
-    harmonic: int
-    at: float
-    off: float
     doubt: float | None = None
 
     @property
@@ -86,4 +86,4 @@ def mesh_resonance(data: GearTrain, mesh: int, speed: float) -> MeshResonance | 
         ((speed * h / first[k] - 1.0, h, first[k] / h) for k in own for h in range(1, _HARMONICS + 1)),
         key=lambda one: abs(one[0]),
     )
-    return MeshResonance(float(found.frequencies[main]), float(first[main]), harmonic, float(at), float(ratio))
+    return MeshResonance(harmonic, float(at), float(ratio), float(found.frequencies[main]), float(first[main]))
