@@ -16,7 +16,11 @@ ROWS = Path("base/effects.py")
 #: Names of effects that nothing else in fegear has: keys of gears and pairs, results and columns have the other ones.
 OWN = {"corner_contact", "neighbour_coupling", "parametric"}
 #: Lists in which keys of gears or templates are called like effects.
-OTHERS = {Path("case/drafts/text.py")}  # placeholders of a template
+OTHERS = {
+    Path("case/drafts/text.py"),
+    Path("case/drafts/gears_text.py"),
+    Path("case/drafts/kinds_text.py"),
+}  # placeholders of a template
 #: What takes names of effects.
 TAKE = {"Need", "is_on", "has_data", "with_effect", "example", "remedy", "remark", "effects", "effect"}
 
