@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from fegear.case.built import pair_alignment
-from fegear.case.built.pair_alignment import _modification, _of_computed_shafts
+from fegear.case.built.pair_alignment import _modification, opened_by_shafts
 
 
 def lead(crowning=0.0, slope=0.0, end_relief=()):
@@ -46,4 +46,4 @@ def test_the_row_follows_from_the_leads_of_both_gears_while_they_count(leads, ro
 def test_shafts_that_open_no_gap_misalign_nothing(monkeypatch):
     monkeypatch.setattr(pair_alignment, "gearbox_of", lambda scene: "box")
     monkeypatch.setattr(pair_alignment, "gaps_of_even_loads", lambda box, name: SimpleNamespace(given=False))
-    assert _of_computed_shafts(SimpleNamespace(pairs={"I": None}), "I") == 0.0
+    assert opened_by_shafts(SimpleNamespace(pairs={"I": None}), "I") == 0.0

@@ -188,3 +188,34 @@ def test_the_design_with_the_higher_safety_factor_is_first():
     assert [row.flanks for row in unrated] == [1.2, 1.05, 1.15]
     assert all(math.isnan(row.contact) for row in unrated)
     assert len(_leads("I", found, (0.0, 0.0), lead)) == 2
+
+
+def k_h_beta(case):
+    asked = pair_to_rate(scene_of(case), "I")
+    return rate_pair(rated(asked), given(asked))["K_Hbeta"].value
+
+
+def test_a_slope_is_credited_only_for_what_it_takes_off_the_gap_of_the_shafts():
+    case = drafted()
+    case["gear"]["pinion"].pop("lead", None)
+    opened = rated_lead(scene_of(case), "I").opened
+    without, towards = k_h_beta(case), -math.copysign(1.0, opened)
+    found = []
+    for amount in (0.5e-6, -0.5e-6, -20e-6, 20e-6):
+        case["gear"]["pinion"]["lead"] = {"slope": f"{towards * amount * 1e6} um"}
+        found.append(k_h_beta(case))
+    assert found[0] < without < found[1] < found[2]
+    assert without < found[3] < found[2]
+
+
+def test_a_slope_without_computed_shafts_is_said_to_be_assumed():
+    case = drafted()
+    for key in ("shaft", "bearing"):
+        case.pop(key)
+    case["results"] = ["rating"]
+    case["gear"]["pinion"]["lead"] = {"slope": "5 um"}
+    case["pair"]["I"]["shafts"] = {"deformation": "8 um"}
+    said = pair_to_rate(scene_of(case), "I").assumed
+    assert any("helix slope modification is assumed to compensate" in one for one in said)
+    case["gear"]["pinion"].pop("lead")
+    assert not any("helix slope" in one for one in pair_to_rate(scene_of(case), "I").assumed)

@@ -159,6 +159,9 @@ def initial_misalignment(
 ) -> float:
     """F_betax before running in [m] (ISO 6336-1:2006, 7.5.2.2 and 7.5.2.3, Eqs. 52, 53, 55 and 56, with corrigendum 1).
 
+    Table 8 takes a helix modification as one that fits the deformation, B_1 = 0.1. Where it is known what slopes take
+    off, the deformation that they leave counts if it is larger: a slope of the wrong direction adds to it.
+
     Parameters
     ----------
     alignment : Alignment
@@ -166,11 +169,14 @@ def initial_misalignment(
         f_sh, f_ma, F_betaxmin, f_Hbeta5 [m]; the last counts where the contact pattern is favourable.
     """
     b_1, b_2 = modification_constants(alignment, manufacture)
+    remaining = b_1 * deformation
+    if alignment.against is not None:
+        remaining = max(remaining, abs(deformation - alignment.against))
     if alignment.contact_pattern == "verified":
         return least
     if alignment.contact_pattern == "favourable":
-        return max(abs(1.33 * b_1 * deformation - helix_slope_5), least)
-    return max(1.33 * b_1 * deformation + b_2 * manufacture, least)
+        return max(abs(1.33 * remaining - helix_slope_5), least)
+    return max(1.33 * remaining + b_2 * manufacture, least)
 
 
 def method_c(
@@ -357,6 +363,9 @@ class Alignment:
         f_sh over F_m/b of shafts that were computed [m^2/N].
     crowning : float, optional
         C_beta of both gears together, where `modification` follows from it; by default as much as its row requires.
+    against : float, optional
+        What helix slopes take off f_sh, where their direction is known; negative where they add to it [m]. By default
+        they compensate it as their row states, whatever their amount.
     """
 
     shaft: PinionShaft | None = None
@@ -368,3 +377,4 @@ class Alignment:
     face_load_factor: float | None = None
     computed: float | None = None
     crowning: float | None = None
+    against: float | None = None

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
 from fegear.base.shown import shown
-from fegear.case.built.pair_alignment import modification_of
+from fegear.case.built.pair_alignment import modification_of, opened_by_shafts, slope_against, slope_of_flank
+from fegear.case.built.shafts import on_shafts
 from fegear.case.halves import halves_share
 from fegear.case.set_pairs import set_that_shares
 from fegear.results.rating.rating import RATING, given, rated
@@ -40,6 +41,10 @@ class RatedLead:
         Whether either gear has one.
     stated : HelixModification or None
         What the case says of the flanks in place of their lead.
+    slope : float
+        What the slope of the driven gear opens over the common face towards end II [m].
+    opened : float, optional
+        What the shafts open to it, over the load; None where it is not computed.
     """
 
     asked: PairToRate
@@ -47,6 +52,8 @@ class RatedLead:
     sloped: bool
     end_relief: bool
     stated: HelixModification | None
+    slope: float = 0.0
+    opened: float | None = None
 
     def modification(self, slope: float, crowning: float) -> HelixModification:
         """What this lead of the driver makes of the flanks [m]."""
@@ -55,6 +62,12 @@ class RatedLead:
         return modification_of(
             crowned=bool(self.crowning or crowning), sloped=self.sloped or bool(slope), end_relief=self.end_relief
         )
+
+    def against(self, slope: float) -> float | None:
+        """What this slope of the driver, and that of the driven gear, take off the gap of the shafts [m]."""
+        pair = self.asked.pair
+        own = slope * pair.face_width / pair.driver.face_width
+        return None if self.opened is None or self.stated is not None else slope_against(self.opened, own + self.slope)
 
 
 @dataclass(frozen=True)
@@ -96,9 +109,11 @@ def rated_lead(scene: Scene, pair: str) -> RatedLead | None:
     leads = [scene.case.gear[gear].lead if counts else None for gear in (part.driver, part.driven)]
     ends = any(lead is not None and lead.end_relief for lead in leads)
     driven, stated = leads[1], part.shafts.modification if part.shafts else None
+    opened = opened_by_shafts(scene, pair) if part.shafts is None and on_shafts(scene, pair) else None
     return RatedLead(
-        asked, 0.0 if driven is None else driven.crowning, driven is not None and bool(driven.slope), ends, stated
-    )
+        asked, 0.0 if driven is None else driven.crowning, driven is not None and bool(driven.slope), ends, stated,
+        slope_of_flank(scene, pair, "driven"), opened,
+    )  # fmt: skip
 
 
 def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
@@ -111,7 +126,7 @@ def rated_with(lead: RatedLead, row: SafetyOfLead) -> SafetyOfLead:
     asked = lead.asked
     alignment = replace(
         asked.conditions.alignment, modification=lead.modification(row.slope, row.crowning),
-        crowning=None if lead.stated is not None else lead.crowning + row.crowning,
+        crowning=None if lead.stated is not None else lead.crowning + row.crowning, against=lead.against(row.slope),
     )  # fmt: skip
     asked = replace(asked, conditions=replace(asked.conditions, alignment=alignment))
     try:
