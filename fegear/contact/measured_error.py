@@ -1,4 +1,4 @@
-"""A measured transmission error: order spectrum of its trace, the curve over one tooth pitch, and both beside computed.
+"""A measured transmission error: order spectrum of its trace, and the curve of the mesh over one tooth pitch.
 
 A trace of two encoders has everything that turns with the shafts: eccentricity, pitch deviations, couplings. Over whole
 turns its harmonics stand at whole orders of the shaft; those of the mesh are the multiples of the number of teeth, and
@@ -10,30 +10,21 @@ away and nothing of the mesh, averaged over all teeth.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
-from fegear.base.shown import shown, shows
-from fegear.contact.curve_fit import fit_curve
-from fegear.contact.fitted_curve import FittedCurve
-from fegear.contact.trace_alternatives import alternatives
-from fegear.contact.trace_low_pass import low_pass
+from fegear.contact.order_spectrum import lines_of_mate, order_spectrum
 from fegear.contact.trace_outliers import suspected
 from fegear.contact.turns import going_on
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
-    from fegear.contact.fitted_line import Fitted
-    from fegear.contact.trace_alternatives import Alternative
-    from fegear.contact.trace_low_pass import LowPass
+    from fegear.contact.order_spectrum import OrderSpectrum
 
 #: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
 FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
@@ -43,14 +34,10 @@ _GAP = 0.25
 _SLACK = 1e-3
 #: Harmonics of the mesh that are compared at most.
 _HARMONICS = 12
-#: Largest part of the samples that are spikes; groups of teeth whose gains are compared, and fewest of them.
-_MOST_SPIKES, _GROUPS, _FEW_GROUPS = 0.1, 24, 3
-#: Logarithm of measured / computed up to which a trace may be at another torque.
-_OF_CURVE = math.log(1.15)
+#: Largest part of the samples that are spikes; groups of teeth whose gains are compared.
+_MOST_SPIKES, _GROUPS = 0.1, 24
 #: Fewest turns whose means have a scatter.
 _TURNS = 3
-#: Orders of each gear that are fitted together, and periods over the trace that tell two of them apart.
-_LINES, _APART = 3, 0.35
 _TURN = 2.0 * math.pi
 
 
@@ -64,62 +51,6 @@ class ShortTraceError(ValueError):
 
 class UnevenTraceError(ValueError):
     """A trace runs back, or has a stretch without samples; the text is a rule on the trace."""
-
-
-@dataclass(frozen=True)
-class OrderLine:
-    """One order of a trace: amplitude cos(order angle - phase) [m], [rad]."""
-
-    order: float
-    amplitude: float
-    phase: float
-
-    def at(self, angle: Array) -> Array:
-        """[m]."""
-        return np.asarray(self.amplitude * np.cos(self.order * angle - self.phase))
-
-
-@dataclass(frozen=True)
-class OrderSpectrum(ReadOnlyArrays):
-    """Orders of a trace over whole turns of the shaft, or over whole tooth pitches where it has no whole turn.
-
-    Parameters
-    ----------
-    turns : float
-        That it is taken over.
-    order, amplitude : ndarray, shape (N,)
-        Per turn of the shaft, from the first above zero; 0-peak [m].
-    phase : ndarray, shape (N,)
-        Of cos(order angle - phase) [rad].
-    """
-
-    turns: float
-    phase: Array = shown("deg", "phase: order times the rotation of the shaft at the maximum")
-    order: Array = shown("", "order per revolution of the shaft of the angle", label="order")
-    amplitude: Array = shown("um", "amplitude of the measured transmission error", label="amplitude")
-
-    def line(self, order: float) -> OrderLine | None:
-        """An order that it has; None of a trace without a whole turn."""
-        at = int(np.abs(self.order - order).argmin())
-        if self.turns < 1.0 or abs(self.order[at] - order) > 1e-6:
-            return None
-        return OrderLine(order, float(self.amplitude[at]), float(self.phase[at]))
-
-    def beside(self, lines: Sequence[OrderLine]) -> OrderSpectrum:
-        """With further lines, in the place of any of the same order."""
-        if not lines:
-            return self
-        added = np.array([one.order for one in lines])
-        kept = np.abs(self.order[:, None] - added).min(axis=1) > 1e-9
-        orders = np.concatenate([self.order[kept], added])
-        ascending = np.argsort(orders, kind="stable")
-        phase, amplitude = (
-            np.concatenate([known[kept], more])[ascending]
-            for known, more in (
-                (self.phase, [one.phase for one in lines]), (self.amplitude, [one.amplitude for one in lines])
-            )
-        )  # fmt: skip
-        return OrderSpectrum(self.turns, phase, orders[ascending], amplitude)
 
 
 @dataclass(frozen=True)
@@ -167,69 +98,6 @@ class MeasuredError(ReadOnlyArrays):
     mean_error: float = 0.0
 
 
-@dataclass(frozen=True)
-class FittedError(FittedCurve):
-    """A measured curve of the mesh over the computed one; angles are those of the shaft."""
-
-    offset: float = shown("um", "offset of the measured transmission error", name="measured_offset")
-    scale: float = shown("", "scale of the measured transmission error (measured / computed)", name="measured_scale")
-    gain: float = shown(
-        "", "measured / computed transmission error by least squares at this offset and shift", name="measured_gain"
-    )
-    angle: Array = shown(
-        "deg", "rotation of the shaft within one tooth pitch, measured angle less the shift",
-        label="rotation of the shaft",
-    )  # fmt: skip
-    measured: Array = shown(
-        "um", "measured transmission error, mean of all teeth, less the offset and divided by the scale",
-        label="transmission error",
-    )  # fmt: skip
-    computed: Array = shown("um", "computed transmission error at this angle")
-
-    @property
-    @shows("um", "measured transmission error less the computed one", label="residual")
-    def residual(self) -> Array:
-        """Shape (K,)."""
-        return self.measured - self.computed
-
-    @property
-    @shows("um", "measured transmission error, mean of all teeth, less the offset, not divided by the scale",
-           label="transmission error")  # fmt: skip
-    def as_measured(self) -> Array:
-        """Shape (K,)."""
-        return super().as_measured
-
-    @property
-    @shows("um", "computed transmission error times the scale", label="transmission error")
-    def fitted(self) -> Array:
-        """Shape (K,)."""
-        return super().fitted
-
-    @property
-    @shows("um", "measured transmission error less the computed one times the scale", label="residual")
-    def left_by_fit(self) -> Array:
-        """Shape (K,)."""
-        return super().left_by_fit
-
-    @property
-    @shows("um", "standard error of measured_offset", name="measured_offset_standard_error")
-    def offset_error(self) -> float:
-        """Zero where it was not fitted."""
-        return self.errors["offset"]
-
-    @property
-    @shows("um", "root mean square of the residual", name="residual_rms")
-    def rms(self) -> float:
-        """Over one tooth pitch."""
-        return float(np.sqrt(np.mean(self.residual**2)))
-
-    @property
-    @shows("", "correlation coefficient of measured and computed transmission error")
-    def correlation(self) -> float:
-        """Of Pearson."""
-        return super().correlation
-
-
 def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> MeasuredError:
     """Orders of a trace and its curve over one tooth pitch.
 
@@ -275,9 +143,9 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     start = turned[0] if first is None else first * pitch
     even = start + pitch / places * np.arange(cycles * places)
     values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
-    mate = _of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
+    mate = lines_of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
     less_mate = values - sum(one.at(even) for one in mate) if mate else values
-    spectrum = _spectrum(less_mate, cycles / teeth, start)
+    spectrum = order_spectrum(less_mate, cycles / teeth, start)
     by_tooth = _over_pitch(values, places)
     mean, mean_error = _mean_of_turns(less_mate, values, places, teeth)
     curve, spread, averaged = by_tooth.mean(axis=0) + mean, float(by_tooth.std(axis=0).mean()), len(by_tooth)
@@ -342,43 +210,6 @@ def _averaged(turned: Array, te: Array, group: Array) -> tuple[Array, Array]:
     return np.add.reduceat(turned, first) / count, np.add.reduceat(te, first) / count
 
 
-def _spectrum(values: Array, turns: float, start: float) -> OrderSpectrum:
-    found = np.fft.rfft(values - values.mean()) * 2.0 / values.size
-    if values.size % 2 == 0:
-        found[-1] *= 0.5
-    order = np.arange(1, found.size) / turns
-    return OrderSpectrum(turns, np.mod(order * start - np.angle(found[1:]), _TURN), order, np.abs(found[1:]))
-
-
-def _of_mate(values: Array, angle: Array, turns: float, ratio: float) -> tuple[OrderLine, ...]:
-    """Lines of the mating gear, which a spectrum over whole turns of the shaft would spread over its neighbours.
-
-    By least squares together with the first orders of the shaft. Lines that stand too near to whole orders are left to
-    those.
-
-    Parameters
-    ----------
-    values, angle : ndarray, shape (N,)
-    turns : float
-        That these are over.
-    ratio : float
-        Order of one revolution of the mating gear; 0 for none.
-    """
-    if turns < 1.0 or ratio * turns < 1.0:
-        return ()
-    own, orders = np.arange(1.0, _LINES + 1.0), ratio * np.arange(1, _LINES + 1)
-    orders = orders[np.abs(orders - np.round(orders)) * turns >= _APART]
-    if not orders.size or orders[0] != ratio:
-        return ()
-    both = np.multiply.outer(angle, np.concatenate([own, orders]))
-    found = np.linalg.lstsq(np.hstack([np.cos(both), np.sin(both), np.ones((angle.size, 1))]), values, rcond=None)[0]
-    cosine, sine = found[: both.shape[1]][own.size :], found[both.shape[1] : -1][own.size :]
-    return tuple(
-        OrderLine(float(order), math.hypot(c, s), math.atan2(s, c) % _TURN)
-        for order, c, s in zip(orders, cosine.tolist(), sine.tolist(), strict=True)
-    )
-
-
 def _over_pitch(values: Array, places: int) -> Array:
     """Curve over one tooth pitch of each tooth, from the first value on and without slow parts, shape (teeth, B)."""
     total = np.concatenate([[0.0], np.cumsum(values)])
@@ -388,111 +219,3 @@ def _over_pitch(values: Array, places: int) -> Array:
     quick = values[half : half + slow.size] - slow
     whole = quick.size // places
     return np.roll(quick[: whole * places].reshape(whole, places), half, axis=1)
-
-
-def beside_computed(
-    found: MeasuredError, x: Array, te: Array, base_pitch: float, fit: Collection[Fitted]
-) -> FittedError:  # fmt: skip
-    """Lay a measured curve of the mesh over a computed one.
-
-    Parameters
-    ----------
-    found : MeasuredError
-    x, te : ndarray, shape (P,)
-        Computed transmission error over one base pitch [m].
-    base_pitch : float
-        [m].
-    fit : collection of {"offset", "scale", "shift"}
-        A shift is within half a tooth pitch to either side.
-    """
-    over = _Over(x, base_pitch)
-    curve = over.closed(te)
-    one = fit_curve(found.teeth * found.angle, found.te, over.angle, curve, fit)
-    turn = 1.0 / found.teeth
-    angle = np.mod(one.angle * turn, _TURN * turn)
-    order = np.argsort(angle, kind="stable")
-    return FittedError(
-        one.fit, _errors_of_shaft(one, turn, found.mean_error), one.outside, one.offset, one.scale,
-        one.shift * turn, one.gain, one.gain_error, angle[order], one.measured[order], one.computed[order],
-        gain_scatter=_of_gain(found, one, over, curve), noise=one.noise,
-    )  # fmt: skip
-
-
-def _errors_of_shaft(one: FittedCurve, turn: float, mean_error: float) -> dict[Fitted, float]:
-    """Standard errors of a curve over one tooth pitch in angles of the shaft, that of the offset with slow parts."""
-    offset = math.hypot(one.errors["offset"], mean_error) if "offset" in one.fit else 0.0
-    return {**one.errors, "shift": one.errors["shift"] * turn, "offset": offset}
-
-
-def better_described(
-    found: MeasuredError, fitted: FittedError, x: Array, curves: Mapping[str, Array], base_pitch: float,
-    fit: Collection[Fitted],
-) -> tuple[Alternative, ...]:  # fmt: skip
-    """Descriptions of a trace that fit clearly better, shifts in angles of the shaft.
-
-    Parameters
-    ----------
-    found : MeasuredError
-    fitted : FittedError
-        As it is described.
-    x : ndarray, shape (P,)
-    curves : mapping of str to ndarray, shape (P,)
-        Computed transmission error: under the empty name that beside which it is, and others, which have to fit in
-        size as well.
-    base_pitch : float
-    fit : collection of {"offset", "scale", "shift"}
-    """
-    over = _Over(x, base_pitch)
-    asked = {name: over.closed(te) for name, te in curves.items()}
-    described = partial(alternatives, fitted, found.teeth * found.angle, found.te, over.angle)
-    better = described(asked, fit)
-    wrong = {one.curve for one in better if one.curve and abs(math.log(one.fitted.gain)) > _OF_CURVE}
-    if wrong:  # another shape of the size of none of them
-        better = described({name: te for name, te in asked.items() if name not in wrong}, fit)
-    return tuple(replace(one, fitted=replace(one.fitted, shift=one.fitted.shift / found.teeth)) for one in better)
-
-
-def behind_low_pass(
-    found: MeasuredError, fitted: FittedError, x: Array, te: Array, base_pitch: float, fit: Collection[Fitted]
-) -> LowPass | None:  # fmt: skip
-    """The low pass with which a trace fits clearly better, its time constant as an angle of the shaft; None for none.
-
-    Parameters
-    ----------
-    found : MeasuredError
-        Of a trace along which the shaft turns forward.
-    fitted : FittedError
-        As it is described.
-    x, te : ndarray, shape (P,)
-        Computed transmission error over one base pitch [m].
-    base_pitch : float
-    fit : collection of {"offset", "scale", "shift"}
-    """
-    over = _Over(x, base_pitch)
-    behind = low_pass(fitted, found.teeth * found.angle, found.te, over.angle, over.closed(te), fit, repeats=True)
-    return behind and replace(behind, lag=behind.lag / found.teeth)
-
-
-class _Over:
-    """One base pitch as a turn: the computed curve over the number of teeth times the angle."""
-
-    def __init__(self, x: Array, base_pitch: float) -> None:
-        phase = _TURN * (x - x[0]) / base_pitch
-        self._inside = phase < _TURN
-        # Zero of both angles is where a tooth pair is at the pitch point.
-        self.angle = _TURN * x[0] / base_pitch + np.append(phase[self._inside], _TURN)
-
-    def closed(self, te: Array) -> Array:
-        """Transmission error over these angles."""
-        return np.append(te[self._inside], te[0])
-
-
-def _of_gain(found: MeasuredError, one: FittedCurve, over: _Over, curve: Array) -> float:
-    """Standard error of the gain by how it differs between groups of teeth; of one group, by the noise of the curve."""
-    if len(found.by_teeth) < _FEW_GROUPS:
-        return one.gain_scatter
-    begin = over.angle[0]
-    at = np.interp(np.mod(found.teeth * found.angle - one.shift - begin, _TURN) + begin, over.angle, curve)
-    own = at - at.mean()
-    gains = found.by_teeth @ own / (own @ own)
-    return float(gains.std(ddof=1)) / math.sqrt(gains.size)

@@ -11,7 +11,8 @@ from fegear.base.printed import figures, percent
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.encoders import encoders_of
 from fegear.case.reading import build_scene
-from fegear.contact.measured_error import ShortTraceError, beside_computed, measured_error
+from fegear.contact.fitted_error import beside_computed
+from fegear.contact.measured_error import ShortTraceError, measured_error
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

@@ -9,7 +9,8 @@ from scipy.signal import bessel, butter, lfilter
 
 from fegear.base.notes import NoteClass
 from fegear.contact.curve_fit import fit_curve
-from fegear.contact.measured_error import behind_low_pass, beside_computed, measured_error
+from fegear.contact.fitted_error import behind_low_pass, beside_computed
+from fegear.contact.measured_error import measured_error
 from fegear.contact.trace_low_pass import filtered, filtered_higher, low_pass
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.trace_verdict import ComputedPeak, alike, verdict

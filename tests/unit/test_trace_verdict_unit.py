@@ -9,8 +9,9 @@ import pytest
 
 from fegear.base.notes import NoteClass
 from fegear.contact.curve_fit import fit_curve
+from fegear.contact.fitted_error import beside_computed, better_described
 from fegear.contact.gauge_strain import gains_of_places, reach_of_places
-from fegear.contact.measured_error import beside_computed, better_described, measured_error
+from fegear.contact.measured_error import measured_error
 from fegear.contact.once_per_turn import OncePerTurn
 from fegear.contact.trace_alternatives import Alternative, alternatives
 from fegear.results.pair.gauge_otherwise import Otherwise

@@ -14,7 +14,9 @@ from fegear.base.arrays import Array
 from fegear.base.notes import Note, NoteClass, class_of, exceeding, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
-from fegear.contact.measured_error import FittedError, MeasuredError, OrderLine
+from fegear.contact.fitted_error import FittedError
+from fegear.contact.measured_error import MeasuredError
+from fegear.contact.order_spectrum import OrderLine
 from fegear.contact.trace_alternatives import Alternative, Change
 from fegear.contact.trace_low_pass import LowPass
 from fegear.results.pair.better_described import BetterDescribed, behind_low_pass, degrees, of_unit

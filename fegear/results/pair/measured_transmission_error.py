@@ -77,7 +77,7 @@ def _measured(trace: ErrorTrace, teeth: int, mate_teeth: int) -> MeasuredError:
 
 
 def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorData:
-    from fegear.contact.measured_error import behind_low_pass, beside_computed, better_described
+    from fegear.contact.fitted_error import behind_low_pass, beside_computed, better_described
 
     found: ErrorOverPitch = upstream[Task("transmission-error", asked.pair)].found
     pair, nominal = found.pair, float(found.te_peak_to_peak[found.at])
