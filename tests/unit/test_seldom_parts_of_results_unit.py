@@ -26,7 +26,7 @@ from fegear.results.pair import fillet_design_sheet, load_distribution
 from fegear.results.pair.trace_levels import _less_runout
 from fegear.results.relief import flank_design_answer, tolerance_words
 from fegear.results.relief.applied_fillet import applied_fillet
-from fegear.results.train.dynamic_strain import DynamicStrain
+from fegear.results.train.dynamic_strain_data import DynamicStrain
 
 
 # ---- excitation of a helical pair ------------------------------------------------------------------------------------

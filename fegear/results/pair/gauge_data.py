@@ -11,6 +11,7 @@ from fegear.base.arrays import Array
 from fegear.base.notes import Note, class_of
 from fegear.base.shown import shown, shows
 from fegear.case.built.gauges import Gauge
+from fegear.case.effects import EffectsPart
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_places, reach_of_places
 from fegear.results.pair.gauge_otherwise import Otherwise
@@ -26,6 +27,49 @@ _NEAR_CONTACT = 0.15
 _BY_LINEARITY = 0.25
 #: What puts a gauge without a trace before others, by the relative change of its peak with the place.
 _BY_PLACE = 0.4
+
+
+@dataclass(frozen=True)
+class GaugeInputs:
+    """What this stage reads.
+
+    Parameters
+    ----------
+    gauge : Gauge
+    speed : float or None
+        Of its gear [rad/s].
+    estimates : bool
+        Whether errors are estimated.
+    wide : bool
+        Whether its gear is 3D.
+    sharper : str
+        What makes the computed strain more accurate.
+    name : str
+    finer : str
+        Remedy where its estimated error exceeds the tolerance; of 3D gears.
+    tolerance : float
+    effects : EffectsPart
+        All of the case, for remedies.
+    halves : int
+        2 of a double helical pair, whose teeth are one half.
+    neglected : bool
+        Whether it is looked at what effects that are off would change.
+    in_bridge : bool
+        Whether it is the second gauge of a half bridge.
+    """
+
+    gauge: Gauge
+    speed: float | None
+    estimates: bool
+    wide: bool
+    sharper: str = field(compare=False)
+    name: str = field(compare=False)
+    finer: str = field(compare=False, default="")
+    tolerance: float = 1.0
+    effects: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
+    halves: int = 1
+    neglected: bool = False
+    in_bridge: bool = False
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -11,13 +10,10 @@ from fegear.base.effects import RootEffects
 from fegear.base.errors import InputError
 from fegear.base.notes import about
 from fegear.base.printed import percent
-from fegear.base.shown import shows
-from fegear.case.built.gauges import Gauge, check_gauge, gauge_of, seconds_of_bridges, sharper_strain
+from fegear.case.built.gauges import check_gauge, gauge_of, seconds_of_bridges, sharper_strain
 from fegear.case.built.neglected_effects import including, remark
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.train import train_part
-from fegear.case.effects import EffectsPart
-from fegear.contact.gauge_strain import gains_of_places
 from fegear.engine.citation import Citation
 from fegear.engine.figure.items import Mark
 from fegear.engine.sheet.answer import Answer
@@ -31,7 +27,8 @@ from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.solved_gear import needs_solution, solid_solution_of, solution_of
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_row import GaugeRow, gauge_rows
-from fegear.results.pair.gauges_together import GaugeGain, gain_of, of_all_gauges
+from fegear.results.pair.gauge_said import by_placement, subject, title_of_all, trace_remarks
+from fegear.results.pair.gauges_together import GaugeGain, of_all_gauges
 from fegear.results.pair.loaded_teeth import kind_of, loaded_pair, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     LEFT_OUT,
@@ -48,15 +45,13 @@ from fegear.results.pair.placed_gauge import (
     placed_on_face,
 )
 from fegear.results.pair.planned_gauges import PlannedGauge
-from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, verdict
+from fegear.results.train.dynamic_strain_data import DynamicStrain, DynamicStrainInputs
 from fegear.results.train.gear_train import ORDINARY_ROOTS, RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
-    from fegear.contact.fitted_curve import FittedCurve
     from fegear.contact.gauge_strain import StrainWith
     from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.tooth_strain import ToothStrain
@@ -65,144 +60,6 @@ if TYPE_CHECKING:
 
 #: Seconds of the forces on a tooth and on those around it.
 _SECONDS = 0.3
-
-
-@dataclass(frozen=True)
-class DynamicStrainInputs:
-    """What the strain in motion depends on besides the train and its gears.
-
-    Parameters
-    ----------
-    gauge : Gauge
-    mesh : str
-    speed : float
-        Of the body that speeds refer to [rad/s].
-    positions : int
-    coupled : bool
-        Whether the forces on the teeth around count.
-    effects : RootEffects
-    name : str
-    wide : bool
-        Whether its gear is 3D.
-    halves : int
-        2 of a double helical pair, whose teeth are one half.
-    sharper : str
-        What makes the computed strain of 3D gears more accurate.
-    odd : bool
-        Whether some of the teeth differ from the others.
-    neglected : bool
-        Whether it is looked at what effects that are off would change: a trace is judged.
-    tolerance : float
-    in_bridge : bool
-        Whether it is the second gauge of a half bridge.
-    off : EffectsPart
-        All of the case, for remedies.
-    """
-
-    gauge: Gauge
-    mesh: str
-    speed: float
-    positions: int
-    coupled: bool
-    effects: RootEffects
-    wide: bool
-    halves: int
-    sharper: str = field(compare=False)
-    name: str = field(compare=False)
-    odd: bool = field(default=False, compare=False)
-    neglected: bool = False
-    tolerance: float = 1.0
-    in_bridge: bool = False
-    off: EffectsPart = field(compare=False, default_factory=lambda: EffectsPart())
-
-
-@dataclass(frozen=True)
-class DynamicStrain(BesideTrace):
-    """Strain of a gauge in motion, and what it measured.
-
-    Parameters
-    ----------
-    found : ToothStrain
-    alone : bool
-        Whether nothing but the own mesh excites the train.
-    load_tolerance : float
-    compared : FittedCurve or None
-    otherwise : Otherwise
-        What else may explain the trace.
-    sharper : str
-        The setting that makes the computed strain of 3D gears more accurate; empty of plane ones.
-    neglected : mapping of str to float
-        Relative change of the quasi-static peak by each effect that is off and changes it by more than the tolerance.
-    including : str
-        What switches these on.
-    seen : ToothStrain or None
-        What a half bridge sees, of which the trace is; None without one.
-    displaced_second : ndarray, shape (P, G), or None
-        The same with the grid of its second gauge displaced.
-    with_effects : mapping of str to StrainWith
-        Quasi-static strain with each effect that is off, of the second gauge of a half bridge.
-    gains : mapping of str to float
-        Relative change of measured / computed strain by each neglected effect of what the trace is of.
-    torque : float
-        Mean of the driver of its mesh [N m].
-    """
-
-    found: ToothStrain
-    alone: bool
-    load_tolerance: float
-    compared: FittedCurve | None
-    otherwise: Otherwise
-    sharper: str = ""
-    neglected: Mapping[str, float] = field(default_factory=dict)
-    including: str = ""
-    seen: ToothStrain | None = None
-    displaced_second: Array | None = None
-    with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
-    gains: Mapping[str, float] = field(default_factory=dict)
-    torque: float = 0.0
-
-    @property
-    @shows("um/m", "dynamic peak of the strain less that of the second gauge of the half bridge",
-           name="dynamic_bridge_peak_strain")  # fmt: skip
-    def bridge_peak(self) -> float | None:
-        """None without a bridge."""
-        return None if self.seen is None else self.seen.peak
-
-    @property
-    def error(self) -> Array | None:
-        """Estimated, shape (P,); None where it is not known."""
-        return None if self.found.peak_error is None else self.found.error
-
-    @property
-    def others(self) -> bool:
-        """Whether other meshes, or fluctuating torques, excite the train."""
-        return not self.alone
-
-    def _verdict(self, *, brief: bool) -> Judged:
-        if self.compared is None or (self.sharper and self.found.peak_error is None):
-            return Judged("")
-        return verdict(self.compared, self._computed(self.compared), self.otherwise, brief=brief)
-
-    def planned(self, name: str) -> PlannedGauge:
-        """What the gauge of this name comes to as long as it has no trace."""
-        return PlannedGauge.of(name, self.found.peak, self.found.displacement, self.found.peak_of_places)
-
-    def beside_others(self, gauge: Gauge) -> GaugeGain | PlannedGauge | None:
-        """Measured / computed strain with its limits, to be judged with other gauges; None without a verdict."""
-        if self.compared is None:
-            return self.planned(gauge.name)
-        return gain_of(gauge, self, self._computed(self.compared))
-
-    def _computed(self, compared: FittedCurve) -> ComputedPeak:
-        """What the trace is judged by."""
-        found, of_second = self.seen or self.found, np.ones(1)
-        if self.displaced_second is not None:
-            of_second = gains_of_places(compared, found.angle, self.displaced_second)
-        return ComputedPeak(
-            found.peak, found.peak_error or 0.0, found.displacement,
-            gains_of_places(compared, found.angle, found.displaced), self.load_tolerance, self.gains, self.sharper,
-            self.including, of_second,
-        )  # fmt: skip
 
 
 def _mesh(scene: Scene, name: str) -> str:
@@ -349,29 +206,10 @@ def _rows(seen: Seen) -> list[GaugeRow]:
     return [GaugeRow.of(seen.name, data, data.torque, (data.seen or data.found).peak)]
 
 
-def _by_placement(seen: Seen) -> list[str]:
-    """How the peak changes with the place of the grid."""
-    data: DynamicStrain = seen.data
-    said = data.planned(seen.name).by_placement
-    return [f"Gauge {seen.name}: displaced within its tolerance the dynamic peak changes by {said}."] if said else []
-
-
-def _title_of_all(seen: Seen) -> str:
-    """What the table of all gauges has: before there are traces no measured strain."""
-    data: DynamicStrain = seen.data
-    return f"{'Dynamic' if data.compared is None else 'Measured and dynamic'} strain of all gauges"
-
-
 def _of_all(gauges: Sequence[GaugeGain | PlannedGauge | None]) -> str:
     """Sentence about all gauges in motion; empty for none."""
     said = of_all_gauges(gauges)
     return f"In motion: {said[0].lower()}{said[1:]}" if said else ""
-
-
-def _subject(seen: Seen) -> str:
-    """Whose trace it is."""
-    second = seen.asked.gauge.second
-    return f"Gauge {seen.name} less {second}" if second else f"Gauge {seen.name}"
 
 
 def _neglected(seen: Seen) -> str:
@@ -426,23 +264,18 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"{_subject(seen)}, in motion: {seen.data.judged}."] if seen.data.judged else [],
+        lambda seen: [f"{subject(seen)}, in motion: {seen.data.judged}."] if seen.data.judged else [],
         _peak,
-        _by_placement,
+        lambda seen: by_placement(seen, "dynamic peak"),
         figure="dynamic_strain_{name}", rank=lambda seen: seen.data.urgency,
-        overview=gauge_rows("dynamic_gauges", _title_of_all, _rows),
+        overview=gauge_rows("dynamic_gauges", lambda seen: title_of_all(seen, "dynamic"), _rows),
         fact=lambda seen: seen.data.beside_others(seen.asked.gauge), common=_of_all,
     ),
     remarks=(
         Remark(ORDINARY_ROOTS, when=lambda seen: seen.asked.odd),
-        Remark(lambda seen: about(f"{_subject(seen)}, in motion", seen.data.verdict), when="verdict"),
+        Remark(lambda seen: about(f"{subject(seen)}, in motion", seen.data.verdict), when="verdict"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
-        Remark("Gauge {name}, in motion: {d.drifts}.", when="drifts"),
-        Remark("Gauge {name}, in motion: {d.runout}.", when="runout"),
-        Remark("Gauge {name}, in motion: {d.unsteady}.", when="unsteady"),
-        Remark("Gauge {name}, in motion: {d.hum}.", when="hum"),
-        Remark("Gauge {name}, in motion: {d.steps}.", when="steps"),
-        Remark("Gauge {name}, in motion: {d.without}.", when="without"),
+        *trace_remarks("Gauge {name}, in motion"),
     ),
     sharper_by="",
 )  # fmt: skip
