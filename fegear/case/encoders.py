@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.case.part import Number, Part, PositiveSpeed, PositiveTorque, at_most, refuse
+from fegear.case.trace import TracePart
 
 
 class ErrorTracePart(Part):
@@ -23,8 +24,8 @@ class ErrorTracePart(Part):
     )
 
 
-class EncodersPart(Part):
-    """Transmission error of a pair measured with encoders on both shafts."""
+class ErrorTracesPart(Part):
+    """Traces of a pair and what they are of: the first keys."""
 
     pair: str | None = Field(default=None, description="Pair. Default: the only pair.")
     traces: Annotated[list[ErrorTracePart], Field(min_length=1), at_most(100, "traces")] = Field(
@@ -43,37 +44,23 @@ class EncodersPart(Part):
         description="Sign: positive where the driven gear lags behind (as computed) or where it leads (angle of the "
         "driven gear minus ideal angle).",
     )
-    angle: str | None = Field(default=None, description="Unit of the angle column, if its head has none.")
+
+
+class EncodersPart(TracePart, ErrorTracesPart):
+    """Transmission error of a pair measured with encoders on both shafts."""
+
     te: str | None = Field(default=None, description="Unit of the column of the transmission error, if its head has "
                            "none: `um`, `arcsec`, `urad`.")  # fmt: skip
-    angle_column: str = Field(default="angle", description="Name of the angle column.")
     te_column: str = Field(default="te", description="Name of the column of the transmission error.")
     mate_column: str | None = Field(
         default=None,
         description="Column of the rotation of the other shaft, in place of `te_column`: the transmission error is the "
         "difference of both angles, by the base radii. Requires `offset` in `fit`.",
     )
-    time: str | None = Field(default=None, description="Unit of the column of the time, if its head has none.")
-    time_column: str = Field(
-        default="time",
-        description="Column of the time, of files without the angle: the rotation is that at a constant `speed`.",
-    )
     speed: PositiveSpeed | None = Field(
         default=None,
         description="Constant speed of `shaft` during the traces, if they are over time; it is found from the period "
         "of the mesh within ±5 %. Default: that of the pair.",
-    )
-    torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
-    torque_column: str = Field(
-        default="torque",
-        description="Name of the column of the torque on the driver, in files with several torques: each torque of the "
-        "pair takes the longest run of samples within `torque_band`, averaged over a tooth pitch.",
-    )
-    torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
-        default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
-    )
-    reverse: bool = Field(
-        default=False, description="The measured angle is counted against the direction of rotation of the shaft."
     )
     fit: list[Literal["offset", "scale", "shift"]] = Field(
         default_factory=list,
@@ -86,17 +73,7 @@ class EncodersPart(Part):
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
-        if len(set(self.fit)) < len(self.fit):
-            raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
-        if self.angle_column == self.te_column:
-            key = "te_column" if "te_column" in self.model_fields_set else "angle_column"
-            other = "angle" if key == "te_column" else "transmission error"
-            raise refuse(f"is the column of the {other}", "specify another column", key=key)
-        if self.torque_column in (self.angle_column, self.te_column):
-            other = "angle" if self.torque_column == self.angle_column else "transmission error"
-            raise refuse(f"is the column of the {other}", "specify another column", key="torque_column")
-        if self.time_column in (self.angle_column, self.te_column, self.torque_column):
-            raise refuse("is another column, too", "specify another column", key="time_column")
+        self.check_columns(self.fit, self.te_column, "te_column", "transmission error")
         if self.mate_column is not None:
             self._check_mate()
         torques = [trace.torque for trace in self.traces if trace.torque is not None]

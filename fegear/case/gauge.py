@@ -19,19 +19,24 @@ from fegear.case.part import (
     Table,
     refuse,
 )
+from fegear.case.trace import TracePart
 
 #: Keys that say where the middle of the grid lies.
 PLACES = ("tangent_angle", "centre_angle", "arc", "diameter", "height")
 
 
-class MeasuredStrainPart(Part):
-    """``measured = { file, angle, strain, fit }``: a trace of the gauge over the rotation of its gear."""
+class StrainFilePart(Part):
+    """File with a measured strain: its first key."""
 
     file: str = Field(
         description="CSV file with the columns `angle [deg]` (rotation of the gear of the gauge), or `time [s]` at a "
         "constant speed, and `strain [um/m]` or `[mV/V]`."
     )
-    angle: str | None = Field(default=None, description="Unit of the angle column, if its head has none.")
+
+
+class MeasuredStrainPart(TracePart, StrainFilePart):
+    """``measured = { file, angle, strain, fit }``: a trace of the gauge over the rotation of its gear."""
+
     strain: str | None = Field(
         default=None,
         description="Unit of the strain column, if its head has none: `um/m`, `ustrain`, `m/m`; of the output of the "
@@ -59,35 +64,17 @@ class MeasuredStrainPart(Part):
     amplification: PositiveNumber = Field(
         default=1.0, description="Amplification of the output of the bridge, voltage over voltage."
     )
-    angle_column: str = Field(default="angle", description="Name of the angle column.")
     strain_column: str = Field(default="strain", description="Name of the strain column.")
-    time: str | None = Field(default=None, description="Unit of the column of the time, if its head has none.")
-    time_column: str = Field(
-        default="time",
-        description="Column of the time, of files without the angle: the rotation is that at a constant `speed`.",
-    )
     speed: PositiveSpeed | None = Field(
         default=None,
         description="Constant speed of the gear of the gauge (of `shaft`) during the trace, if it is over time; from "
         "two turns on it is found from the period of the trace within ±5 %. Default: that of the pair.",
-    )
-    torque: str | None = Field(default=None, description="Unit of the column of the torque, if its head has none.")
-    torque_column: str = Field(
-        default="torque",
-        description="Column of the torque on the driver, if there is one: each torque of the pair takes the longest "
-        "run of samples within `torque_band`, the rest (run-up) is left out. The verdict is that at the nominal load.",
-    )
-    torque_band: Annotated[Number, Field(gt=0.0, le=0.5)] = Field(
-        default=0.05, description="Relative deviation (±) from a torque of the pair within which samples belong to it."
     )
     fit: list[Literal["offset", "scale", "shift", "drift", "runout"]] = Field(
         default_factory=list,
         description="Parameters fitted by least squares: `offset` (zero of the bridge), `scale` (gauge factor, load), "
         "`shift` (zero of the angle); with `offset` also `drift` (linear over the turns) and `runout` (once per turn, "
         "outside the mesh).",
-    )
-    reverse: bool = Field(
-        default=False, description="The measured angle is counted against the direction of rotation of the gear."
     )
     shaft: Literal["driver", "driven"] | None = Field(
         default=None,
@@ -97,18 +84,10 @@ class MeasuredStrainPart(Part):
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
-        if len(set(self.fit)) < len(self.fit):
-            raise refuse("contains a quantity twice", "specify each once", value=list(self.fit), key="fit")
+        self.check_columns(self.fit, self.strain_column, "strain_column", "strain")
         for one in ("drift", "runout"):
             if one in self.fit and "offset" not in self.fit:
                 raise refuse(f"contains {one} without offset", "add offset", value=list(self.fit), key="fit")
-        if self.angle_column == self.strain_column:
-            raise refuse("is the column of the angle", "specify another column", key="strain_column")
-        known = {self.angle_column: "angle", self.strain_column: "strain"}
-        for key, column in (("torque_column", self.torque_column), ("time_column", self.time_column)):
-            if column in known:
-                raise refuse(f"is the column of the {known[column]}", "specify another column", key=key)
-            known[column] = key.removesuffix("_column")
         return self
 
 

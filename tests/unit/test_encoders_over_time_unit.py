@@ -77,7 +77,7 @@ def test_refusals(tmp_path):
     for columns, more, rule in (
         ((time, 1e6 * error), {}, 'rig.speed = (not given): is required: "t.csv" has the time in column time'),
         ((time[::-1], error), {"speed": "60 rpm"}, "must have ascending times in column time; sort the lines"),
-        ((time, error), {"speed": "60 rpm", "time_column": "te"}, "is another column, too"),
+        ((time, error), {"speed": "60 rpm", "time_column": "te"}, "is the column of the transmission error"),
     ):
         with pytest.raises(InputError) as refused:
             read(tmp_path, columns, **more)
