@@ -24,7 +24,7 @@ from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.shaped_side import ShapedSide
 from fegear.results.helical import drawn_rack_cutters
-from fegear.results.pair import measured_error_data
+from fegear.results.pair import error_otherwise
 from fegear.results.planetary import planet_load_sharing
 from fegear.results.shafts.gearbox_overview import _designation
 from fegear.results.train import dynamic_factor
@@ -135,7 +135,7 @@ def test_mesh_orders_are_of_the_mate_only_where_the_trace_has_them(teeth, mate, 
     for n, size in ((1, 3e-6), (2, 1e-6), (3, 0.4e-6)):
         lines[n * (teeth if of == "own" else mate) - 1] = size
     spectrum = SimpleNamespace(order=order, amplitude=lines + 1e-9, turns=3.0)
-    found = measured_error_data.orders_of_mate(SimpleNamespace(spectrum=spectrum, teeth=teeth), mate)
+    found = error_otherwise.orders_of_mate(SimpleNamespace(spectrum=spectrum, teeth=teeth), mate)
     assert found is (of == "mate" and mate % teeth != 0)
 
 

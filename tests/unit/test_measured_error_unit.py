@@ -17,7 +17,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.measured_error_data import counted
+from fegear.results.pair.error_otherwise import counted
 
 TEETH, PITCH, TURN = 23, 9e-3, 2.0 * np.pi
 X = np.linspace(-2e-3, -2e-3 + PITCH, 181)

@@ -18,7 +18,7 @@ from fegear.exchange.rexs.set_bodies import _radial
 from fegear.output import held_folder
 from fegear.output.new_for_old import _free_name
 from fegear.output.numbers import with_error
-from fegear.results.pair.measured_error_data import orders_of_mate
+from fegear.results.pair.error_otherwise import orders_of_mate
 from fegear.results.shafts.at_glance import BearingAtGlance
 from fegear.results.shafts.gearbox_changes import change_of_life, shortest_life
 from fegear.shafts.larger_bearing import BearingChange, LargerBearing

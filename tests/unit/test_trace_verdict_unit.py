@@ -14,8 +14,8 @@ from fegear.contact.gauge_strain import gains_of_places, reach_of_places
 from fegear.contact.measured_error import measured_error
 from fegear.contact.once_per_turn import OncePerTurn
 from fegear.contact.trace_alternatives import Alternative, alternatives
+from fegear.results.pair.error_otherwise import OtherwiseError, orders_of_mate
 from fegear.results.pair.gauge_otherwise import Otherwise
-from fegear.results.pair.measured_error_data import OtherwiseError, orders_of_mate
 from fegear.results.pair.placed_gauge import counted_angle
 from fegear.results.pair.trace_named import drawn_as, left_out, runout_named, thinned
 from fegear.results.pair.trace_verdict import ComputedPeak, verdict

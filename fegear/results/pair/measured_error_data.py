@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,13 +14,15 @@ from fegear.base.arrays import Array
 from fegear.base.notes import Note, NoteClass, class_of, exceeding, failing
 from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
+from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.fitted_error import FittedError
 from fegear.contact.measured_error import MeasuredError
 from fegear.contact.order_spectrum import OrderLine
-from fegear.contact.trace_alternatives import Alternative, Change
-from fegear.contact.trace_low_pass import LowPass
-from fegear.results.pair.better_described import BetterDescribed, behind_low_pass, degrees, of_unit
+from fegear.contact.trace_causes import Cause
+from fegear.results.pair.better_described import behind_low_pass
+from fegear.results.pair.error_otherwise import OtherwiseError
 from fegear.results.pair.error_over_torques import common_cause
+from fegear.results.pair.likeliest_flank import LikeliestFlank
 
 #: Standard errors that count as scatter.
 _CERTAIN = 2.0
@@ -28,88 +30,10 @@ _CERTAIN = 2.0
 _ALIKE = 0.98
 #: Estimated error of the computed value above which it judges no measurement within it, relative.
 _JUDGES = 0.1
-#: Difference from the ratio of the teeth within which it is named.
-_AT_SHAFT = 0.05
-#: Mesh orders that are looked at, and times by which those of the other gear are larger where the shaft is wrong.
-_ORDERS, _OF_MATE = 3, 4.0
+#: Residual over that of a likely cause up to which another description explains as much.
+_NO_MORE = 1.4
 #: Orders of a figure, over the number of teeth; harmonics over torque that are drawn.
 _DRAWN_ORDERS, _DRAWN_HARMONICS = 6.5, 3
-
-
-@dataclass(frozen=True)
-class OtherwiseError(BetterDescribed):
-    """What else may explain a trace of encoders.
-
-    Parameters
-    ----------
-    mate_teeth : int
-        Teeth of the other gear where the orders of the trace are its multiples; 0 where they are not.
-    ratio : float
-        Number of teeth of the driven gear over that of the driver, where the trace is an angle; else 0.
-    low_pass : LowPass or None
-        With which the trace fits clearly better.
-    speed : float or None
-        Of the shaft of the angle [rad/s].
-    counted : {"", "twice", "half"}
-        How the encoder counts, by the order of the mesh.
-    """
-
-    mate_teeth: int = 0
-    ratio: float = 0.0
-    low_pass: LowPass | None = None
-    speed: float | None = None
-    counted: str = ""
-
-    def words(self, one: Alternative) -> dict[Change, tuple[str, str]]:
-        """How each change is said, and what to check."""
-        return {
-            "curve": (f"as computed at {one.curve}", "the torque of the trace"),
-            "sign": ("with its sign reversed", "positive"),
-            "reverse": ("with its angle reversed", "reverse"),
-            "shift": (f"shifted by {degrees(one)}", 'the zero of the angle (add "shift" to fit)'),
-        }
-
-    def of_ratio(self, found: float) -> str:
-        """Reason that a ratio of measured to computed has, with the sign before it; empty for none."""
-        if unit := of_unit(found, "the transmission error"):
-            return unit
-        for ratio in (self.ratio, 1.0 / self.ratio) if self.ratio else ():
-            if abs(ratio - 1.0) > _AT_SHAFT and abs(found / ratio - 1.0) <= _AT_SHAFT:
-                return f", the ratio of the teeth being {figures(ratio)}; check te_at"
-        return ""
-
-
-def orders_of_mate(found: MeasuredError, mate_teeth: int) -> bool:
-    """Whether the mesh orders of a trace are those of the mating gear: its angle is that of the other shaft."""
-
-    def largest(teeth: int, other: int) -> float:
-        orders = [float(n * teeth) for n in range(1, _ORDERS + 1) if (n * teeth) % other]
-        return max((_near(found, order) for order in orders), default=0.0)
-
-    return found.spectrum.turns >= 1.0 and largest(mate_teeth, found.teeth) > _OF_MATE * largest(
-        found.teeth, mate_teeth
-    ) > 0.0  # fmt: skip
-
-
-def counted(found: MeasuredError) -> str:
-    """Whether an encoder counts twice or half, by the order of the mesh; empty where it does not."""
-    if found.spectrum.turns < 2.0:
-        return ""
-    own, double, half = (_near(found, factor * found.teeth) for factor in (1.0, 2.0, 0.5))
-    uneven = max(own, _near(found, 3.0 * found.teeth))
-    beside = max(_near(found, 0.5 * found.teeth + off) for off in (-2.5, -1.5, 1.5, 2.5))
-    if half > own and half > _OF_MATE * beside:
-        return "twice"
-    return "half" if double > _OF_MATE * uneven else ""
-
-
-def _near(found: MeasuredError, order: float) -> float:
-    """Amplitude at an order or at the lines beside it, which have a part of one between two lines [m]."""
-    spectrum = found.spectrum
-    if order > spectrum.order[-1]:
-        return 0.0
-    at = int(np.abs(spectrum.order - order).argmin())
-    return float(spectrum.amplitude[max(at - 1, 0) : at + 2].max())
 
 
 @dataclass(frozen=True)
@@ -348,6 +272,22 @@ class TraceBeside:
         return Note(said, kind)
 
     @property
+    def tolerance(self) -> float:
+        """Of measured over computed, scatter aside, relative."""
+        parts = self._limits
+        return math.hypot(parts["torque"], parts["computation"])
+
+    def beside_cause(self, cause: Cause | None) -> TraceBeside:
+        """The same without a low pass or another torque that explains no more than a relief or a torque does."""
+        if cause is None:
+            return self
+        otherwise, most = self.otherwise, _NO_MORE * cause.rms
+        if otherwise.low_pass is not None and _left_by(otherwise.low_pass.fitted) > most:
+            otherwise = replace(otherwise, low_pass=None)
+        better = tuple(one for one in otherwise.better if one.changes != ("curve",) and _left_by(one.fitted) <= most)
+        return replace(self, otherwise=replace(otherwise, better=better))
+
+    @property
     def _limits(self) -> dict[str, float]:
         """What measured and computed may differ by, relative, by its cause."""
         return {
@@ -384,6 +324,11 @@ class TraceBeside:
         )  # fmt: skip
 
 
+def _left_by(fitted: FittedCurve) -> float:
+    """Root mean square of what a fitted curve leaves, as measured."""
+    return fitted.rms * abs(fitted.scale)
+
+
 @dataclass(frozen=True)
 class OverTorque:
     """One mesh harmonic over the torques of the traces."""
@@ -400,6 +345,7 @@ class MeasuredErrorData:
 
     traces: Sequence[TraceBeside]
     shaft: str
+    flank: LikeliestFlank
 
     @property
     def last(self) -> TraceBeside:

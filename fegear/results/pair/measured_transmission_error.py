@@ -11,6 +11,7 @@ from fegear.base.errors import InputError
 from fegear.base.notes import about, failing
 from fegear.base.printed import figures
 from fegear.case.built.encoders import Encoders, encoders_of, pair_of_encoders
+from fegear.contact.trace_causes import Causes
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.axis import Axis
 from fegear.engine.figure.items import Mark
@@ -22,14 +23,12 @@ from fegear.engine.sheet.seen import Seen
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Stage, Task, Upstream, Work
 from fegear.results import forecasts
+from fegear.results.pair.causes_of_error import causes_of_error
+from fegear.results.pair.error_otherwise import OtherwiseError, counted, orders_of_mate
 from fegear.results.pair.error_over_torques import one_filter, torque_of_gain
-from fegear.results.pair.measured_error_data import (
-    MeasuredErrorData,
-    OtherwiseError,
-    TraceBeside,
-    counted,
-    orders_of_mate,
-)
+from fegear.results.pair.likeliest_flank import LikeliestFlank
+from fegear.results.pair.loaded_teeth import loaded_teeth, needs_teeth
+from fegear.results.pair.measured_error_data import MeasuredErrorData, TraceBeside
 from fegear.results.pair.placed_gauge import TIMES, comparison_values
 
 if TYPE_CHECKING:
@@ -43,7 +42,8 @@ _DOTS = {"size": 5.0, "symbol": "circle"}
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (Task("transmission-error", pair_of_encoders(scene, name)),)
+    pair = pair_of_encoders(scene, name)
+    return (Task("transmission-error", pair), *needs_teeth(scene, pair))
 
 
 def _measured(trace: ErrorTrace, teeth: int, mate_teeth: int) -> MeasuredError:
@@ -118,7 +118,11 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
     ]  # fmt: skip
     if not one_filter(lags):
         traces = [replace(one, otherwise=replace(one.otherwise, low_pass=None)) for one in traces]
-    return MeasuredErrorData(traces, asked.member)
+    causes = causes_of_error(traces, loaded_teeth(upstream, asked.pair), asked.fit) if asked.estimates else Causes()
+    traces = [one.beside_cause(causes.best) for one in traces]
+    torques = tuple(one.torque for one in traces)
+    flank = LikeliestFlank(causes, pair, torques, traces[-1].computed_peak_to_peak)
+    return MeasuredErrorData(traces, asked.member, flank)
 
 
 def _mesh_orders(seen: Seen) -> list[Mark]:
@@ -235,6 +239,7 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
+        lambda seen: [f"Encoders {seen.name}: {seen.data.flank.said}."] if seen.data.flank.found.alike else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.last.judged}."] if seen.data.last.judged else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.common_cause}."] if seen.data.common_cause else [],
         "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
@@ -247,6 +252,7 @@ _SHEET = Sheet(
         figure="measured_te_{name}", rank=lambda seen: seen.data.urgency,
     ),
     remarks=(
+        Remark(lambda seen: about(f"Encoders {seen.name}", seen.data.flank.said), when="flank.said"),
         Remark(
             lambda seen: about(f"Encoders {seen.name}, {seen.one.torque:.5g} N m", seen.one.verdict), each="traces",
             when=lambda seen: bool(seen.one.verdict),
