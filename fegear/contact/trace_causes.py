@@ -4,7 +4,7 @@ For each number that may be otherwise the computed curve is that of the changed 
 offset and shift as they are fitted, and with a scale that is one within what load and encoders, or load and place of
 a gauge, are uncertain by: a relief must not make up for a torque. The number with the least sum of squares is found by
 solving again; its standard error is by the curvature of that sum and by what it leaves, whose neighbours do not differ
-independently. Numbers that leave about as little cannot be told apart.
+independently. Numbers that leave about as little cannot be distinguished.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Causes:
     causes : tuple of Cause
         All that explain some of the residual.
     alike : int
-        How many of the first cannot be told apart; 0 where none explains the traces.
+        How many of the first cannot be distinguished; 0 where none explains the traces.
     rms : float
         Of the last trace beside the stated curve.
     """

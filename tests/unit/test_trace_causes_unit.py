@@ -95,7 +95,7 @@ def test_the_gear_whose_relief_is_another_is_named(driver, driven, of):
     assert best.value == pytest.approx(driver if of == ("driver",) else driven, abs=2.0 * best.error)
 
 
-def test_a_torque_is_told_from_a_relief_and_several_torques_have_one_cause():
+def test_a_torque_is_distinguished_from_a_relief_and_several_torques_have_one_cause():
     e = engagement()
     found = causes(e, traced(e, torque=0.8), traced(e, torque=1.2, seed=1), torques=(1.0, 1.5))
     best = found.best
@@ -119,7 +119,7 @@ def test_a_relief_where_none_is_stated_is_one_from_the_highest_point_of_single_c
 
 
 def test_causes_that_leave_as_little_are_said_to_be_as_likely():
-    """A hand-made family: two numbers with the same curve cannot be told apart, a third one explains a part."""
+    """A hand-made family: two numbers with the same curve cannot be distinguished, a third one explains a part."""
     angle = np.linspace(0.0, TURN, 129)
     one, other, half = (replace(possible_flanks(engagement())[0], kind="start", of=("driver",), low=-3.0, high=3.0,
                                 stated=0.0, tooth=k) for k in (0, 1, 2))  # fmt: skip

@@ -1,4 +1,4 @@
-"""Which relief, torque or pitch explains a measured trace, a clause: the likeliest first, what cannot be told apart."""
+"""Which relief, torque or pitch explains a measured trace, a clause: the likeliest first, with its error."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class LikeliestFlank:
         said = f"{agrees} with {self._one(best)}"
         if alike > 1:
             said += (
-                f", which cannot be told apart from {' or '.join(self._one(one) for one in causes[1:alike][:_MOST])}"
+                f", which cannot be distinguished from {' or '.join(self._one(one) for one in causes[1:alike][:_MOST])}"
             )
         said += (
             f": RMS of the residual {percent(best.rms / self.size)} of {self.of} instead of "
