@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _FEW_GROUPS = 3
 #: Logarithm of measured / computed up to which a trace may be at another torque.
 _OF_CURVE = math.log(1.15)
+#: Even places of a curve of which the higher harmonics are left out.
+_EVEN = 1024
 _TURN = 2.0 * math.pi
 
 
@@ -113,7 +115,7 @@ def beside_computed(
         A shift is within half a tooth pitch to either side.
     """
     over = _Over(x, base_pitch)
-    curve = over.closed(te)
+    curve = over.closed(te, found.resolved)
     one = fit_curve(found.teeth * found.angle, found.te, over.angle, curve, fit)
     turn = 1.0 / found.teeth
     angle = np.mod(one.angle * turn, _TURN * turn)
@@ -150,7 +152,7 @@ def better_described(
     fit : collection of {"offset", "scale", "shift"}
     """
     over = _Over(x, base_pitch)
-    asked = {name: over.closed(te) for name, te in curves.items()}
+    asked = {name: over.closed(te, found.resolved) for name, te in curves.items()}
     described = partial(alternatives, fitted, found.teeth * found.angle, found.te, over.angle)
     better = described(asked, fit)
     wrong = {one.curve for one in better if one.curve and abs(math.log(one.fitted.gain)) > _OF_CURVE}
@@ -176,7 +178,8 @@ def behind_low_pass(
     fit : collection of {"offset", "scale", "shift"}
     """
     over = _Over(x, base_pitch)
-    behind = low_pass(fitted, found.teeth * found.angle, found.te, over.angle, over.closed(te), fit, repeats=True)
+    curve = over.closed(te, found.resolved)
+    behind = low_pass(fitted, found.teeth * found.angle, found.te, over.angle, curve, fit, repeats=True)
     return behind and replace(behind, lag=behind.lag / found.teeth)
 
 
@@ -189,9 +192,15 @@ class _Over:
         # Zero of both angles is where a tooth pair is at the pitch point.
         self.angle = _TURN * x[0] / base_pitch + np.append(phase[self._inside], _TURN)
 
-    def closed(self, te: Array) -> Array:
-        """Transmission error over these angles."""
-        return np.append(te[self._inside], te[0])
+    def closed(self, te: Array, harmonics: int | None = None) -> Array:
+        """Transmission error over these angles, without what is above a harmonic."""
+        whole = np.append(te[self._inside], te[0])
+        if harmonics is None:
+            return whole
+        even = self.angle[0] + _TURN * np.arange(_EVEN) / _EVEN
+        lines = np.fft.rfft(np.interp(even, self.angle, whole))
+        lines[harmonics + 1 :] = 0.0
+        return np.interp(self.angle, np.append(even, even[0] + _TURN), np.append(one := np.fft.irfft(lines), one[0]))
 
 
 def _of_gain(found: MeasuredError, one: FittedCurve, over: _Over, curve: Array) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.contact.order_spectrum import lines_of_mate, order_spectrum
+from fegear.contact.pulse_steps import PulseStep, pulse_steps
 from fegear.contact.trace_outliers import suspected
 from fegear.contact.turns import going_on
 
@@ -26,8 +27,11 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.order_spectrum import OrderSpectrum
 
-#: Fewest samples and most places of the averaged curve to a tooth pitch; fewest tooth pitches of a trace.
-FEWEST_A_TOOTH, _MOST_A_TOOTH, FEWEST_PITCHES = 16, 360, 3
+#: Fewest samples of a tooth pitch, which resolve the first mesh harmonic, fewest of a curve with all that is compared,
+#: and most places of the averaged one; fewest tooth pitches of a trace.
+FEWEST_A_TOOTH, _WHOLE, _MOST_A_TOOTH, FEWEST_PITCHES = 5, 16, 360, 3
+#: Part of the samples of a tooth pitch up to which harmonics are resolved, and degree of the spline of few samples.
+_RESOLVED, _DEGREE = 0.4, 7
 #: Part of a tooth pitch over which a trace may have no sample, or run back (an encoder that trembles).
 _GAP = 0.25
 #: Part of a turn that a trace may lack of a whole one: the last of evenly spaced samples.
@@ -81,6 +85,12 @@ class MeasuredError(ReadOnlyArrays):
         short to tell it from those of the shaft.
     mean_error : float
         Standard error of the mean of the trace by what varies slowly [m].
+    steps : tuple of PulseStep
+        Where an encoder may have lost pulses.
+    resolved : int or None
+        Mesh harmonics that the samples of a tooth pitch resolve where these are few; None of a trace with enough.
+    samples : float
+        Of a tooth pitch.
     """
 
     teeth: int
@@ -96,6 +106,9 @@ class MeasuredError(ReadOnlyArrays):
     spikes: int = 0
     mate_order: float = 0.0
     mean_error: float = 0.0
+    steps: tuple[PulseStep, ...] = ()
+    resolved: int | None = None
+    samples: float = math.inf
 
 
 def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> MeasuredError:
@@ -115,7 +128,7 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     ShortTraceError
     UnevenTraceError
     """
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import make_interp_spline
 
     pitch = _TURN / teeth
     spikes = suspected(te)[0]
@@ -137,12 +150,13 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
         )
     turns = math.floor((length + step) / _TURN + _SLACK)
     cycles = teeth * turns if turns else math.floor((length + step) / pitch + _SLACK)
-    places = min(round(samples), _MOST_A_TOOTH)
+    places = min(max(round(samples), _WHOLE), _MOST_A_TOOTH)
     # Evenly spaced and from a whole number of pitches on, so that phases count from angle zero.
     first = math.ceil(turned[0] / pitch - _SLACK) if turned[0] + (cycles + 1) * pitch <= turned[-1] else None
     start = turned[0] if first is None else first * pitch
     even = start + pitch / places * np.arange(cycles * places)
-    values = CubicSpline(turned, te)(np.minimum(even, turned[-1]))
+    few = samples < _WHOLE - 0.5  # a cubic spline rounds what few samples resolve
+    values = make_interp_spline(turned, te, k=_DEGREE if few else 3)(np.minimum(even, turned[-1]))
     mate = lines_of_mate(values, even, cycles / teeth, teeth / mate_teeth if mate_teeth else 0.0)
     less_mate = values - sum(one.at(even) for one in mate) if mate else values
     spectrum = order_spectrum(less_mate, cycles / teeth, start)
@@ -150,13 +164,15 @@ def measured_error(angle: Array, te: Array, teeth: int, mate_teeth: int = 0) -> 
     mean, mean_error = _mean_of_turns(less_mate, values, places, teeth)
     curve, spread, averaged = by_tooth.mean(axis=0) + mean, float(by_tooth.std(axis=0).mean()), len(by_tooth)
     groups = np.array_split(by_tooth, min(averaged, _GROUPS))
-    n = 1 + np.arange(min(_HARMONICS, places // 2 - 1))
+    resolved = max(math.floor(_RESOLVED * samples), 1) if few else None
+    n = 1 + np.arange(min(_HARMONICS, resolved or (places - 1) // 2))
     at = n * cycles - 1  # the record has `cycles` tooth pitches: harmonic n of the mesh is its n-th multiple
     at = at[at < spectrum.order.size]
     return MeasuredError(
         teeth, spectrum.beside(mate), np.mod(even[:places], pitch), curve, spread, averaged, n[: at.size],
         spectrum.amplitude[at], spectrum.phase[at], np.stack([one.mean(axis=0) for one in groups]),
         int(np.count_nonzero(spikes)), mate[0].order if mate else 0.0, mean_error,
+        pulse_steps(values, even, places, teeth, teeth / mate_teeth if mate_teeth else 0.0), resolved, samples,
     )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ For each number that may be otherwise the computed curve is that of the changed 
 offset and shift as they are fitted, and with a scale that is one within what load and encoders, or load and place of
 a gauge, are uncertain by: a relief must not make up for a torque. The number with the least sum of squares is found by
 solving again; its standard error is by the curvature of that sum and by what it leaves, whose neighbours do not differ
-independently. Numbers that leave about as little cannot be distinguished.
+independently. Numbers that leave about as little cannot be distinguished apart.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ _STEP = 0.02
 _OFF = 2e-3
 #: Part of the variance beside the stated curve that a cause leaves at most; times that of the best which is as good.
 _LEAVES, _AS_GOOD = 0.25, 2.0
-#: Gain as chi squared, and residual beside the stated curve over the range of it, from which on there is a cause.
-_CERTAIN, _LARGE = 50.0, 0.01
-#: Standard errors by which a number differs from the stated one.
+#: Gain as chi squared, and residual beside the stated curve over its range and over the noise, from which on one is.
+_CERTAIN, _LARGE, _OF_NOISE = 50.0, 0.01, 2.0
+#: Standard errors by which a number differs from the stated one, and tolerances by which the scale may.
 _DIFFERS = 2.0
 #: Least part of the residual that a cause is named for which is not the best one.
 _SOME = 0.1
@@ -102,7 +102,7 @@ class Causes:
     causes : tuple of Cause
         All that explain some of the residual.
     alike : int
-        How many of the first cannot be distinguished; 0 where none explains the traces.
+        How many of the first cannot be distinguished apart; 0 where none explains the traces.
     rms : float
         Of the last trace beside the stated curve.
     """
@@ -215,6 +215,8 @@ class _Laid:
         if trace.offset:
             curve, values = curve - curve.mean(axis=1, keepdims=True), values - values.mean()
         scale = (curve @ values + self._known) / ((curve**2).sum(axis=1) + self._known)
+        most = _DIFFERS * trace.tolerance
+        scale = np.clip(scale, 1.0 - most, 1.0 + most)
         return values - scale[:, None] * curve, scale
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.contact.fitted_line import Fitted
 
-Kind = Literal["", "Butterworth", "Bessel"]
+Kind = Literal["", "Butterworth", "Bessel", "moving average"]
 
 #: Angles of the time constant that are looked at first, up to a good part of the contact of a tooth, or of a curve that
 #: repeats with a full turn [rad].
@@ -37,7 +37,13 @@ _EXPLAINED, _EXPLAINED_OF_PERIOD = 2e-3, 3e-4
 #: Least correlation behind a low pass, noise included: a rounder curve fits nearly every wrong one better.
 _FITS = 0.97
 #: Kinds of filters of higher order that are looked for, and their orders.
-_HIGHER: tuple[tuple[Kind, int], ...] = (("Butterworth", 2), ("Butterworth", 4), ("Butterworth", 8), ("Bessel", 4))
+_HIGHER: tuple[tuple[Kind, int], ...] = (
+    ("Butterworth", 2), ("Butterworth", 4), ("Butterworth", 8), ("Bessel", 4), ("moving average", 1),
+)  # fmt: skip
+#: Width of a moving average over one over its limiting angular frequency (-3 dB): twice the root of sin x = x / sqrt 2.
+_WIDTH = 2.783115
+#: Part of a curve over which a moving average is taken at most: a wider one leaves of any curve the same.
+_MOST_OF_CURVE = 0.4
 #: Times less that a filter of higher order has to leave unexplained than that of first order.
 _LESS = 2.0
 #: Time constants after which all of them have settled.
@@ -58,15 +64,21 @@ class LowPass:
         Rotation within its time constant, one over the limiting angular frequency (-3 dB) [rad].
     fitted : FittedCurve
         The trace laid over the filtered curve.
-    kind : {"", "Butterworth", "Bessel"}
+    kind : {"", "Butterworth", "Bessel", "moving average"}
         Empty for first order.
     order : int
+        Of a moving average 1.
     """
 
     lag: float
     fitted: FittedCurve
     kind: Kind = ""
     order: int = 1
+
+    @property
+    def width(self) -> float:
+        """Rotation over which a moving average is taken [rad]."""
+        return _WIDTH * self.lag
 
 
 def filtered_higher(
@@ -80,7 +92,7 @@ def filtered_higher(
         Ascending [rad], any unit.
     lag : float
         Rotation within one over the limiting angular frequency (-3 dB) [rad].
-    kind : {"Butterworth", "Bessel"}
+    kind : {"Butterworth", "Bessel", "moving average"}
     order : int
     repeats : bool
         Whether the curve begins again where it ends; else it had its first value before.
@@ -100,6 +112,9 @@ def filtered_higher(
 
 def _transfer(kind: Kind, order: int, frequency: Array) -> Array:
     """Of a filter whose limiting angular frequency is one."""
+    if kind == "moving average":  # of the samples before: the mean of exp(-i w t) over its width
+        half = 0.5 * _WIDTH * frequency
+        return np.asarray(np.exp(-1j * half) * np.sinc(half / math.pi))
     from scipy.signal import bessel, butter, freqs_zpk
 
     made = butter(order, 1.0, analog=True, output="zpk") if kind == "Butterworth" else bessel(
@@ -181,10 +196,13 @@ def low_pass(
 
     logs = np.log(_LAGS_OF_PERIOD if repeats else _LAGS)
 
+    longest = math.log(_MOST_OF_CURVE * float(curve_angle[-1] - curve_angle[0]) / _WIDTH)
+
     def nearest(kind: Kind, order: int, most: int) -> tuple[float, float]:
         """What the best lag of a kind leaves unexplained, and its logarithm."""
-        best = int(np.argmin([left(one, kind, order, most) for one in logs]))
-        ends = logs[max(best - 1, 0)], logs[min(best + 1, logs.size - 1)]
+        some = logs[: np.searchsorted(logs, longest)] if kind == "moving average" else logs
+        best = int(np.argmin([left(one, kind, order, most) for one in some]))
+        ends = some[max(best - 1, 0)], some[min(best + 1, some.size - 1)]
         found = minimize_scalar(left, bounds=ends, args=(kind, order, most), method="bounded", options=_CLOSE)
         return float(found.fun), float(found.x)
 

@@ -49,6 +49,7 @@ def gauge_history(
     *,
     estimates: bool = True,
     peaks: bool = False,
+    positions: int = _POSITIONS,
 ) -> GaugeHistory:
     """Follow a gauge from a base pitch before its tooth's contact to one after it.
 
@@ -75,13 +76,15 @@ def gauge_history(
         Whether errors are estimated, and peaks looked for between positions.
     peaks : bool
         Whether peaks are looked for without errors, too.
+    positions : int
+        Even steps over the base pitch.
     """
     source: RootStressInfluence = e.compliance.source(member)
     if getattr(source, "influence", None) is not gauges.influence:  # the pair's compliance comes from elsewhere
         source = finite_element_compliance(gauges.influence)
     at = int(np.argmin(np.abs(displacement)))
     centre = gauges.only(at)
-    x = roll_positions(e, _POSITIONS)
+    x = roll_positions(e, positions)
     if estimates or peaks:
         x = _with_peaks(e, nominal, x, member, source, (centre, opposite), tooth)
     states = loaded_states(e, shifted if estimates else (), loads, x, tooth)

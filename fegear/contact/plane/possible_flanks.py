@@ -22,11 +22,13 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Relief
 
-Kind = Literal["tip relief", "start", "load", "pitch"]
+Kind = Literal["tip relief", "start", "load", "pitch", "place", "scale"]
 #: Amounts that are looked at: times the stated one, and modules more.
 _TIMES, _MODULES = 2.5, 0.01
 #: Load over the stated one.
 _LOADS = (0.5, 2.0)
+#: Scales of a trace.
+_SCALES = (0.2, 5.0)
 #: Pitch deviations [modules].
 _PITCH = 0.01
 #: A start is between this share of the way from the pitch point to the tip, and that.
@@ -41,7 +43,8 @@ class Possible:
 
     Parameters
     ----------
-    kind : {"tip relief", "start", "load", "pitch"}
+    kind : {"tip relief", "start", "load", "pitch", "place", "scale"}
+        The last two, place of a gauge and scale of the trace, leave the pair as it is.
     of : tuple of {"driver", "driven"}
         Gears whose flanks it is of; of a start the first one's roll angle is the number, the other's is displaced as
         much along the line of action.
@@ -70,7 +73,10 @@ class Possible:
 def possible_flanks(e: Engagement) -> tuple[Possible, ...]:
     """Reliefs and loads that a trace of a pair may come from."""
     tips: dict[Member, EndRelief | None] = {member: _tip(_relief(e, member)) for member in MEMBERS}
-    found = [Possible("load", (), 1.0, *_LOADS, lambda factor: (e, factor))]
+    found = [
+        Possible("load", (), 1.0, *_LOADS, lambda factor: (e, factor)),
+        Possible("scale", (), 1.0, *_SCALES, lambda _scale: (e, 1.0)),
+    ]
     more = _MODULES * e.pair.driver.module
     for member, tip in tips.items():
         start = _usual(e, member) if tip is None else tip

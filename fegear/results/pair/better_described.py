@@ -84,14 +84,18 @@ def behind_low_pass(behind: LowPass, found: FittedCurve, size: float, speed: flo
     if speed:
         hertz = figures(speed / (2.0 * math.pi * behind.lag), 2)
         cutoff = f"a limiting frequency of {hertz} Hz at {figures(speed * 30.0 / math.pi)} rpm"
-    if behind.kind:
-        order = f" of about order {behind.order} ({behind.kind})"
+    if behind.kind == "moving average":
+        passed = f"a moving average over {figures(math.degrees(behind.width), 2)}° of rotation"
+        if speed:
+            passed += f", {figures(1e3 * behind.width / speed, 2)} ms at {figures(speed * 30.0 / math.pi)} rpm"
+    elif behind.kind:
         limit = cutoff or f"a limiting frequency of {figures(1.0 / behind.lag, 2)} times per turn"
+        passed = f"a low pass of about order {behind.order} ({behind.kind}) with {limit}"
     else:
-        order, limit = "", f"a time constant of {figures(math.degrees(behind.lag), 2)}° of rotation"
-        limit += f", {cutoff}" if cutoff else ""
+        passed = f"a low pass with a time constant of {figures(math.degrees(behind.lag), 2)}° of rotation"
+        passed += f", {cutoff}" if cutoff else ""
     return (
-        f"the trace fits behind a low pass{order} with {limit}: RMS of the residual "
+        f"the trace fits behind {passed}: RMS of the residual "
         f"{percent(behind.fitted.rms / size)} of {of} instead of {percent(found.rms / size)}, measured / computed "
         f"{behind.fitted.gain:#.3g}; check {check}"
     )

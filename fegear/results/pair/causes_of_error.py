@@ -49,7 +49,8 @@ def causes_of_error(traces: Sequence[TraceBeside], teeth: LoadedTeeth, fit: Coll
     def curves_of(possible: Possible, value: float) -> list[tuple[Array, Array]]:
         changed, factor = possible.made(value)
         found = changed.solve(changed.grid(x), [factor * one.load for one in traces]).transmission_error
-        return [(angle, np.append(found[:, i], found[0, i])) for i in range(len(traces))]
+        scale = value if possible.kind == "scale" else 1.0
+        return [(angle, scale * np.append(found[:, i], found[0, i])) for i in range(len(traces))]
 
     shift = 0.5 * _TURN if "shift" in fit else 0.0
     traced = [
@@ -62,6 +63,7 @@ def causes_of_error(traces: Sequence[TraceBeside], teeth: LoadedTeeth, fit: Coll
     tolerance = max(one.load_tolerance for one in traces)
 
     def within(cause: Cause) -> bool:
-        return cause.of.kind == "load" and abs(cause.value - 1.0) <= tolerance
+        kind = cause.of.kind  # a size that nothing but the flanks explains is judged as such
+        return kind == "scale" or (kind == "load" and abs(cause.value - 1.0) <= tolerance)
 
     return likeliest_causes(traced, possible_flanks(e), curves_of, within)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,13 @@ from fegear.engine.citation import Citation
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
+from fegear.results.pair.causes_of_strain import causes_of_strain
 from fegear.results.pair.followed_gauge import gauge_in_plane, gauge_on_face
 from fegear.results.pair.gauge_data import GaugeData, GaugeInputs
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_sheet import GAUGE_SHEET
 from fegear.results.pair.half_bridge import HalfBridge
+from fegear.results.pair.likeliest_flank import LikeliestFlank
 from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_teeth, needs_teeth
 from fegear.results.pair.placed_gauge import (
     behind_low_pass,
@@ -85,7 +88,7 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
     )
     levels = over_torque(gauge, found, history, teeth.loads, at)
     torques = {} if levels else _torques(history, teeth.loads, at, asked.halves)  # a measured torque is known
-    return GaugeData(
+    data = GaugeData(
         teeth.loads, at, followed.history, followed.place.place, followed.clearance, followed.place.clipped,
         gauge.load_tolerance, asked.speed, found,
         Otherwise(
@@ -99,6 +102,18 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
         followed.more if asked.in_bridge else {},
     )  # fmt: skip
+    return replace(data, flank=_flank(asked, data, upstream))
+
+
+def _flank(asked: GaugeInputs, data: GaugeData, upstream: Upstream) -> LikeliestFlank | None:
+    """Which relief, torque or pitch explains the trace of a plane gauge that is described as it is."""
+    found, gauge, otherwise = data.compared, asked.gauge, data.otherwise
+    if found is None or asked.wide or gauge.second or not asked.estimates or otherwise.better or found.gain <= 0.0:
+        return None
+    load, lever = data.loads[data.at], data.history.pair.driver.base_radius * asked.halves
+    causes = causes_of_strain(gauge, found, data.history, data.at, upstream, load, data.tolerance)
+    peak = abs(float(data.peak_strain[data.at]))
+    return LikeliestFlank(causes, data.history.pair, (load * lever,), peak, "the peak") if causes.causes else None
 
 
 def _other_fillet(history: GaugeHistory, at: int, *, free: bool) -> float:

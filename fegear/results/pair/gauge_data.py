@@ -17,6 +17,7 @@ from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_place
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauges_together import GaugeGain, gain_of
 from fegear.results.pair.half_bridge import HalfBridge
+from fegear.results.pair.likeliest_flank import LikeliestFlank
 from fegear.results.pair.planned_gauges import PlannedGauge
 from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, verdict
@@ -136,6 +137,8 @@ class GaugeData(BesideTrace):
         What a half bridge sees, of which the trace is, with this gauge and a second one.
     with_effects : mapping of str to StrainWith
         What the second gauge of a half bridge sees with each effect that is off.
+    flank : LikeliestFlank or None
+        Which relief, torque or pitch explains the trace.
     """
 
     loads: Sequence[float]
@@ -157,6 +160,7 @@ class GaugeData(BesideTrace):
     gains: Mapping[str, float] = field(default_factory=dict)
     bridge: HalfBridge | None = None
     with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
+    flank: LikeliestFlank | None = None
 
     @property
     @shows("s", "time from the first position")
@@ -299,6 +303,14 @@ class GaugeData(BesideTrace):
 
     def _at_traced_peak(self, over_loads: Array) -> float:
         return float(over_loads[self.traced.peak_position(self.at), self.at])
+
+    @property
+    def tolerance(self) -> float:
+        """Relative difference of measured and computed strain that is none, scatter aside; without a trace zero."""
+        if self.compared is None:
+            return 0.0
+        limits = self._computed(self.compared).limits(0.0)
+        return max(limits.together(-1.0), limits.together(1.0))
 
     def _computed(self, found: FittedCurve) -> ComputedPeak:
         """What the trace is judged by."""

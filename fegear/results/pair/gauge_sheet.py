@@ -39,6 +39,11 @@ if TYPE_CHECKING:
 _SAID = 0.01
 
 
+def _explained(data: GaugeData) -> bool:
+    """Whether one change of relief, torque or pitch explains the trace."""
+    return data.flank is not None and data.flank.found.alike > 0
+
+
 def _peaks(seen: Seen) -> list[str]:
     """Peak strain and stress, each with its error where that takes digits that its single value has."""
     data: GaugeData = seen.data
@@ -213,6 +218,7 @@ GAUGE_SHEET = Sheet(
         ),
     ),
     answer=Answer(
+        lambda seen: [f"{subject(seen)}: {seen.data.flank.said}."] if _explained(seen.data) else [],
         lambda seen: [f"{subject(seen)}: {seen.data.judged}."] if seen.data.judged else [],
         lambda seen: [f"{subject(seen)}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
@@ -222,6 +228,7 @@ GAUGE_SHEET = Sheet(
         fact=_fact, common=of_all_gauges,
     ),
     remarks=(
+        Remark(lambda seen: about(subject(seen), seen.data.flank.said), when="flank"),
         Remark(lambda seen: about(subject(seen), seen.data.verdict), when="verdict"),
         Remark(lambda seen: about(subject(seen), seen.data.linearity), when="linearity"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _CERTAIN = 2.0
 #: Causes that are said besides the likeliest at most.
 _MOST = 3
+#: Teeth of a pitch deviation, which counts positive where the flank is set back.
+_TEETH = {0: "the tooth of the gauge", -1: "the tooth before that of the gauge", 1: "the tooth after that of the gauge"}
 _GEARS = {("driver",): "the driver", ("driven",): "the driven gear", ("driver", "driven"): "both gears"}
 
 
@@ -98,8 +100,12 @@ class LikeliestFlank:
                 f"a tip relief of {whose} from a diameter of {_both(start * 1e3, within * 1e3)} mm in place "
                 f"of {figures(stated * 1e3, 5)} mm"
             )
-        which = {0: "of the tooth", -1: "of the tooth before it", 1: "of the tooth after it"}[of.tooth]
-        return f"a single pitch deviation {which} of {_both(one.value * 1e6, error * 1e6)} µm"
+        if of.kind == "scale":
+            return f"a scale of {_both(one.value, error)}"
+        if of.kind == "place":
+            where = "tip" if one.value > 0.0 else "root"
+            return f"a grid {_both(abs(one.value) * 1e3, error * 1e3)} mm nearer to the {where}"
+        return f"a single pitch deviation of {_TEETH[of.tooth]} of {_both(one.value * 1e6, error * 1e6)} µm"
 
     def _diameter(self, one: Cause, roll: float) -> float:
         return 2.0 * self.pair.gear(one.of.of[0]).base_radius * math.hypot(1.0, roll)

@@ -201,6 +201,28 @@ class TraceBeside:
         return f"once per revolution {' and '.join(said)}: runout of gear, shaft or encoder, not part of the comparison"
 
     @property
+    def steps(self) -> str:
+        """Where the trace steps as an encoder does that loses pulses, a clause; empty where it does not."""
+        if not (steps := self.found.steps):
+            return ""
+        said = " and ".join(
+            f"by {figures(one.height * 1e6, 2, signed=True)} µm at {math.degrees(one.angle):.0f}° of the measured angle"
+            for one in steps
+        )
+        return f"the trace steps {said} (to a tooth pitch): an encoder lost a pulse, or counted one too many"
+
+    @property
+    def few_samples(self) -> str:
+        """Which mesh harmonics cannot be judged, a clause; empty of a trace with enough samples."""
+        if (resolved := self.found.resolved) is None:
+            return ""
+        harmonics = "the first mesh harmonic" if resolved == 1 else f"{resolved} mesh harmonics"
+        return (
+            f"{figures(self.found.samples)} samples per tooth pitch resolve {harmonics}: both curves are compared up to"
+            " these, higher ones and peaks between samples cannot be judged"
+        )
+
+    @property
     def verdict(self) -> Note:
         """Measured against computed, a clause without a subject; empty in drafts."""
         return self._verdict(brief=False)

@@ -266,6 +266,13 @@ _SHEET = Sheet(
             "and left out.",
             each="traces", when=lambda seen: seen.one.found.spikes > 0,
         ),
+        *(
+            Remark(
+                lambda seen, one=one: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {getattr(seen.one, one)}.",
+                each="traces", when=lambda seen, one=one: bool(getattr(seen.one, one)),
+            )
+            for one in ("steps", "few_samples")
+        ),
     ),
     sharper_by="",
 )  # fmt: skip

@@ -20,8 +20,8 @@ _STEPPED, _OF_NOISE = 0.15, 8.0
 #: Correlation of the shapes below which the rest of a trace is no runout, and smallest part of the largest gain of its
 #: turns that is still a torque: where the curve is not found in a turn at all the angle is wrong.
 _OF_ITS_CURVE, _FOUND = 0.6, 0.05
-#: Part of the range of the curve from which on hum and steps are named.
-_LARGE = 0.01
+#: Part of the range of the curve from which on steps and jumps are named, and hum, which stands out of the noise.
+_LARGE, _HUM = 0.01, 0.002
 
 
 def drawn_as(found: FittedCurve | None) -> str:
@@ -101,7 +101,7 @@ def runout_named(found: FittedCurve | None) -> str:
 
 def hum_named(found: FittedCurve | None) -> str:
     """Mains hum of a trace, a sentence without a subject; empty where that is little."""
-    if found is None or (hum := found.hum) is None or hum.amplitude < _LARGE * _range(found):
+    if found is None or (hum := found.hum) is None or hum.amplitude < _HUM * _range(found):
         return ""
     return (
         f"the measured strain has ±{figures(hum.amplitude * 1e6)} µm/m at {figures(hum.frequency)} Hz "
