@@ -16,7 +16,7 @@ from fegear.contact.plane import fe_compliance, odd_compliance
 from fegear.dynamics.train import matrices, train_spec
 from fegear.engine.stage import Task
 from fegear.results.gear import crosscheck
-from fegear.results.pair import measured_error_data, train_power_loss
+from fegear.results.pair import error_otherwise, train_power_loss
 from fegear.results.pair.measured_error_data import TraceBeside
 from fegear.verify import cracked_strip
 from fegear.window.job_queue import Inbox
@@ -109,7 +109,7 @@ def test_an_order_beyond_the_spectrum_has_no_amplitude():
     order = np.arange(0.0, 10.0, 0.5)
     amplitude = np.where(order == 4.5, 3.0, np.where(order == 9.5, 7.0, 1.0))
     found = Space(spectrum=Space(order=order, amplitude=amplitude))
-    near = measured_error_data._near
+    near = error_otherwise._near
     assert [near(found, one) for one in (4.2, 5.0, 5.4, 3.4, 9.5, 9.51, 20.0)] == [3.0, 3.0, 1.0, 1.0, 7.0, 0.0, 0.0]
     assert near(found, 0.0) == 1.0
 

@@ -39,9 +39,11 @@ if TYPE_CHECKING:
 _SAID = 0.01
 
 
-def _explained(data: GaugeData) -> bool:
-    """Whether one change of relief, torque or pitch explains the trace."""
-    return data.flank is not None and data.flank.found.alike > 0
+def _of_flank(seen: Seen, which: str) -> list[str]:
+    """What relief, torque or pitch explains of the trace: that with which it agrees, or what explains less."""
+    data: GaugeData = seen.data
+    said = "" if data.flank is None else getattr(data.flank, which)
+    return [f"{subject(seen)}: {said}."] if said else []
 
 
 def _peaks(seen: Seen) -> list[str]:
@@ -218,8 +220,9 @@ GAUGE_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"{subject(seen)}: {seen.data.flank.said}."] if _explained(seen.data) else [],
+        lambda seen: _of_flank(seen, "agrees"),
         lambda seen: [f"{subject(seen)}: {seen.data.judged}."] if seen.data.judged else [],
+        lambda seen: _of_flank(seen, "less"),
         lambda seen: [f"{subject(seen)}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
         lambda seen: by_placement(seen, "peak"),

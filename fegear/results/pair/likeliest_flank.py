@@ -48,30 +48,38 @@ class LikeliestFlank:
 
     @property
     def said(self) -> Note:
-        """What the trace agrees with, and what explains less of it; empty for none."""
-        causes, alike = self.found.causes, self.found.alike
-        if not causes:
+        """What the traces agree with, and what explains less of it; empty for none."""
+        if self.agrees:
+            return failing("; ".join(filter(None, (self.agrees, self.less))))
+        if not self.found.causes:
             return Note("")
+        return Note(
+            "no single change of relief, torque or pitch explains the residual; what explains most of it: "
+            + self._shares(self.found.causes[:_MOST])
+        )
+
+    @property
+    def agrees(self) -> str:
+        """What the traces agree with, and what cannot be distinguished from it; empty where nothing explains them."""
+        causes, alike = self.found.causes, self.found.alike
         if not alike:
-            return Note(
-                "no single change of relief, torque or pitch explains the residual; what explains most of it: "
-                + self._shares(causes[:_MOST])
-            )
-        best = causes[0]
-        agrees = "the trace agrees" if len(self.torques) == 1 else "the traces agree"
-        said = f"{agrees} with {self._one(best)}"
+            return ""
+        agree = "the trace agrees" if len(self.torques) == 1 else "the traces agree"
+        said = f"{agree} with {self._one(causes[0])}"
         if alike > 1:
-            said += (
-                f", which cannot be distinguished from {' or '.join(self._one(one) for one in causes[1:alike][:_MOST])}"
-            )
-        said += (
-            f": RMS of the residual {percent(best.rms / self.size)} of {self.of} instead of "
+            others = " or ".join(self._one(one) for one in causes[1:alike][:_MOST])
+            said += f", which cannot be distinguished from {others}"
+        return (
+            f"{said}: RMS of the residual {percent(causes[0].rms / self.size)} of {self.of} instead of "
             f"{percent(self.found.rms / self.size)}"
         )
-        less = causes[alike:][:_MOST]
-        if less:
-            said += f"; less likely: {self._shares(less)}"
-        return failing(said)
+
+    @property
+    def less(self) -> str:
+        """What explains less, the likeliest first; empty for nothing, and where nothing explains the traces."""
+        alike = self.found.alike
+        less = self.found.causes[alike:][:_MOST] if alike else ()
+        return f"less likely: {self._shares(less)}" if less else ""
 
     def _shares(self, causes: Sequence[Cause]) -> str:
         """Causes with what each explains of the residual."""

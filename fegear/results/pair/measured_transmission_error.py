@@ -239,8 +239,9 @@ _SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: [f"Encoders {seen.name}: {seen.data.flank.said}."] if seen.data.flank.found.alike else [],
+        lambda seen: [f"Encoders {seen.name}: {seen.data.flank.agrees}."] if seen.data.flank.agrees else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.last.judged}."] if seen.data.last.judged else [],
+        lambda seen: [f"Encoders {seen.name}: {seen.data.flank.less}."] if seen.data.flank.less else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.common_cause}."] if seen.data.common_cause else [],
         "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
         "noise), computed {v[computed_peak_to_peak]}.",
