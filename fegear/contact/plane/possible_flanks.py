@@ -109,13 +109,13 @@ def possible_pitches(e: Engagement, member: Member, tooth: int) -> tuple[Possibl
         That has it, in meshing order.
     """
     teeth = abs(e.pair.gear(member).teeth)
-    key = f"{member}_spacing"
-    spacing = getattr(e, key) if getattr(e, key).size else np.zeros(teeth)
+    given = e.driver_spacing if member == "driver" else e.driven_spacing
+    spacing = given if given.size else np.zeros(teeth)
 
     def made(other: int, value: float) -> tuple[Engagement, float]:
         changed = spacing.copy()
         changed[(tooth + other) % teeth] += value
-        return replace(e, **{key: changed}), 1.0
+        return (replace(e, driver_spacing=changed) if member == "driver" else replace(e, driven_spacing=changed)), 1.0
 
     most = _PITCH * e.pair.driver.module
     return tuple(
