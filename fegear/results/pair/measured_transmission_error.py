@@ -120,8 +120,8 @@ def _compute(asked: Encoders, upstream: Upstream, _work: Work) -> MeasuredErrorD
         traces = [replace(one, otherwise=replace(one.otherwise, low_pass=None)) for one in traces]
     causes = causes_of_error(traces, loaded_teeth(upstream, asked.pair), asked.fit) if asked.estimates else Causes()
     traces = [one.beside_cause(causes.best) for one in traces]
-    torques = tuple(one.torque for one in traces)
-    flank = LikeliestFlank(causes, pair, torques, traces[-1].computed_peak_to_peak)
+    measured_at = tuple(one.torque for one in traces)
+    flank = LikeliestFlank(causes, pair, measured_at, traces[-1].computed_peak_to_peak)
     return MeasuredErrorData(traces, asked.member, flank)
 
 
@@ -267,12 +267,13 @@ _SHEET = Sheet(
             "and left out.",
             each="traces", when=lambda seen: seen.one.found.spikes > 0,
         ),
-        *(
-            Remark(
-                lambda seen, one=one: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {getattr(seen.one, one)}.",
-                each="traces", when=lambda seen, one=one: bool(getattr(seen.one, one)),
-            )
-            for one in ("steps", "few_samples")
+        Remark(
+            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.steps}.",
+            each="traces", when=lambda seen: bool(seen.one.steps),
+        ),
+        Remark(
+            lambda seen: f"Encoders {seen.name}, {seen.one.torque:.5g} N m: {seen.one.few_samples}.",
+            each="traces", when=lambda seen: bool(seen.one.few_samples),
         ),
     ),
     sharper_by="",
