@@ -67,10 +67,10 @@ def test_a_given_module_is_kept_and_what_cannot_be_built_is_said():
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"bearing.input_floating.designation": "NU212"},
-         "Bearing input_floating: bore 60 mm (NU212) is larger than the diameter of shaft input there, 30 mm; correct"),
-        ({"shaft.input.sections.0.outer": "40 mm"},
-         "is smaller than the diameter of shaft input there, 40 mm"),
+        ({"bearing.input_locating.designation": "6312"},
+         "Bearing input_locating: bore 60 mm (6312) is larger than the diameter of shaft input there, 40 mm; correct"),
+        ({"shaft.input.sections.0.outer": "45 mm"},
+         "is smaller than the diameter of shaft input there, 45 mm"),
     ],
 )  # fmt: skip
 def test_a_bore_that_is_not_that_of_the_shaft_is_a_failure_with_both_numbers(changed, said):
@@ -78,18 +78,18 @@ def test_a_bore_that_is_not_that_of_the_shaft_is_a_failure_with_both_numbers(cha
     assert class_of(note) is NoteClass.FAILS
     assert said in note
     assert "shaft.input.sections or bearings, or choose a bearing of bore" in note
-    assert note.margin == pytest.approx(30.0 / (60.0 if "NU212" in note else 40.0))
+    assert note.margin == pytest.approx(40.0 / (60.0 if "6312" in note else 45.0))
 
 
 def test_at_a_step_and_on_a_cone_the_diameter_there_counts():
     seat = float(BOX["shaft"]["input"]["sections"][0]["length"].split()[0])
-    at_step = notes_of({"shaft.input.bearings.0.at": f"{seat} mm"})  # 30 mm to the left, 35 mm to the right
+    at_step = notes_of({"shaft.input.bearings.0.at": f"{seat} mm"})  # 40 mm to the left, 46 mm to the right
     assert not [note for note in at_step if "bore" in note]
-    cone = {"shaft.input.sections.0.outer": "25 mm", "shaft.input.sections.0.outer_end": "35 mm"}
-    assert not notes_of(cone)  # 30 mm in the middle, where the bearing is
-    steep = cone | {"shaft.input.sections.0.outer_end": "37 mm"}
+    cone = {"shaft.input.sections.0.outer": "35 mm", "shaft.input.sections.0.outer_end": "45 mm"}
+    assert not notes_of(cone)  # 40 mm in the middle, where the bearing is
+    steep = cone | {"shaft.input.sections.0.outer_end": "47 mm"}
     (note,) = notes_of(steep)
-    assert "31 mm" in note
+    assert "41 mm" in note
 
 
 def test_a_bearing_without_known_dimensions_says_nothing():
@@ -124,11 +124,11 @@ def test_a_seat_has_its_shoulder_and_the_room_beside_its_neighbours():
 
 
 def test_a_bearing_beside_a_gear_overlaps_it_along_the_shaft():
-    face, width = 30.0, 16.0  # of pinion_1, and of the NU206 that is moved to it, with an outside diameter of 62 mm
+    face, width = 30.0, 23.0  # of pinion_1, and of the 6308 that is moved to it, with an outside diameter of 90 mm
     place = BOX["shaft"]["input"]
     at = float(place["gears"][0]["at"].split()[0])
-    thick = {"shaft.input.sections.0.outer": "30 mm", "shaft.input.sections.1.outer": "30 mm"}
+    thick = {"shaft.input.sections.1.outer": "40 mm"}
     note, cut = notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width) + 2.0} mm"})
-    assert "Bearing input_floating (diameter 62 mm) and gear wheel_1 (diameter 175.2 mm) intersect" in cut
-    assert "Gear pinion_1 and bearing input_floating on shaft input overlap by 2 mm along it" in note
+    assert "Bearing input_locating (diameter 90 mm) and gear wheel_1 (diameter 175.2 mm) intersect" in cut
+    assert "Gear pinion_1 and bearing input_locating on shaft input overlap by 2 mm along it" in note
     assert not notes_of(thick | {"shaft.input.bearings.0.at": f"{at - 0.5 * (face + width)} mm"})

@@ -38,14 +38,16 @@ def test_faces_follow_each_other_between_the_bearings(laid):
     found, order = laid
     last = found.stages[-1].si("module")
     width = max(one.width for shaft in found.shafts for one in shaft.bearings.values())
-    assert found.ends[0] == pytest.approx(0.5 * width)
-    assert found.ends[1] == pytest.approx(found.length - 0.5 * width)
+    assert found.first == pytest.approx(0.5 * width)
     at = width + 2.0 * last
     for n, stage in enumerate(order):
         face = found.stages[stage].si("face_width")
         assert found.middles[stage] == pytest.approx(at + (3.0 * last if n else 0.0) + 0.5 * face)
         at = found.middles[stage] + 0.5 * face
-    assert found.length == pytest.approx(at + 2.0 * last + width)
+    beside = found.middles[0] + 0.5 * found.stages[0].si("face_width")  # the first shaft ends beside its pinion
+    assert list(found.last) == pytest.approx([one + 2.0 * last + 0.5 * width for one in [beside] + len(order) * [at]])
+    for n in range(len(found.shafts)):
+        assert found.seats(n).length == pytest.approx(found.last[n] + 0.5 * width)
     assert [sum(pitch_radii(one)) for one in found.stages] == pytest.approx(list(found.distances))
 
 
@@ -60,7 +62,7 @@ def test_holes_are_those_of_the_shafts_or_as_large_as_the_roots_allow(laid):
 
 def test_each_bearing_lasts_under_the_forces_of_its_shaft(laid):
     found, _ = laid
-    span, life, speed, torque = found.ends[1] - found.ends[0], found.stages[0].si("life"), [], []
+    life, speed, torque = found.stages[0].si("life"), [], []
     for stage in found.stages:
         speed.append(stage.si("speed"))
         torque.append(stage.si("torque"))
@@ -68,9 +70,10 @@ def test_each_bearing_lasts_under_the_forces_of_its_shaft(laid):
     speed.append(speed[-1] * z / other)
     for n, (shaft, gears) in enumerate(zip(found.shafts, gears_on_shafts(len(found.stages)), strict=True)):
         tangent, apart, tilt, axial = [0.0, 0.0], [0.0, 0.0], 0.0, 0.0
+        span = found.last[n] - found.first
         for stage, member in gears:
             t, r, a = mesh_forces(found.stages[stage], torque[stage])
-            right = (found.middles[stage] - found.ends[0]) / span
+            right = (found.middles[stage] - found.first) / span
             side = -1.0 if member else 1.0
             tangent = [tangent[0] + t * (1.0 - right), tangent[1] + t * right]
             apart = [apart[0] + side * r * (1.0 - right), apart[1] + side * r * right]
@@ -84,7 +87,7 @@ def test_each_bearing_lasts_under_the_forces_of_its_shaft(laid):
             assert lasting >= wanted * (1.0 - 1e-6) or not shaft.lasts
         if not shaft.tapered:  # what locates is where the radial force is less
             assert (next(iter(shaft.bearings)) == "locating") == (radial[0] <= radial[1])
-        assert shaft.thick == pytest.approx(math.ceil(SHOULDER * shaft.seat * 1e3) * 1e-3, abs=1e-9) or shaft.tapered
+        assert shaft.thick >= math.ceil(SHOULDER * shaft.seat * 1e3) * 1e-3 - 1e-9 or shaft.tapered
 
 
 def test_the_text_has_the_lengths_the_places_and_the_bearings(laid):
@@ -97,10 +100,11 @@ def test_the_text_has_the_lengths_the_places_and_the_bearings(laid):
     away = 0.0
     for n, (name, shaft) in enumerate(shafts.items()):
         made = found.shafts[n]
-        seat, between, end = shaft["sections"]
-        assert seat == end
-        assert mm(seat["length"]) == pytest.approx(2e3 * found.ends[0], rel=1e-5)
-        assert sum(mm(one["length"]) for one in shaft["sections"]) == pytest.approx(1e3 * found.length, rel=1e-5)
+        assert shaft["sections"] == shaft["sections"][::-1]
+        seat, between = shaft["sections"][0], shaft["sections"][len(shaft["sections"]) // 2]
+        assert mm(seat["length"]) == pytest.approx(2e3 * found.first, rel=1e-5)
+        long = 1e3 * (found.last[n] + found.first)
+        assert sum(mm(one["length"]) for one in shaft["sections"]) == pytest.approx(long, rel=1e-5)
         assert [mm(seat["outer"]), mm(between["outer"])] == pytest.approx([1e3 * made.seat, 1e3 * made.thick], rel=1e-5)
         assert mm(shaft.get("axis", ["0 mm"])[0]) == pytest.approx(1e3 * away, rel=1e-5)
         assert shaft.get("axis", ["", "0 mm"])[1] == "0 mm"
@@ -111,11 +115,11 @@ def test_the_text_has_the_lengths_the_places_and_the_bearings(laid):
         places = [1e3 * found.middles[stage] for _, stage in wheel + pinion]
         assert [mm(one["at"]) for one in shaft["gears"]] == pytest.approx(places, rel=1e-5)
         assert [mm(one["at"]) for one in shaft["bearings"]] == pytest.approx(
-            [1e3 * one for one in found.ends], rel=1e-5
+            [1e3 * found.first, 1e3 * found.last[n]], rel=1e-5
         )
         assert [one["bearing"] for one in shaft["bearings"]] == [f"{name}_{role}" for role in made.bearings]
         assert [one.get("reversed", False) for one in shaft["bearings"]] == [False, made.tapered]
-        assert shaft.get("coupling") == {0: "0 mm", stages: length(found.length)}.get(n)
+        assert shaft.get("coupling") == {0: "0 mm", stages: length(found.last[n] + found.first)}.get(n)
         for role, one in made.bearings.items():
             assert bearings[f"{name}_{role}"] == {"designation": one.designation, "life": {}}
     # what locates a shaft comes first, wherever it is

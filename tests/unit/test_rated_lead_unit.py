@@ -117,7 +117,7 @@ def test_a_correction_with_hardly_any_crowning_is_not_recommended():
 
 
 def test_flanks_with_a_larger_load_factor_than_the_rating_have_its_safety_factors():
-    """A slope against the load opens the gap further, and ISO 6336-1 credits it as a correction."""
+    """A crowning beyond the load, or a factor that is given, leaves more on the flanks than the rating has."""
     lead = rated_lead(scene_of(drafted()), "I")
     rated, formula = rated_with(lead, row(4e-6, 3e-6)), math.nan
     for flanks in (formula, 1.0, rated.factor, 2.0 * rated.factor, 3.0):
@@ -146,6 +146,20 @@ def test_a_lead_that_opens_the_gap_does_not_pass_by_the_credit_of_a_correction()
     assert mesh["S_H"] == pytest.approx(rated * math.sqrt(min(1.0, formula / mesh["K_Hbeta"])), rel=1e-9)
     assert rated < 1.0
     assert found.answer.sentences[0].startswith("Fails: pair I")
+
+
+@pytest.mark.dear
+def test_a_crowning_that_narrows_the_contact_is_noted_with_the_factor_of_the_loaded_flanks():
+    """ISO 6336-1 credits any crowning with B_1 = 0.5; of one that reaches beyond the load the ends stay apart."""
+    case = drafted()
+    case["results"] = ["gearbox"]
+    case["pair"]["I"]["width"] = "slices"
+    case["gear"]["pinion"]["lead"] = {"crowning": "120 um"}
+    found = fegear.run(case, progress=False)
+    flanks, formula = found.tables["gearbox_meshes"].column("K_Hbeta").si[0], k_h_beta(case)
+    assert formula < 2.0 < flanks
+    (note,) = [one for one in found.remarks if "of the loaded flanks exceeds" in one]
+    assert f"K_Hbeta {flanks:.2f} of the loaded flanks exceeds {formula:.2f} of the rating" in note
 
 
 def test_under_a_spectrum_the_safety_factors_are_those_of_the_spectrum():

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from fegear.base.units import from_si
 from fegear.case.drafts.placed_shafts import ChosenBearing, PlacedShaft
 from fegear.case.drafts.stages import LaidOut, gears_on_shafts
+from fegear.case.drafts.stiff_shafts import sections
 from fegear.case.text_file import toml_string
 
 #: Names of shafts by the number of stages.
@@ -16,14 +17,13 @@ _SHAFTS = {
 _SHAFT = """\
 [shaft.{name}]{note}
 {axis}sections = [
-    {{ length = "{seat_length}", outer = "{seat}" }},
-    {{ length = "{between}", outer = "{thick}" }},
-    {{ length = "{seat_length}", outer = "{seat}" }},
+{sections}
 ]
 gears = [{gears}]
 bearings = [{{ bearing = "{name}_{left}", at = "{first}" }}, {{ bearing = "{name}_{right}", at = "{last}"{reversed} }}]
 {coupling}yield_strength = "275 MPa"     # assumed: S355 up to 250 mm, EN 10025-2
 """
+_SECTION = '    {{ length = "{long}", outer = "{across}" }},'
 _BEARING = """\
 [bearing.{name}]
 designation = "{designation}"
@@ -89,17 +89,20 @@ def _bearing(name: str, role: str, bearing: ChosenBearing, *, lasts: bool) -> st
 def _placed_shaft(found: LaidOut, n: int, names: Sequence[str], gears: Sequence[tuple[str, int]]) -> str:
     """A shaft by its number, with its gears and their stages."""
     one: PlacedShaft = found.shafts[n]
-    name, seat = names[n], 2.0 * found.ends[0]
+    name = names[n]
     left, right = one.bearings
     away = sum(found.distances[:n])
     note = "" if n else "     # distances along it from its left end; places and sizes are assumed"
     coupling = "" if n else 'coupling = "0 mm"     # where the torque enters\n' + _TURNED
     if n == len(names) - 1:
-        coupling = f'coupling = "{length(found.length)}"\n'
+        coupling = f'coupling = "{length(found.seats(n).length)}"\n'
     return _SHAFT.format(
         name=name, note=note, axis=f'axis = ["{length(away)}", "0 mm"]     # centre distance\n' if n else "",
-        seat_length=length(seat), seat=length(one.seat), between=length(found.length - 2.0 * seat),
-        thick=length(one.thick), left=left, right=right, first=length(found.ends[0]), last=length(found.ends[1]),
+        sections="\n".join(
+            _SECTION.format(long=length(long), across=length(across))
+            for long, across in sections(found.seats(n), one.thick)
+        ),
+        left=left, right=right, first=length(found.first), last=length(found.last[n]),
         reversed=", reversed = true" if one.tapered else "",
         gears=", ".join(f'{{ gear = "{gear}", at = "{length(found.middles[stage])}" }}' for gear, stage in gears),
         coupling=coupling,

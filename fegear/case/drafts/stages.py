@@ -2,12 +2,14 @@
 
 The wheel of a stage and the pinion of the next one turn together and have one hand, so that their axial forces are
 against each other. The first stage is on the left, the last one in the middle of three: the shaft with the largest
-torque has it between equal spans. Teeth of small pinions are cut into their shaft.
+torque has it between equal spans. The first shaft ends beside its pinion, in a wall within the housing. Teeth of small
+pinions are cut into their shaft.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fegear.base.units import from_si
@@ -23,13 +25,14 @@ from fegear.case.drafts.stage_sizes import (
     shifts_for_distance,
     tip_radii,
 )
+from fegear.case.drafts.stiff_shafts import Ends, MeshOnShaft, stiff_diameters
 
 #: Gap between faces, and between a face and a bearing [modules of the last stage].
 _GAP, _CLEAR = 3.0, 2.0
 #: Gap between a gear and a shaft beside it, and between bearings of neighbours [modules of the stage].
 _APART = 1.0
-#: Hole of a gear at most, in root radii.
-_HOLE = 0.65
+#: Hole of a gear at most, in root radii; diameter of a shaft at most, over that of the root circle cut into it.
+_HOLE, _WITHIN = 0.65, 0.95
 #: Shear stress of a shaft below its torque [Pa]: bends it little enough.
 _SHEAR = 25e6
 #: Stages along the shafts from the left.
@@ -52,9 +55,12 @@ class LaidOut:
         Centre distances [m].
     middles : tuple of float
         Middle of each stage's faces.
-    ends : tuple of float
-        Middle of the bearings at the left and at the right.
-    length : float
+    first : float
+        Middle of the bearings at the left.
+    last : tuple of float
+        Of the bearing at the right of each shaft.
+    clear : float
+        Between a bearing and the face beside it.
     shafts : tuple of PlacedShaft
     """
 
@@ -63,9 +69,14 @@ class LaidOut:
     cut: tuple[bool, ...]
     distances: tuple[float, ...]
     middles: tuple[float, ...]
-    ends: tuple[float, float]
-    length: float
+    first: float
+    last: tuple[float, ...]
+    clear: float
     shafts: tuple[PlacedShaft, ...]
+
+    def seats(self, n: int) -> Ends:
+        """Where the bearings of one of its shafts are."""
+        return Ends(self.shafts[n].seat, 2.0 * self.first, (self.first, self.last[n]), self.clear)
 
 
 def gears_on_shafts(stages: int) -> tuple[tuple[tuple[int, int], ...], ...]:
@@ -144,7 +155,7 @@ def _beside(laid: LaidOut, stage: int) -> bool:
     needed = max(0.5 * (one.outside + other.outside) for one, other in ends)
     if stage:
         needed = max(needed, tip_radii(laid.stages[stage - 1])[1] + 0.5 * laid.shafts[stage + 1].thick)
-    return laid.distances[stage] >= needed + _APART * laid.stages[stage].si("module")
+    return laid.distances[stage] >= needed + _gap(laid, stage)
 
 
 def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
@@ -163,7 +174,7 @@ def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
     on, order = gears_on_shafts(len(stages)), _ORDER[len(stages)]
     roots = [list(root_radii(one)) for one in stages]
     width = 0.6 * max(seats)
-    ends, length = (0.0, 0.0), 0.0
+    first, last = 0.0, [0.0] * len(on)
     middles = [0.0] * len(stages)
     shafts: tuple[PlacedShaft, ...] = ()
     for _ in range(3):  # forces follow the places, places the widths of bearings, and these the forces
@@ -171,26 +182,56 @@ def laid_out(stages: tuple[Answers, ...]) -> LaidOut:
         for stage in order:
             middles[stage] = start + 0.5 * faces[stage]
             start += faces[stage] + _GAP * modules[-1]
-        length = start - _GAP * modules[-1] + clear + width
-        ends = 0.5 * width, length - 0.5 * width
+        first, last = 0.5 * width, [start - _GAP * modules[-1] + clear + 0.5 * width] * len(on)
+        last[0] = middles[0] + 0.5 * faces[0] + clear + 0.5 * width
         forces = [mesh_forces(one, torque) for one, torque in zip(stages, torques, strict=False)]
         shafts = tuple(
             placed_shaft(
                 seat, speed, 2.0 * min(roots[n][member] for n, member in gears),
-                [(middles[n] - ends[0], *forces[n], radii[n][member], -1.0 if member else 1.0) for n, member in gears],
-                ends[1] - ends[0], stages[0].si("life"),
+                [(middles[n] - first, *forces[n], radii[n][member], -1.0 if member else 1.0) for n, member in gears],
+                right - first, stages[0].si("life"),
             )
-            for seat, speed, gears in zip(seats, speeds, on, strict=True)
+            for seat, speed, gears, right in zip(seats, speeds, on, last, strict=True)
         )  # fmt: skip
         width = max(one.width for shaft in shafts for one in shaft.bearings.values())
+    made = LaidOut(stages, (), (), tuple(sum(one) for one in radii), tuple(middles), first, tuple(last), clear, shafts)
+    shafts = _stiff(made, forces, radii, roots)
     thick = {gear: shaft.thick for shaft, gears in zip(shafts, on, strict=True) for gear in gears}
     below = [0.5 * thick[n, member] for n in range(len(stages)) for member in range(2)]
     most = [_HOLE * one for own in roots for one in own]
     cut = tuple(root < radius for radius, root in zip(below, most, strict=True))
-    return LaidOut(
-        stages, tuple(map(min, below, most)), cut, tuple(sum(one) for one in radii), tuple(middles), ends, length,
-        shafts,
-    )  # fmt: skip
+    return replace(made, holes=tuple(map(min, below, most)), cut=cut, shafts=shafts)
+
+
+def _stiff(
+    laid: LaidOut,
+    forces: Sequence[tuple[float, float, float]],
+    radii: Sequence[tuple[float, float]],
+    roots: Sequence[Sequence[float]],
+) -> tuple[PlacedShaft, ...]:
+    """Its shafts, as thick as their tilt at the meshes asks for and gears have room for."""
+    placed, most = [], []
+    for n, (gears, shaft) in enumerate(zip(gears_on_shafts(len(laid.stages)), laid.shafts, strict=True)):
+        placed.append((
+            [
+                MeshOnShaft(
+                    laid.middles[stage], *forces[stage], radii[stage][member], -1.0 if member else 1.0,
+                    laid.stages[stage].si("face_width"),
+                )
+                for stage, member in gears
+            ],
+            laid.seats(n),
+        ))  # fmt: skip
+        room = min(2.0 * roots[stage][member] * (_HOLE if member else _WITHIN) for stage, member in gears)
+        if n > 1:
+            room = min(room, 2.0 * (laid.distances[n - 1] - tip_radii(laid.stages[n - 2])[1] - _gap(laid, n - 1)))
+        most.append(max(room, shaft.thick))
+    thick = stiff_diameters(placed, [one.thick for one in laid.shafts], most)
+    return tuple(replace(one, thick=diameter) for one, diameter in zip(laid.shafts, thick, strict=True))
+
+
+def _gap(laid: LaidOut, stage: int) -> float:
+    return _APART * laid.stages[stage].si("module")
 
 
 def _stages(answers: Answers, least: list[float]) -> tuple[Answers, ...]:
