@@ -386,16 +386,21 @@ def check_stress_intensity(data, name, found):
     assert data["load"][data["base_pitch"] < -1].max(initial=0.0) == 0.0
 
 
+def beside_the_maximum(of_samples, largest):
+    """The largest value of all is looked for between the samples of a table, too."""
+    assert 0.998 * largest < of_samples <= largest * (1.0 + 1e-9)
+
+
 def check_vibration(data, _name, found):
     """Over a revolution of the driver; its largest values are those said; the residual has no mesh harmonics."""
     turn = 2.0 * math.pi
     close(data["driver_angle"], turn * np.arange(data["t"].size) / data["t"].size)
-    close(data["force"].max(), number_of(found, "I.mesh_force_max"), 1e-6)
+    beside_the_maximum(data["force"].max(), number_of(found, "I.mesh_force_max"))
     residual = data["te_residual"]
-    close(np.abs(residual).max(), number_of(found, "I.dynamic_te_residual_max"), 1e-6)
+    beside_the_maximum(np.abs(residual).max(), number_of(found, "I.dynamic_te_residual_max"))
     ordinary = np.median(data["te"].reshape(25, -1), axis=0)
     close(data["te_change"], (data["te"].reshape(25, -1) - ordinary).ravel())
-    close(np.abs(data["te_change"]).max(), number_of(found, "I.dynamic_te_change_max"), 1e-6)
+    beside_the_maximum(np.abs(data["te_change"]).max(), number_of(found, "I.dynamic_te_change_max"))
     assert math.sqrt((residual**2).mean()) == pytest.approx(number_of(found, "I.dynamic_residual_rms"))
     moments = ((residual - residual.mean()) ** np.array([[2], [4]])).mean(axis=1)
     assert moments[1] / moments[0] ** 2 == pytest.approx(number_of(found, "I.dynamic_residual_kurtosis"))
