@@ -103,6 +103,22 @@ def test_a_mesh_resonates_where_a_harmonic_meets_the_mode_of_two_bodies():
         assert (found.off, found.at) == pytest.approx((off, speed / harmonic), rel=1e-9)
 
 
+def test_the_half_power_band_of_a_damped_mode_is_near():
+    """Two bodies whose mesh alone is damped: c = 2 zeta k / omega."""
+    omega = math.sqrt(5e8 * (0.1**2 / 1e-3 + 0.2**2 / 2e-3))
+    speed = omega / 20
+    for zeta, at, near in (
+        (0.0, speed / 3.0 * 1.06, False), (0.07, speed / 3.0 * 1.06, True), (0.07, speed / 3.0 * 1.08, False),
+        (0.07, speed / 3.0 * 0.94, True), (0.5, speed / 2.0 * 1.16, False), (0.5, speed * 1.16, False),
+        (0.0, speed * 1.14, True), (0.0, speed / 3.0 * 1.04, True),
+    ):  # fmt: skip
+        mesh = Mesh("I", "a", "b", 0.1, 0.2, 20, 40, 5e8, 2.0 * zeta * 5e8 / omega)
+        train = Train((Body("a", 1e-3), Body("b", 2e-3)), (), (mesh,))
+        found = mesh_resonance(SimpleNamespace(train=train, speed_ratio=1.0), 0, at)
+        assert found.damping == pytest.approx(zeta, rel=1e-9, abs=1e-15)
+        assert found.near is near, (zeta, at / speed)
+
+
 def test_the_mode_of_the_mesh_is_that_in_which_its_teeth_deform():
     """Not that of a soft shaft, whose frequency is far below."""
     train = Train(

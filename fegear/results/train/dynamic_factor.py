@@ -340,7 +340,8 @@ def _lost(seen: Seen) -> Iterator[str]:
 _SHEET = Sheet(
     name=lambda asked: str(asked.mesh),
     answer=Answer(
-        "Mesh {name}: maximum dynamic factor {v[largest_dynamic_factor]} at {v[speed_of_largest]}.",
+        "Mesh {name}: maximum dynamic factor {v[largest_dynamic_factor]} at {v[speed_of_largest]} (force on one tooth "
+        "pair over the mean mesh force).",
         _lowest,
         _lost,
         "Mesh {name}: without torque ripple at most {v[largest_dynamic_factor_without_ripple]}.",

@@ -151,15 +151,18 @@ def _speed(seen: Seen) -> str:
 
 
 def _resonance(seen: Seen) -> Iterator[str]:
-    """Whether the speed is near to a resonance of the mesh, and which one is the nearest."""
+    """The resonance of the mesh that is nearest to the speed, and whether the speed is near to it."""
     found: MeshResonance | None = seen.data.resonance
     if found is None:
         return
     which = "the mesh frequency" if found.harmonic == 1 else f"harmonic {found.harmonic} of the mesh frequency"
     away = percent(1.0 / (1.0 + found.off) - 1.0, signed=True)
     yield (
-        f"Mesh {seen.name}: {_speed(seen)} is {'near' if found.near else 'not near'} a resonance: {which} meets a "
-        f"natural frequency at {figures(found.at * RPM, 4)} rpm ({away}); "
+        f"Mesh {seen.name}: {_speed(seen)} is near a resonance: "
+        if found.near
+        else f"Mesh {seen.name}: resonance nearest to {_speed(seen)}: "
+    ) + (
+        f"{which} meets a natural frequency at {figures(found.at * RPM, 4)} rpm ({away}); "
         f"the mesh frequency meets {figures(found.frequency, 4)} Hz at {figures(found.speed * RPM, 4)} rpm."
     )
 
