@@ -12,8 +12,9 @@ from fegear.design.held_relief import Robustness
 from fegear.design.tip_relief.tip_tolerance import Decisive, TipTolerance
 from fegear.engine.sheet.seen import Seen
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.relief import EndRelief
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
-from fegear.results.relief.grinding import TIP, Grinding
+from fegear.results.relief.grinding import TIP, Grinding, tip_row
 from fegear.results.relief.grinding_words import said_at, said_of_range, said_of_undefined
 from fegear.results.relief.ground_tips import said_of_flat_optima
 from fegear.results.relief.recommended import recommended_design
@@ -155,6 +156,31 @@ def test_reliefs_that_nobody_can_grind_are_no_reliefs():
     assert [" limit the relief" in one for one in further] == [True]
     first, *_ = said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6))
     assert first.startswith("Pair I: grind 6 µm from d 60.0 mm on gear w, linear: ")
+
+
+def test_deviations_of_a_gear_that_is_not_ground_are_not_in_the_maximum_which_is_said():
+    excluded = "; profile slopes of gear p, which is not ground, are not included in the maximum."
+    first, *_ = said((3.3, 4.5), (3.5, 5.0), amounts=(0.0, 6e-6))
+    assert first.endswith(f", peak to peak{excluded}")
+    assert not any("not included" in one for one in said((3.3, 4.5), (3.5, 5.0)))
+    assert not any("not included" in one for one in said((3.3, 4.5), (3.5, 5.0), amounts=(57e-9, 6e-6)))
+    assert not any("not included" in one for one in said(None, None, amounts=(0.0, 6e-6)))
+
+
+@pytest.mark.parametrize("amount", [0.0, 12e-6])
+def test_a_gear_that_is_not_ground_has_its_amount_only(amount):
+    relief = EndRelief(amount, 0.2, 0.6, 1.0)
+    gear = SimpleNamespace(base_radius=0.03)
+    tip = SimpleNamespace(
+        relief=relief, band=(relief, relief), gear=gear, member="driver", shape="linear", error=np.zeros(2),
+        base_radius=0.03, start=0.2, start_radius_error=0.0, has_band=False,
+    )  # fmt: skip
+    row = tip_row(tip, "p", TipTolerance(4e-6, 0.5e-3, 0.0))
+    assert (row.amount, row.member, row.shape) == (amount, "driver", "linear")
+    numbers = np.array([row.amount_tolerance, row.start_diameter, row.end_diameter, row.length, row.length_tolerance])
+    start, end = (0.06 * np.hypot(1.0, roll) for roll in (0.2, 0.6))
+    expected = [4e-6, start, end, 0.03 * 0.4, 0.5e-3] if amount else [np.nan] * 5
+    np.testing.assert_allclose(numbers, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("low", "said"), [(10.4e-6, 1), (11.6e-6, 0)])

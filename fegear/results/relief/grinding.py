@@ -148,7 +148,7 @@ def _given(seen: Seen, of: Where, quantity: str) -> Array | None:
 
 
 def tip_row(tip: GroundTip, gear: str, tolerance: TipTolerance) -> Grinding:
-    """The row of a tip relief that was searched for.
+    """The row of a tip relief that was searched for; the amount only where none is as good.
 
     Parameters
     ----------
@@ -159,6 +159,8 @@ def tip_row(tip: GroundTip, gear: str, tolerance: TipTolerance) -> Grinding:
     """
     relief, (low, high) = tip.relief, tip.band
     of_gear = tip.gear
+    if relief.amount <= NOTHING and high.amount <= NOTHING:  # nothing to set a machine to, and nothing to measure
+        return Grinding(gear, tip.member, f"{tip.shape} tip relief", TIP, tip.shape, 0.0)
 
     def diameter(roll: float) -> float:
         return 2.0 * tip.base_radius * math.hypot(1.0, roll)

@@ -68,7 +68,8 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     do = f"without deviations {do}" if lost else do
     over = "" if none.share is None else " over the load spectrum"
     rounded = _as_rounded(best, at) if ground else ""
-    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak{rounded}."
+    excluded = "" if most is None else _excluded(seen, shape)
+    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak{rounded}{excluded}."
     yield from said_of_spectrum(seen.name, none, best)
     single = d.over_range.get(f"{shape} tip relief for one load")
     if single and len(every) > 1 and none.share is None:  # beside other results a design has room for two sentences
@@ -92,6 +93,12 @@ def _as_rounded(best: LeftOverRange, at: Sequence[int]) -> str:
         return ""
     left = ", ".join(microns(best.rounded[i], 3) for i in at)
     return f" (with the rounded numbers of the grinding table {left} µm)"
+
+
+def _excluded(seen: Seen, shape: str) -> str:
+    """That the maximum within the tolerances has no deviation of a gear that is not ground; empty where both are."""
+    names = " and ".join(row.gear for row in seen.data.grinding if row.shape == shape and not row.words)
+    return f"; profile slopes of gear {names}, which is not ground, are not included in the maximum" if names else ""
 
 
 def _nothing_to_grind(seen: Seen, none: LeftOverRange, rows: Sequence[Grinding], ends: tuple[int, ...]) -> str:
