@@ -309,7 +309,11 @@ def test_a_rack_as_by_hand(helix):
     )
     assert f"= {ratio:.3f} (as in fegear)" in answer(found, "contact ratio")
     shift = 1.0 - 10.0 * math.sin(angle) ** 2 / math.cos(beta)
-    assert f"= {shift:.3f}, the pinion has x = 0.300 (fegear: it is not undercut)" in answer(found, "undercut")
+    undercut = answer(found, "undercut")
+    assert (
+        f"h = 1: x_min = h - z sin²α{'_t' if helix else ''} / {'(2 cos β)' if helix else '2'} = {shift:.3f}" in undercut
+    )
+    assert "the pinion has x = 0.300 (fegear: it is not undercut" in undercut
     forces = answer(found, "torque does")
     assert f"= {2.0 * radius:.4g} N m" in forces
     assert f"= {2000.0 * math.tan(angle):.4g} N lifts" in forces
@@ -328,5 +332,11 @@ def test_an_undercut_pinion_is_said_and_the_page_hears_the_racks():
     assert {one["topic"] for one in assemblies_of(scene)["racks"]["axis"]["exercises"]} == {"Rack and pinion"}
     scene.document["gear"]["p"] |= {"teeth": 14, "profile_shift": 0.0, "bore_radius": "5 mm"}
     scene = build_scene(scene.document, "t", Path())
-    said = answer(exercises_of_rack(scene, "axis"), "undercut")
-    assert "(fegear: it is undercut)" in said
+    found = exercises_of_rack(scene, "axis")
+    assert ", since the pinion is undercut)" in answer(found, "contact ratio")
+    said = answer(found, "undercut")
+    assert "(fegear: it is undercut; the flank of its tool is straight down to h = " in said
+    enough = float(re.search(r"profile_shift = (-?[\d.]+) and more", said)[1])
+    for shift, cut in ((enough, False), (enough - 2e-4, True)):
+        scene.document["gear"]["p"]["profile_shift"] = shift
+        assert build_scene(scene.document, "t", Path()).gears["p"].tooth.undercut == cut

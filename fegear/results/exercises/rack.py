@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.errors import FegearError
 from fegear.case.built.rack import rack_inputs
+from fegear.geometry.checks import undercut_of
 from fegear.results.exercises.wording import DIGITS, Exercise, degrees, distance, figures, mm, same, signed
 
 if TYPE_CHECKING:
@@ -74,8 +75,8 @@ def _contact_ratio(pair: RackAndPinion) -> Exercise:
     inner = height / math.sin(angle)
     ratio = (outer + inner) / rack.base_pitch
     own = pair.contact_ratio
-    known = "as in fegear" if same(ratio, own) else (
-        f"fegear: {own:.3f}, since tips are rounded or chamfered, or the pinion is undercut")  # fmt: skip
+    reason = "the pinion is undercut" if pinion.tooth.undercut else "tips are rounded or chamfered"
+    known = "as in fegear" if same(ratio, own) else f"fegear: {own:.3f}, since {reason}"
     overlap = f" Overlap ratio {pair.overlap_ratio:.3f}, total {pair.total_contact_ratio:.3f}." if t else ""
     return Exercise(
         _TOPIC,
@@ -94,12 +95,17 @@ def _undercut(pair: RackAndPinion) -> Exercise:
     cosine = math.cos(abs(pinion.helix_angle))
     shift = 1.0 - 0.5 * pinion.teeth * sine / cosine
     verdict = "is undercut" if pinion.tooth.undercut else "is not undercut"
+    if (found := undercut_of(pinion)) is not None:
+        straight = (
+            "" if found.straight is None else f"; the flank of its tool is straight down to h = {found.straight:.3f}"
+        )
+        verdict += f"{straight}: profile_shift = {signed(found.enough, 4)} and more avoid it"
     return Exercise(
         _TOPIC,
         "From how many teeth on does a rack tool not undercut the pinion, and what does this pinion need?",
         f"z_min = 2{' cos β' if t else ''} / sin²α{t} = {figures(2.0 * cosine / sine, DIGITS)} without profile shift; "
-        f"with z = {pinion.teeth}: x_min = 1 − z sin²α{t} / {'(2 cos β)' if t else '2'} = {signed(shift, 3)}, the "
-        f"pinion has x = {signed(tooth.profile_shift, 3)} (fegear: it {verdict}).",
+        f"with z = {pinion.teeth} and h = 1: x_min = h − z sin²α{t} / {'(2 cos β)' if t else '2'} = "
+        f"{signed(shift, 3)}, the pinion has x = {signed(tooth.profile_shift, 3)} (fegear: it {verdict}).",
     )
 
 
