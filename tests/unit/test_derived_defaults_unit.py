@@ -304,6 +304,9 @@ NOT_THERE = {
     "CompoundPart.input", "CompoundPlanetPart.pin", "CompoundShaftPart.bearing", "CompoundShaftPart.turning",
     "CrackGrowthPart.paris_coefficient", "CrackGrowthPart.paris_exponent", "CrackGrowthPart.toughness",
     "CostPart.quantities", "DamperPart.b",
+    "DesignPart.limits", *(f"fegear__case__design__LimitsPart.{key}" for key in (
+        "amount", "driven_start_diameter", "driver_start_diameter", "length",
+    )),
     "DesignPart.film", "DoubleHelicalPart.axial_play", "DoubleHelicalPart.second_driven",
     "DoubleHelicalPart.second_driver", "DoubleHelicalPart.torque_in", "DoubleHelicalPart.torque_out",
     "FlankDesignPart.largest_face_load_factor", "GearBodyPart.hub_radius", "GearPart.body",

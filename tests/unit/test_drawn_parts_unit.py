@@ -1,5 +1,6 @@
 """Parts of pages and pictures, and lines of cracks, by what they stand for."""
 
+from dataclasses import make_dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -54,11 +55,25 @@ def test_a_vibration_over_a_revolution_is_that_of_its_mesh(monkeypatch):
     train = SimpleNamespace(mesh_index=lambda name: {"second": 1}[name])
     data = SimpleNamespace(train=train, meshes=["first", mesh], phases=[0.1, 0.2])
     monkeypatch.setattr(vibration_revolution, "gear_train", lambda upstream: data)
-    monkeypatch.setattr("fegear.dynamics.motion.moving_train.steady_motions", lambda *given: (("state", *given),))
-    monkeypatch.setattr("fegear.dynamics.motion.motion_over_revolution.motion_over_revolution", lambda *given: given)
-    asked = vibration_revolution.VibrationInputs("motion", "second")
-    found = vibration_revolution._compute(asked, None, SimpleNamespace(progress="progress"))
-    assert found == (("state", "motion", data, "progress"), 1, "pair", 77, 0.2)
+    state, asked_for = SimpleNamespace(repeats=False), []
+    made = make_dataclass("Made", ["given", ("resonance", object, None)])
+
+    def steady_motions(*given):
+        asked_for.extend(given[:2])
+        return (state,)
+
+    monkeypatch.setattr("fegear.dynamics.motion.moving_train.steady_motions", steady_motions)
+    monkeypatch.setattr(
+        "fegear.dynamics.motion.motion_over_revolution.motion_over_revolution", lambda *given: made(given)
+    )
+    monkeypatch.setattr("fegear.dynamics.train.mesh_resonance.mesh_resonance", lambda *given: given)
+    monkeypatch.setattr(vibration_revolution, "_doubt", lambda *_given: None)
+    motion = SimpleNamespace(speeds=[10.0])
+    asked = vibration_revolution.VibrationInputs(motion, "second", ("p", "q"))
+    found = vibration_revolution._compute(asked, None, SimpleNamespace(progress=None))
+    assert asked_for == [motion, data]
+    assert found.given == (state, 1, "pair", 77, 0.2)
+    assert found.resonance == (data, 1, 10.0)
 
 
 def test_a_page_lists_the_works_that_its_results_cite(monkeypatch):

@@ -381,11 +381,12 @@ def test_a_design_for_a_range_is_compared_with_reliefs_for_one_load_and_with_the
         driver: EndRelief
         driven: EndRelief
         objective: float = 1.0
+        undeviated: None = None
 
         def applied(self, engagement):
             return replace(engagement, driver_relief=self.driver)
 
-    def grindable(engagement, load, shape, metric, *, banded=True, cache=None):
+    def grindable(engagement, load, shape, metric, *, banded=True, limits=None, cache=None):
         asked.append((load, shape, metric, banded))
         return Ground(other if banded else present, EndRelief(0.0, tip - 0.1, tip))
 

@@ -291,7 +291,7 @@ def test_more_freedom_never_leaves_more_and_descents_stay_in_the_box(trials, fou
         low, high = GRID.limits(family)
         at = best.relief.numbers
         assert ((at >= low) | (at == 0.0)).all()
-        assert (at <= high).all()
+        assert (at <= high * (1.0 + 1e-12)).all()  # but for rounding
         for held in held_by(family):
             assert best.value <= found(held).value
             assert best.value_on_grid <= found(held).value_on_grid

@@ -60,6 +60,6 @@ def test_hum_is_named_beside_the_verdict_where_it_is_large():
     said = verdict(found, ComputedPeak(8e-4), brief=True)
     assert "; mains hum of ±40.1 µm/m at 50 Hz" in said
     assert said.word.endswith(", mains hum")
-    assert hum_named(replace(found, hum=replace(found.hum, amplitude=2e-6))) == ""
+    assert hum_named(replace(found, hum=replace(found.hum, amplitude=1e-6))) == ""
     assert step_named(replace(found, step=2e-5)).startswith("the measured strain has steps of 20 µm/m, 2.")
     assert step_named(found) == ""

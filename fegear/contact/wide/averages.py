@@ -34,17 +34,12 @@ class Averages(ReadOnlyArrays):
     ----------
     reach : int
         r: at a point of the panel from station i to i + 1 stations i - r to i + 1 + r count.
-    rows : ndarray, shape (Gauss points, 2 r + 2, P, M - 1)
+    rows : ndarray, shape (Gauss points, P, M - 1, 2 r + 2)
         Their weights, which add up to 1.
     """
 
     reach: int
     rows: Array
-
-
-def on_panels(values: Array, share: float) -> Array:
-    """Values of stations, shape (P, M), at the same share of the length of each panel, shape (P, M - 1)."""
-    return np.asarray((1.0 - share) * values[:, :-1] + share * values[:, 1:])
 
 
 def averages(lines: ContactLines, window: Array | None) -> Averages:
@@ -59,7 +54,7 @@ def averages(lines: ContactLines, window: Array | None) -> Averages:
     h = lines.panel
     a, b = (np.broadcast_to(part[:, None, None], (GAUSS[0].size, *h.shape)) for part in (1.0 - GAUSS[0], GAUSS[0]))
     if window is None or not h.any():
-        return Averages(0, np.stack([a, b], axis=1))
+        return Averages(0, np.stack([a, b], axis=3))
     low, high = (part[:, :-1] for part in _ends(lines))
     z = a * lines.z[:, :-1] + b * lines.z[:, 1:]
     wide = np.where(h > 0.0, np.clip(window[:, :-1], 1e-6 * h, high - low), 1.0)
@@ -71,7 +66,7 @@ def averages(lines: ContactLines, window: Array | None) -> Averages:
     )
     reach = max(0, math.ceil(float(np.max(wide[h > 0.0] / h[h > 0.0])) - 1e-9))
     most = lines.z.shape[1]
-    rows = np.zeros((len(z), 2 * reach + 2, *z.shape[1:]))
+    rows = np.zeros((*z.shape, 2 * reach + 2))
     for k in range(-reach, reach + 2):
         at = np.arange(most - 1) + k
         i = np.clip(at, 0, most - 1)
@@ -80,7 +75,7 @@ def averages(lines: ContactLines, window: Array | None) -> Averages:
         above = np.where(i < most - 1, h[:, np.minimum(i, most - 2)], 0.0)
         for first, last in pieces:
             part = _hat_below(last - lines.z[:, i], below, above) - _hat_below(first - lines.z[:, i], below, above)
-            rows[:, k + reach] += np.where(same, part / (2.0 * wide), 0.0)
+            rows[..., k + reach] += np.where(same, part / (2.0 * wide), 0.0)
     return Averages(reach, rows)
 
 
@@ -116,25 +111,24 @@ class LocalMatrix:
         return slice(k, k + self._most - 1)
 
     def read(self, rows: Array, values: Array) -> Array:
-        """Averages of values (B, M) at a Gauss point of each panel, shape (B, M - 1); `rows` (2 r + 2, B, M - 1)."""
+        """Averages of values (B, M) at a Gauss point of each panel, shape (B, M - 1)."""
         padded = np.zeros((self._problems, self._most + 2 * self._reach))
         padded[:, self.inside] = values
-        return np.asarray(sum(row * padded[:, self._at(k)] for k, row in enumerate(rows)))
+        return np.asarray(sum(rows[:, :, k] * padded[:, self._at(k)] for k in range(rows.shape[2])))
 
     def add(self, rows: Array, slope: Array, load: Array) -> None:
-        """Add a Gauss point of each panel, (B, M - 1) each; `rows` as above."""
-        for k, row in enumerate(rows):
-            self.constant[:, self._at(k)] += row * load
-            weighted = row * slope
-            for other, beside in enumerate(rows[k:]):
-                self._bands[other][:, self._at(k)] += weighted * beside
+        """Add a Gauss point of each panel, (B, M - 1) each."""
+        for k in range(rows.shape[2]):
+            self.constant[:, self._at(k)] += rows[:, :, k] * load
+            weighted = rows[:, :, k] * slope
+            for other in range(k, rows.shape[2]):
+                self._bands[other - k][:, self._at(k)] += weighted * rows[:, :, other]
 
     def into(self, matrix: Array, density: Array) -> None:
-        """Add it to matrices (B, M, M), contiguous, of forces whose loads are force times density (B, M)."""
-        most = self._most
-        flat = matrix.reshape(len(matrix), -1)
-        for k, band in enumerate(self._bands[:most]):
-            part = band[:, self.inside][:, : most - k] * density[:, : most - k] * density[:, k:]
-            flat[:, k : (most - k) * most : most + 1] += part
+        """Add it to matrices (B, M, M) of forces, whose loads are force times density (B, M)."""
+        at = np.arange(self._most)
+        for k, band in enumerate(self._bands[: self._most]):
+            part = band[:, self.inside][:, : self._most - k] * density[:, : self._most - k] * density[:, k:]
+            matrix[:, at[: self._most - k], at[k:]] += part
             if k:
-                flat[:, k * most :: most + 1] += part
+                matrix[:, at[k:], at[: self._most - k]] += part

@@ -17,13 +17,13 @@ from typing import Literal
 
 import numpy as np
 
-from fegear.base.arrays import Array, ReadOnlyArrays
+from fegear.base.arrays import Array, Index, ReadOnlyArrays
 from fegear.base.plain import pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.base.tally import tallied
 from fegear.contact.contact_law import ContactLaw
 from fegear.contact.plane.edge_law import EdgeContacts
-from fegear.contact.wide.averages import GAUSS, Averages, averages, on_panels
+from fegear.contact.wide.averages import Averages, averages
 from fegear.contact.wide.lines import ContactLines
 from fegear.fem.solid.bands import Bands, bands
 from fegear.fem.solid.flank_body import FlankBody, FlankLines
@@ -37,8 +37,6 @@ _NOMINAL_HALF_WIDTH = 0.08
 _WINDOW = 2.0
 #: Pressed half-widths go in steps of this ratio, so that few of them occur.
 _WIDTH_STEP = 0.8
-#: From a rounded tip the sharp edge is as far away as this [m].
-_FAR = 1e3
 #: Stations whose loads are held in memory at once.
 _STATIONS_AT_ONCE = 4000
 
@@ -96,17 +94,24 @@ class FlankCompliance(ReadOnlyArrays):
         """How the load that a contact's width follows is averaged along its line."""
         return averages(self.lines, self.window)
 
-    @cached_property
-    def laws(self) -> tuple[ContactLaw, ...]:
-        """The law of line loads at each Gauss point of all panels, of contacts that follow their load, (P, M - 1)."""
-        q = self.width_factor
-        unit = np.ones_like(q) if self.line_half_width is None else self.line_half_width
-        tilt = None if self.lines.edges is None else np.maximum(self.lines.edges.tilt, -_FAR)
-        found, none = [], np.zeros(1)
-        for b in GAUSS[0].tolist():
-            edges = None if tilt is None else EdgeContacts(on_panels(tilt, b) / unit[:, :-1], none, none)
-            found.append(ContactLaw(2.0 * self.log_slope, unit[:, :-1] ** 2 / on_panels(q, b), edges))
-        return tuple(found)
+    def law(self, place: Index, share: tuple[float, float], tilt: Array | None = None) -> ContactLaw:
+        """The law of line loads at a point of each panel, of contacts that follow their load, shape (B, M - 1).
+
+        Parameters
+        ----------
+        place : ndarray of int, shape (B,)
+            Roll positions.
+        share : (float, float)
+            Weights of the stations at both ends of a panel at the point.
+        tilt : ndarray, shape (B, M - 1), optional
+            theta R of tip edges [m]: see `edge_law`; without it no edge is near.
+        """
+        q = self.width_factor[place]
+        unit = np.ones_like(q) if self.line_half_width is None else self.line_half_width[place]
+        reference = unit[:, :-1] ** 2 / (share[0] * q[:, :-1] + share[1] * q[:, 1:])
+        none = np.zeros(1)
+        edges = None if tilt is None else EdgeContacts(tilt / unit[:, :-1], none, none)
+        return ContactLaw(2.0 * self.log_slope, reference, edges)
 
     def half_width(self, line_load: Array) -> Array:
         """Hertzian half-width b under line loads of shape (P, M, L) [m]."""

@@ -14,7 +14,7 @@ station at a time (Murty, Linear Complementarity, 1988, 3.2: the least index).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -22,12 +22,11 @@ import numpy as np
 from fegear.base.arrays import Array, Index, Mask, ReadOnlyArrays
 from fegear.base.errors import ConvergenceError, InputError
 from fegear.base.tally import note, tallied
-from fegear.contact.wide.averages import GAUSS, LocalMatrix, on_panels
+from fegear.contact.wide.averages import GAUSS, LocalMatrix
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.contact.contact_law import ContactLaw
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.lines import ContactLines
 
@@ -40,12 +39,12 @@ _MANY_AT_ONCE, _MOST_STEPS = 15, 400
 _ENTRIES = 1 << 23
 
 
-#: The last of Newton's steps over the force and over the load: what is left of it is its square, 1e-12.
-_CLOSE, _CLOSE_OF_LOAD = 1e-6, 1e-9
-
-
 #: Share of the mean line load below which the logarithm is continued by its tangent.
 _SMALLEST = 1e-9
+
+
+#: From a rounded tip the sharp edge is as far away as this [m].
+_FAR = 1e3
 
 
 @dataclass(frozen=True)
@@ -215,7 +214,7 @@ def _solve(
         leaves = active & (new <= 0.0)
         scale = np.abs(z)[:, None] + apart[index]
         enters = there[here] & ~active & (distance < -1e-13 * scale)
-        close = (np.abs(kept - v) <= _CLOSE * np.abs(v) + _CLOSE_OF_LOAD * w[:, None]).all(axis=1)
+        close = (np.abs(kept - v) <= 1e-9 * np.abs(v) + 1e-12 * w[:, None]).all(axis=1)
         changes = leaves | enters
         done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
         at = index[done]
@@ -279,34 +278,40 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, *, secant: bool
     Or those of a secant, without what a load changes of its own contact's width.
     """
     lines, s = known.lines, known.log_slope
-    matrix = np.ascontiguousarray(known.matrix[place])
+    matrix = known.matrix[place]
     h, support = lines.panel[place], lines.support[place]
     density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
     f = force * density
     least = _SMALLEST * force.sum(axis=1, keepdims=True) / lines.length[place][:, None]
     unit = np.ones_like(f) if known.line_half_width is None else known.line_half_width[place]
     local = LocalMatrix(force.shape, known.averages.reach)
-    width = None if known.fixed_half_width is None else known.fixed_half_width[place]
-    if width is None:
+    follows = known.fixed_half_width is None
+    if follows:
         note("nonlinear steps")
-    for number, (b, weight, rows) in enumerate(zip(*GAUSS, known.averages.rows, strict=True)):
-        near, part = rows.take(place, axis=1), weight * h
-        if width is None:
+    for x, weight, rows in zip(*GAUSS, known.averages.rows, strict=True):
+        b, a = x, 1.0 - x
+        near = rows[place]
+        part = weight * h
+        if known.fixed_half_width is None:
             load = np.maximum(local.read(near, f), least)
-            law, none = _at(known.laws[number], place), np.zeros(1)
+            law, none = known.law(place, (a, b), _tilt(known, place, (a, b))), np.zeros(1)
             slope, left = (law.secant(none, load), none) if secant else law.linearised(none, load, none)
             local.add(near, part * slope, part * left)
         else:
-            relative = on_panels(width, b) / unit[:, :-1]
+            width = known.fixed_half_width[place]
+            relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
             local.add(near, -2.0 * s * part * np.log(relative), np.zeros_like(part))
     local.into(matrix, density)
     return matrix, local.constant[:, local.inside] * density
 
 
-def _at(law: ContactLaw, place: Index) -> ContactLaw:
-    """A law of line loads, arrays of shape (P, M - 1), at roll positions of shape (B,)."""
-    edges = law.edges and replace(law.edges, tilt=law.edges.tilt[place])
-    return replace(law, reference_load=np.asarray(law.reference_load)[place], edges=edges)
+def _tilt(known: FlankCompliance, place: Index, share: tuple[float, float]) -> Array | None:
+    """Tilt of the flanks at sharp tip edges beside and beyond the ends of the path, (B, M - 1) [m]; None: no edges."""
+    edges = known.lines.edges
+    if edges is None:
+        return None
+    tilt = np.maximum(edges.tilt[place], -_FAR)
+    return np.asarray(share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:])
 
 
 def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:
@@ -320,11 +325,10 @@ def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Ar
 
 def _solved(matrix: Array, on: Array, right: Array) -> Array:
     """Forces that deflect the active stations as said, both of shape (B, M, K)."""
+    system = matrix * on[:, :, None] * on[:, None, :]
     at = np.arange(on.shape[1])
-    # In units of each station's own compliance, so that inactive rows weigh no more than others.
-    unit = 1.0 / np.sqrt(np.where(on > 0.0, np.abs(matrix[:, at, at]), 1.0))
-    share = unit * on
-    system = matrix * share[:, :, None]
-    system *= share[:, None, :]
     system[:, at, at] += 1.0 - on
-    return np.asarray(np.linalg.solve(system, right * unit[:, :, None]) * unit[:, :, None])
+    # In units of each station's own compliance, so that inactive rows weigh no more than others.
+    root = np.sqrt(np.abs(system[:, at, at]))
+    system /= root[:, :, None] * root[:, None, :]
+    return np.asarray(np.linalg.solve(system, right / root[:, :, None]) / root[:, :, None])
