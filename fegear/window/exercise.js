@@ -110,7 +110,7 @@ const fegearExercise = ({ view, shown, number, half, spec, keep, changed }) => {
   };
   /** All questions on what is shown: those by computation first. */
   function questions() {
-    const { kind, pair, mesh, exercises, racks } = shown();
+    const { kind, pair, mesh, exercises, racks = {} } = shown();
     if (!pair) return Object.values(racks).flatMap((one) => one.exercises.map((rack) => ({ topic: rack.topic, question: rack.question, of: () => rack.answer }))); // none of a single gear
     const about = kind === "set" ? "set" : mesh?.wide ? "wide" : "plane";
     const byFormula = (kind === "set" ? fegearSets.of(pair)?.data?.exercises : exercises) ?? [];
