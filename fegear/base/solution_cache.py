@@ -7,7 +7,7 @@ import struct
 import time
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -16,6 +16,7 @@ from typing import Any, Generic, Literal, NamedTuple, ParamSpec, TypeVar
 import numpy as np
 
 from fegear.base.cache_keys import Key, call_key, remember_made
+from fegear.base.plain import pack, unpack
 from fegear.base.store import Store, cache_folder
 
 P = ParamSpec("P")
@@ -31,6 +32,18 @@ class Codec(NamedTuple, Generic[T]):
 
     write: Callable[[T], bytes]
     read: Callable[[bytes | memoryview], T | None]
+
+
+def fields_codec(kind: type[T]) -> Codec[T]:
+    """How dataclasses of numbers, arrays and texts are kept, field by field; bytes with other fields are not used."""
+
+    def read(data: bytes | memoryview) -> T | None:
+        try:
+            return kind(**unpack(data))  # type: ignore[arg-type]  # what is wrong shows itself
+        except (ValueError, KeyError, TypeError):
+            return None
+
+    return Codec(lambda found: pack(asdict(found)), read)  # type: ignore[call-overload]  # a dataclass
 
 
 class Solution(NamedTuple, Generic[T]):

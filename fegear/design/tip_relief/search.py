@@ -18,13 +18,12 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
 from fegear.base.arrays import Floats, Mask
-from fegear.base.plain import pack, unpack
-from fegear.base.solution_cache import Codec
+from fegear.base.solution_cache import fields_codec
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.relief_bench import Bench, bench
@@ -111,15 +110,8 @@ class Found:
     seconds: float
 
 
-def _read(data: bytes | memoryview) -> Found | None:
-    try:
-        return Found(**unpack(data))  # type: ignore[arg-type]  # what is wrong shows itself
-    except (ValueError, KeyError, TypeError):
-        return None
-
-
 #: How a search is kept.
-FOUND: Codec[Found] = Codec(lambda found: pack(asdict(found)), _read)
+FOUND = fields_codec(Found)
 
 
 def search(

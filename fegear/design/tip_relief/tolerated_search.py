@@ -12,15 +12,14 @@ searched for apart, and the best of them is taken.
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 
 import numpy as np
 
 from fegear.base.arrays import Array, Floats
-from fegear.base.plain import pack, unpack
-from fegear.base.solution_cache import Codec
+from fegear.base.solution_cache import fields_codec
 from fegear.contact.plane.engagement import Engagement
 from fegear.design.relief_bench import bench
 from fegear.design.tip_relief.descent import Limits, descend
@@ -159,15 +158,8 @@ class ToleratedFound:
     seconds: float
 
 
-def _read(data: bytes | memoryview) -> ToleratedFound | None:
-    try:
-        return ToleratedFound(**unpack(data))  # type: ignore[arg-type]  # what is wrong shows itself
-    except (ValueError, KeyError, TypeError):
-        return None
-
-
 #: How a search is kept.
-TOLERATED: Codec[ToleratedFound] = Codec(lambda found: pack(asdict(found)), _read)
+TOLERATED = fields_codec(ToleratedFound)
 
 
 def tolerated_search(
