@@ -320,6 +320,7 @@ def test_numbers_of_the_prose_are_those_of_the_run(tmp_path):
     assert "cannot be filled" in snippets.execute(page, tmp_path / "lost")
 
 
+@pytest.mark.dear
 def test_a_refusal_counts_only_where_the_page_shows_it(tmp_path):
     page = tmp_path / "page.md"
     command = "```sh\nfegear run missing.toml\n```\n"
@@ -469,6 +470,7 @@ def test_without_a_browser_the_page_of_the_window_says_that_it_has_no_film(monke
     )
 
 
+@pytest.mark.dear
 def test_a_case_of_the_gallery_that_does_not_run_says_why_and_others_have_run_beside_it(tmp_path, monkeypatch):
     """Two threads, as the site has them: each has the end of its own case."""
     monkeypatch.syspath_prepend(DOCS)

@@ -136,6 +136,7 @@ def test_counting_ends_with_its_block_and_inner_counts_keep_their_own():
         tallied("no such kernel")
 
 
+@pytest.mark.dear
 def test_the_page_of_effects_says_what_the_code_does():
     page = (ROOT / "docs" / "effects.md").read_text("utf-8")
     again = "docs/effects.md: python docs/effect_pictures.py --tables writes its tables"

@@ -25,6 +25,7 @@ def planned(name: str, *overrides: str):
     return scene, make_plan(scene, STAGES)
 
 
+@pytest.mark.dear
 def test_every_task_of_every_case_is_predicted():
     silent = Stage(lambda _scene: (), *3 * (lambda *_: None,)).forecast
     assert not [stage.name for stage in STAGES if stage.forecast is silent]

@@ -218,6 +218,7 @@ def test_contact_ratio_above_two():
     assert values["I.design_root_tension"].value < 1.01 * values["I.driver.largest_root_tension"].value
 
 
+@pytest.mark.dear
 def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
     with pytest.raises(SystemExit) as left:
         program()(["run", str(CASES / "calculix_pair.toml"), "--out", str(tmp_path / "o"), "--no-plots"])

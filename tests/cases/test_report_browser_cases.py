@@ -108,6 +108,7 @@ def test_plots_are_drawn_from_the_tables(page, gear):
     assert page.run(lines) >= 3
 
 
+@pytest.mark.dear
 def test_a_click_on_the_legend_hides_the_curve_and_another_brings_it_back(page):
     entry = f"{plot('root_stress_a')}.querySelectorAll('.legendtoggle')[0]"
     shown = f"{plot('root_stress_a')}.data.filter(t => t.name?.startsWith('tension')).map(t => t.visible ?? true)"
@@ -181,6 +182,7 @@ def test_no_width_makes_the_page_scroll_sideways(page, width):
     assert page.run(overflow) == 0
 
 
+@pytest.mark.dear("span W")
 @pytest.mark.parametrize("words", ["span W", "over balls or pins M"])
 def test_the_answer_is_seen_first_and_span_and_dimension_over_balls_one_click_away(page, words):
     page.run("scrollTo(0, 0)")

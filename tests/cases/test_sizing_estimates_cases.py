@@ -73,6 +73,7 @@ def _pairs():
     return space, space.pairs(np.arange(space.count))
 
 
+@pytest.mark.dear
 def test_bare_pairs_have_the_largest_error_over_the_torques_and_root_stress_at_their_own():
     _, pairs = _pairs()
     duty = AtlasDuty((15.0, 30.0), 206.8e9, 0.3, 45.0)
@@ -254,6 +255,7 @@ def test_a_sizing_by_reliefs_looks_up_searches_and_verifies_its_best(monkeypatch
     assert [one.relief.amount for one in jobs[2:]] == pytest.approx(table["relief_amount"][here])
 
 
+@pytest.mark.dear
 def test_a_sizing_without_an_atlas_is_estimated_by_coarse_finite_elements(monkeypatch):
     asked = {
         **ASKED,

@@ -360,6 +360,7 @@ def in_large_type(browser) -> None:
     browser.until("!document.documentElement.classList.contains('large-type')")
 
 
+@pytest.mark.dear
 def test_a_value_stepped_by_keyboard_changes_the_results_and_one_that_is_refused_leaves_them(browser, serve, tmp_path):
     """The shortest walk, of the ordinary run; the next tests walk through all of the window."""
     served = opened(browser, serve, tmp_path)

@@ -145,6 +145,7 @@ def test_whatever_a_page_says_that_looks_on_nothing_changes(tmp_path):
             served.process.wait()
 
 
+@pytest.mark.dear
 def test_others_are_refused_everywhere(served):
     """With the address and the cookie in their hands, too."""
     port = int(served.bare.rstrip("/").rpartition(":")[2])
@@ -174,6 +175,7 @@ def test_others_are_refused_everywhere(served):
     served.end()
 
 
+@pytest.mark.dear
 def test_half_a_character_is_refused_in_words_and_nothing_else_is_lost(served):
     """It was dropped by the framework, with a traceback in the terminal."""
     with window_page.Page(served.address) as page:

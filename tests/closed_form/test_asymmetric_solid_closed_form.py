@@ -41,6 +41,7 @@ def answers(found, radius):
                                 for side in ("tension", "compression"))])  # fmt: skip
 
 
+@pytest.mark.dear("slices", "solid")
 @pytest.mark.parametrize("how", SOLVERS)
 def test_equal_flanks_give_the_digits_of_the_symmetric_tooth(how):
     usual, equal = Tooth(17, profile_shift=0.2, helix_angle=BETA), AsymmetricTooth(17, AsymmetricRack(), 0.2,
@@ -50,6 +51,7 @@ def test_equal_flanks_give_the_digits_of_the_symmetric_tooth(how):
         assert np.array_equal(answers(solved(how, side), 8.9), wanted)
 
 
+@pytest.mark.dear("slices", "solid")
 @pytest.mark.parametrize("how", SOLVERS)
 def test_a_gear_turned_round_is_loaded_on_its_other_flank(how):
     one, other = (answers(solved(how, side), 9.0) for side in (ASYMMETRIC.coast, ASYMMETRIC.reversed.drive))

@@ -114,7 +114,7 @@ def stretching(n, omega):
     return float(np.linalg.det(np.array(rows)))
 
 
-@pytest.mark.dear("3.0")
+@pytest.mark.dear("3.0", "0.05")
 @pytest.mark.parametrize("width", [0.05, 3.0])
 def test_torsion_of_a_disc(width):
     """Exact whatever the width: only the mesh of the section is in the way."""

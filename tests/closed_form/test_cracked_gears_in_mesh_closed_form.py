@@ -86,6 +86,7 @@ def engagement(*odd, corner=True, **more):
     return Engagement(PairCompliance(PAIR, *sources.values()), corner_contact=corner, **more)
 
 
+@pytest.mark.dear("driver")
 @pytest.mark.parametrize("member", MEMBERS)
 def test_a_healthy_odd_tooth_changes_nothing(member):
     even = engagement()
@@ -276,6 +277,7 @@ def test_root_stress_of_teeth_that_are_alike_is_the_ordinary_one_and_states_its_
     assert found.beyond[0] < 2e-3 * found.largest[0]
 
 
+@pytest.mark.dear("tension")
 @pytest.mark.parametrize("side", SIDES)
 def test_root_stress_between_roll_positions_is_looked_for_and_what_is_left_is_stated(side):
     """Few positions find what many do, of a cracked tooth and of those beside it, too."""
@@ -289,6 +291,7 @@ def test_root_stress_between_roll_positions_is_looked_for_and_what_is_left_is_st
     assert few.off is few.largest_error is None  # nothing states the errors of gears
 
 
+@pytest.mark.dear
 def test_the_loaded_pair_takes_a_cracked_gear_and_states_its_errors():
     spec = PairSpec(PAIR, loads=(LOAD,), corner_contact=True)
     loaded = load(spec, [cracked("driver", 0.5), ordinary("driven")])
@@ -305,6 +308,7 @@ def test_the_loaded_pair_takes_a_cracked_gear_and_states_its_errors():
     assert off[0] < 0.1
 
 
+@pytest.mark.dear
 def test_condition_indicators_state_what_few_positions_leave_open():
     loaded = load(PairSpec(PAIR, loads=(LOAD,), corner_contact=True), [cracked("driver", 0.5), ordinary("driven")])
     (few, left), (many, _) = (
@@ -382,6 +386,7 @@ def test_a_fillet_that_a_load_compresses_has_the_error_of_its_stress():
     assert error.min() > 1e-4 * np.hypot(*value).max()
 
 
+@pytest.mark.dear
 def test_extremes_over_a_revolution_are_those_where_contact_changes():
     """Tip edges bear beyond the path: between even positions the lowest stiffness would be missed."""
     of, load = engagement(cracked("driver", 0.4)), LOAD

@@ -60,6 +60,7 @@ def apart(found, name):
     return tuple(float(np.abs(one - quasi)[path].max() / peak) for one in (motion.static, motion.total))
 
 
+@pytest.mark.dear("t")
 @pytest.mark.parametrize("name", ["t", "c"])
 def test_at_speed_to_zero_the_strain_is_the_quasi_static_one(name):
     static, whole = apart(ran(CASE), name)
@@ -99,6 +100,7 @@ def test_near_resonance_the_strain_is_larger():
     assert found.displaced[:, found.displacement.tolist().index(0.0)] == pytest.approx(found.total)
 
 
+@pytest.mark.dear
 def test_a_trace_taken_in_motion_is_found_again(tmp_path):
     document = copy.deepcopy(CASE)
     document["dynamics"]["speed"], document["results"] = "4000 rpm", ["dynamic-strain"]

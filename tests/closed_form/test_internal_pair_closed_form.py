@@ -98,6 +98,7 @@ def test_published_set_of_18_36_and_93_teeth():
     assert gap == pytest.approx([2.35e-6, 9.56e-6, 39.6e-6], rel=5e-3)
 
 
+@pytest.mark.dear
 def test_flanks_roll_on_each_other_without_cutting_and_with_the_stated_backlash():
     """Polygons of three teeth of each gear, over a base pitch: none inside the other, apart by the backlash behind."""
     pair = the_pair()

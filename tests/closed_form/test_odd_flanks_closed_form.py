@@ -142,6 +142,7 @@ def test_a_lower_tooth_ends_contact_at_its_own_tip(member):
     assert more.max() < 3e-3
 
 
+@pytest.mark.dear
 def test_a_pit_of_no_share_and_no_depth_changes_nothing():
     usual = over_revolution(engagement(), LOAD, 12)
     for pit in (Pit(0.0, 1.0, 0.0, 1e-3), Pit(0.0, 1.0, 1.0, 0.0), Pit(0.0, 1.0, 0.0, 0.0), Pit(0.0, 1e-3, 1.0, 1e-3)):
@@ -149,6 +150,7 @@ def test_a_pit_of_no_share_and_no_depth_changes_nothing():
         assert te(found) == pytest.approx(np.broadcast_to(te(usual), te(found).shape), rel=1e-13)
 
 
+@pytest.mark.dear("driver")
 @pytest.mark.parametrize("member", MEMBERS)
 def test_a_pit_over_a_whole_flank_is_a_pitch_deviation_and_a_deep_one_leaves_no_tooth(member):
     depth, z = 3e-6, PAIR.gear(member).teeth

@@ -95,6 +95,7 @@ def test_a_table_read_linearly_leaves_what_no_gauge_sees(z, addendum, ratio, ram
     assert np.ptp(te) < 5e-6 * te.mean()
 
 
+@pytest.mark.dear
 @settings(max_examples=25, deadline=None)
 @given(
     z1=st.integers(17, 60), z2=st.integers(17, 100), module=st.floats(1e-3, 8e-3), shift=st.floats(-0.1, 0.4),

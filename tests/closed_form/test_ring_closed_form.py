@@ -96,7 +96,7 @@ def test_observed_order_of_convergence_in_energy(order, factors, slope):
     assert errors[-1] < {2: 2e-4, 3: 1e-4, 4: 1e-4}[order]
 
 
-@pytest.mark.dear("2-factors0-2.0", "3-factors1-2.7")
+@pytest.mark.dear("2-factors0-2.0", "3-factors1-2.7", "4-factors2-3.0")
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
     [(2, (4.0, 2.8, 2.0, 1.4, 1.0), 2.0), (3, (5.6, 4.0, 2.8, 2.0, 1.4), 2.7), (4, (4.0, 2.8, 2.0, 1.4), 3.0)],

@@ -40,6 +40,7 @@ def alone():
     return [float((up.T @ plane_compliance(plane())[k] @ up)[0, 0]) for k in (0, 1)]
 
 
+@pytest.mark.dear
 def test_an_even_load_on_a_wide_face_is_plane_strain():
     """In the middle; exactly so for the next tooth, which knows no ends."""
     found = sliced(40.0)

@@ -134,6 +134,7 @@ def test_products_over_a_stretched_piece_are_those_of_a_longer_one(stretch):
         np.testing.assert_allclose(other, one * stretch**power, rtol=1e-12, atol=1e-12 * np.abs(one).max())
 
 
+@pytest.mark.dear
 def test_narrowed_bands_of_a_plane_tooth_are_the_plane_contacts():
     """Within .1 % over the middle of the flank, .6 % down to 7 % of its length from both ends."""
     fine = settings_at(0)

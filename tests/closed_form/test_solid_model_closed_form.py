@@ -53,6 +53,7 @@ def read_back(path):
         yield gmsh, shapes
 
 
+@pytest.mark.dear("one0-4")
 @pytest.mark.parametrize(
     ("one", "pieces"),
     [

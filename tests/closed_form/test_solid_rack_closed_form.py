@@ -47,6 +47,7 @@ def numbers(solution, place):
     return np.concatenate(own), np.concatenate(stress)
 
 
+@pytest.mark.dear
 def test_without_motion_along_the_axis_a_spur_rack_is_the_plane_one():
     found = rack_of(plane_strain=True, teeth=5, held=(False, True, False, False, True), pin_width=1.0)
     plane, _, _ = solve_rack_teeth(
@@ -82,6 +83,7 @@ def test_it_is_the_limit_of_gears_with_many_teeth():
     assert limit[deflection.size :] == pytest.approx(stress, abs=1.2e-2 * np.abs(stress).max())
 
 
+@pytest.mark.dear
 def test_exchanged_hands_mirror_each_other_at_the_middle_of_the_face():
     right, left = (numbers(rack_of(20.0, hand, teeth=15).usual, 0.2) for hand in (-1.0, 1.0))
     assert left[0].reshape(3, 3)[:, ::-1] == pytest.approx(right[0].reshape(3, 3), rel=1e-9)
@@ -89,6 +91,7 @@ def test_exchanged_hands_mirror_each_other_at_the_middle_of_the_face():
     assert other[:, ::-1, ::-1] == pytest.approx(one, rel=1e-9)
 
 
+@pytest.mark.dear
 def test_without_a_helix_it_is_spur():
     """Whose motions are solved apart; the smaller the helix angle, the nearer."""
     spur = numbers(rack_of().usual, 0.2)[0]
@@ -97,6 +100,7 @@ def test_without_a_helix_it_is_spur():
     assert apart[1] < 0.6 * apart[0]
 
 
+@pytest.mark.dear
 def test_maxwell_and_the_ends():
     rack = rack_of(20.0, teeth=15)
     size = np.abs(rack.coupling(2, 2)).max()
@@ -109,6 +113,7 @@ def test_maxwell_and_the_ends():
     assert not rack.differ(rack.middle, rack.middle)
 
 
+@pytest.mark.dear
 def test_teeth_between_pins_are_softer_and_far_teeth_alike():
     pinned = rack_of(teeth=12, held=tuple(i % 6 == 2 for i in range(12)), pin_width=2.0)
     on, between = (numbers(pinned.loaded(j), 0.2)[0][:3] for j in (2, 5))

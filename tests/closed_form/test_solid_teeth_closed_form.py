@@ -196,6 +196,7 @@ def explicit(tooth, settings, tau, width, bore, sectors, closed):
     return answer
 
 
+@pytest.mark.dear("16-3")
 @pytest.mark.parametrize(("teeth", "row"), [pytest.param(5, 0, marks=pytest.mark.long), (16, 3)])
 def test_the_ring_is_an_explicit_ring_of_sectors_and_a_row_an_explicit_row(teeth, row):
     tooth = Tooth(teeth, BasicRack(0.8, 1.25, 0.2), profile_shift=0.5 if teeth < 10 else 0.0)

@@ -165,6 +165,7 @@ def test_waves_are_straight_in_a_helical_gear(tau):
     np.testing.assert_allclose(found, wanted, atol=2e-3)
 
 
+@pytest.mark.dear
 def test_holes_take_stiffness_and_none_against_rigid_motions():
     waves = Waves((6, 7), FaceFunctions((-0.4, 0.4), (2,)))
     lost = lost_stiffness(WebHoles(3, 4.0, 0.8, 0.3), (2.5, 5.5), waves, 0.3, 3, 1.2)

@@ -12,6 +12,7 @@ generator = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(generator)
 
 
+@pytest.mark.dear
 def test_a_square_end_of_a_body_that_does_not_contract_is_its_mirror():
     assert end_slope(0.0, 0.0) == pytest.approx(0.0, abs=1e-12)
     found = generator.end_slopes(0.0, 0.0, degree=4, edge=0.2, wide=0.25, narrow=0.15)

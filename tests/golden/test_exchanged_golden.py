@@ -10,6 +10,7 @@ exchanged = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(exchanged)
 
 
+@pytest.mark.dear("rich", "load cases")
 @pytest.mark.parametrize("name", exchanged.kept())
 def test_a_model_and_its_changes_become_what_is_kept(name):
     assert exchanged.differences(exchanged.kept()[name], exchanged.of_model_named(name)) == []

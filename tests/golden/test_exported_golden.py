@@ -12,6 +12,7 @@ exported = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(exported)
 
 
+@pytest.mark.dear("ring")
 @pytest.mark.parametrize("name", exported.EXPORTS)
 def test_an_export_writes_what_is_kept(name):
     assert exported.differences(exported.kept()[name], exported.of_export(name)) == []

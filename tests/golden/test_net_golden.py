@@ -15,7 +15,7 @@ _SPEC.loader.exec_module(net)
 CHEAPEST = ("litvin_profile_angle", "sources/litvin_eq18")
 
 
-@pytest.mark.dear("sources/litvin_eq18")
+@pytest.mark.dear("sources/litvin_eq18", "litvin_profile_angle")
 @pytest.mark.parametrize("case", CHEAPEST)
 def test_the_cheapest_cases_give_what_is_kept(case):
     """But for tenth digits between the samples: another processor rounds some of them the other way."""

@@ -82,6 +82,7 @@ COUNTS = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.dear("0-4")
 @pytest.mark.parametrize(
     ("level", "gears"),
     [

@@ -30,6 +30,7 @@ def test_no_combination_is_missing(table):
     assert values[:, 2:].min() >= 1.0 - 1e-9
 
 
+@pytest.mark.dear("thin slices")
 @pytest.mark.parametrize("body", [pytest.param("solid", marks=pytest.mark.long), "thin slices"])
 def test_a_corner_of_the_table_is_what_comes_out_now(table, body):
     """Narrow and moderately helical, where slices are farthest off: means to .5 %, the others to 2 %."""

@@ -563,7 +563,9 @@ def test_every_result_has_a_run_in_the_net_or_a_test_elsewhere():
 LONG = {"flank_design"}
 
 
-@pytest.mark.dear("flank_design_options", "lead_correction", "robustness")
+@pytest.mark.dear(
+    "flank_design_options", "gearbox_misaligned", "helical_set", "lead_correction", "robustness", "spur_misaligned"
+)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in small_net.RUNS]
 )

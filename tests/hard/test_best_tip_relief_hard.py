@@ -427,6 +427,7 @@ def test_no_differential_evolution_finds_less_removal_among_the_equally_good(see
         assert found.driver.amount + found.driven.amount < 1.002 * (x[0] + x[2]) * unit[0]
 
 
+@pytest.mark.dear
 def test_the_least_removal_is_found_in_a_valley_that_is_not_the_deepest():
     """72.5 um were removed of a pair where 60.8 leave as little, in a valley whose ground is .6 % higher."""
     teeth = Tooth(18, BasicRack(), profile_shift=0.22941994), Tooth(40, BasicRack(), profile_shift=-0.22941994)

@@ -69,6 +69,7 @@ def test_damaged_rexs_models_end_in_a_case_or_a_sentence(first, count):
     assert min(ends["planned"], ends["refused"]) > 0.1 * count
 
 
+@pytest.mark.dear("0-25")
 @pytest.mark.parametrize(("first", "count"), [(0, 25), pytest.param(25, 1000, marks=pytest.mark.long)])
 def test_models_with_broken_structure_end_in_a_case_that_is_planned_or_a_sentence(tmp_path, first, count):
     """XML, JSON and archives: parts lost, doubled, exchanged, of wrong kinds, with numbers that are none, cut texts."""

@@ -67,6 +67,7 @@ def test_teeth_places_and_slopes_that_are_not_known_are_refused(known):
         replace(ROUGH, room_share=1.5)
 
 
+@pytest.mark.dear
 @settings(max_examples=3, deadline=None, derandomize=True)
 @given(
     teeth=st.integers(12, 90),

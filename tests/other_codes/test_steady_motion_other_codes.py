@@ -175,6 +175,7 @@ def far(y, z):
 
 
 # ---- both damping laws ----------------------------------------------------------------------------------------------
+@pytest.mark.dear("5200.0-0.0-inf-8890.0-constant")
 @pytest.mark.parametrize("law", ["constant", "momentary"])
 @pytest.mark.parametrize(
     ("rpm", "relief", "backlash", "force"),
@@ -324,7 +325,7 @@ def multiplier(depth, zeta, ratio):
     return float(np.abs(np.linalg.eigvals((ends[1:] - ends[0]).T)).max())
 
 
-@pytest.mark.dear("0.3-0.02")
+@pytest.mark.dear("0.3-0.02", "0.25-0.05")
 @pytest.mark.parametrize(("depth", "zeta"), [
     pytest.param(0.2, 0.02, marks=pytest.mark.long), (0.3, 0.02), (0.25, 0.05),
     pytest.param(0.15, 0.02, marks=pytest.mark.long),

@@ -87,6 +87,7 @@ def test_a_region_that_an_atlas_of_the_family_has_is_taken_over(atlas):
     np.testing.assert_array_equal(again.pieces[0].errors, atlas.pieces[0].errors)
 
 
+@pytest.mark.dear
 def test_of_a_family_like_others_only_what_differs_is_sought(atlas):
     """Fewer gears; of two atlases with the same numbers as much as of one of them, wherever it lies between both."""
     family, cache = replace(FAMILY, rounding=0.3), SolutionCache()
@@ -139,6 +140,7 @@ def test_sums_of_products_add_up():
     assert degrees.shape == (3, 4)
 
 
+@pytest.mark.dear
 def test_finer_compliances_are_nearer_and_leave_the_rest(atlas, tmp_path):
     told = []
     cache = cache_on_disk(tmp_path / "cache")
@@ -387,6 +389,7 @@ def test_rows_of_another_kind_are_refused(atlas, tmp_path, monkeypatch):
         load_atlas(tmp_path / "old.npz")
 
 
+@pytest.mark.dear
 def test_building_goes_on_where_it_was_stopped(tmp_path: Path):
     domains, budget = [Domain((24, 48), (0.2, 0.2))], Budget(1.0)
     seen = []

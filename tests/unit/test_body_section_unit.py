@@ -162,6 +162,7 @@ def test_a_disc_has_no_such_figure():
     assert body_figures(disc.gears) == ()
 
 
+@pytest.mark.dear("body1", "body0")
 @pytest.mark.parametrize("body", [{}, {"body": {"rim_thickness": "4 mm", "web_thickness": "5 mm"}}])
 def test_a_step_file_is_a_disc_and_says_so_where_the_case_has_a_body(tmp_path, body):
     part = {"teeth": 12, "module": "2 mm", "face_width": "10 mm", "bore_radius": "4 mm", **body}

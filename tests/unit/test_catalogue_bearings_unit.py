@@ -322,6 +322,7 @@ def shaft_on(*bearings: dict) -> dict:
     }  # fmt: skip
 
 
+@pytest.mark.dear
 def test_tapered_bearings_of_one_direction_do_not_hold_a_shaft():
     """It was a tilt of 3.6 million degrees."""
     document = shaft_on(*({"designation": "30206", "life": {}},) * 2)

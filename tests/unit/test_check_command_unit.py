@@ -84,6 +84,7 @@ def test_a_gear_with_a_mesh_of_its_own_is_refused_in_a_sentence(case):
         program()(["check", str(case), "--set", 'gear.a.tooth_mesh="own.msh"'], standalone_mode=False)
 
 
+@pytest.mark.dear
 def test_a_small_gear_by_scikit_fem_alone_gives_what_it_gave():
     """Six teeth on few edges: 2 % from the condensed ring, but to the last digits what was accepted."""
     from fegear.fem.plane.scikit_fem_alone import solve_alone

@@ -110,6 +110,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, words, case, tmp_p
     assert sorted(tmp_path.rglob("*")) == before
 
 
+@pytest.mark.dear
 def test_export_writes_drawings_and_meshes(case, tmp_path):
     done = fegear("export", case, "--gear", "a", "--format", "dxf, msh", "--out", "o", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -187,6 +188,7 @@ def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
     assert done.stderr == "fegear: interrupted; results of earlier runs are unchanged.\n"
 
 
+@pytest.mark.dear
 def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
     """Ctrl-C reaches every process of a terminal; those that were still loading ended in tracebacks of their own."""
     (tmp_path / "site").mkdir()

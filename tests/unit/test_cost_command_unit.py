@@ -74,6 +74,7 @@ def short(case):
     return out
 
 
+@pytest.mark.dear
 def test_finer_meshes_have_smaller_errors_and_the_cheapest_within_a_tolerance_is_one_of_them(
     case, tmp_path, monkeypatch
 ):

@@ -109,6 +109,7 @@ def document_of(path):
     return tomllib.loads(path.read_text("utf-8"))
 
 
+@pytest.mark.dear("measured_flanks")
 @pytest.mark.parametrize("path", shipped(), ids=lambda path: path.stem)
 def test_in_a_shipped_case(path):
     assert wrong(document_of(path), path.parent) == []
@@ -187,6 +188,7 @@ def given_at(document, idents):
     return [(ident, path, node) for ident, path, node, given in SCHEMA.entries(document) if given and ident in idents]
 
 
+@pytest.mark.dear
 def test_every_default_of_the_schema_stands_in_one_of_these_cases():
     left = never_absent()
     for document, _ in documents():

@@ -104,6 +104,7 @@ def test_keys_become_the_spec():
     assert double_to_load(scene_of(turned), "I").spec.floating == "driven"
 
 
+@pytest.mark.dear
 def test_an_apex_offset_moves_load_by_the_axial_stiffness():
     """No float: W_1 t_1 + W_2 t_2 = k_ax q by hand, and K_gamma is twice the share of the more loaded half."""
     even, _ = located()
@@ -160,6 +161,7 @@ def test_one_half_carries_all_of_a_large_offset():
     assert any("the half at end II carries no load" in note for note in notes)
 
 
+@pytest.mark.dear
 def test_each_half_is_the_helical_pair_under_half_of_the_load():
     """Results of the pair itself are those of one half."""
     half, _ = values(case(results=("load-distribution",)))

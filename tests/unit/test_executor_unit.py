@@ -33,6 +33,7 @@ from fegear.results.catalogue import STAGES
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
 
 
+@pytest.mark.dear
 def test_results_come_in_order_and_failures_are_values(tmp_path):
     told = []
     store = Store(tmp_path)
@@ -263,6 +264,7 @@ def test_failures_of_the_circumstances_are_not_kept(tmp_path, monkeypatch, error
     assert count_kept(function, [2.0], cache) == kept
 
 
+@pytest.mark.dear
 def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
     program = (
         "import signal\n"

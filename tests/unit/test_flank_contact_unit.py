@@ -491,6 +491,7 @@ def test_many_roll_positions_are_taken_in_parts(known, monkeypatch):
     np.testing.assert_allclose(again.matrix, matrix.matrix, rtol=1e-12, atol=1e-12 * np.abs(matrix.matrix[0, 0, 0]))
 
 
+@pytest.mark.dear
 def test_faces_that_overlap_in_part_bear_where_both_are(solved):
     """A wider mate, and mates beside each other: what is common bears, mirrored offsets mirror, nothing else jumps."""
     spur = gear(0.0)

@@ -271,6 +271,7 @@ def found(trials, exact):
     return best
 
 
+@pytest.mark.dear
 def test_the_best_of_the_grid_is_that_of_brute_force(trials, found):
     for family in ("profile", "lead"):
         numbers = GRID.numbers(family, GRID.combinations(family))

@@ -167,6 +167,7 @@ def test_plateaus_that_the_pair_does_not_have_are_named(history, tmp_path):
         read(case({"file": "t.csv"}, torques=(40.0,)), tmp_path)
 
 
+@pytest.mark.dear
 def test_a_staircase_without_a_column_of_the_torque_is_recognised(history, tmp_path):
     for name, levels in (("steps", TORQUES), ("steady", (24.0, 24.0, 24.0))):
         written(tmp_path, history, staircase(*levels, turns=2, ramp=0.0))
@@ -179,6 +180,7 @@ def test_a_staircase_without_a_column_of_the_torque_is_recognised(history, tmp_p
     assert not any("from turn to turn" in one for one in steady.remarks)
 
 
+@pytest.mark.dear
 def test_the_run_up_does_not_count(history, tmp_path):
     """One torque only: with its run-up taken for samples at the torque the gain is a tenth too small at least."""
     written(tmp_path, history, staircase(24.0, turns=1, ramp=1.0))

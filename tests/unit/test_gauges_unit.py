@@ -322,6 +322,7 @@ def test_a_trace_that_is_no_fit_has_no_residual(plain, tmp_path):
     assert not any("RMS" in one for one in outcome.remarks)
 
 
+@pytest.mark.dear
 def test_figures_draw_the_strain_as_measured_and_the_fitted_curve_apart(plain, tmp_path):
     """A scale of 1.2 must be seen: the points are that much above the computed curve."""
     angle, strain = np.degrees(plain.history.angle), 1e6 * plain.history.strain[:, 0]
@@ -340,6 +341,7 @@ def test_figures_draw_the_strain_as_measured_and_the_fitted_curve_apart(plain, t
     assert columns["measured"] == pytest.approx(columns["computed"], rel=1e-4, abs=1e-9)
 
 
+@pytest.mark.dear
 def test_a_drift_of_the_bridge_is_named_and_found_again(plain, tmp_path):
     angle, strain = plain.history.angle, plain.history.strain[:, 0]
     at = np.arange(0.0, 4.0 * 360.0, 0.5)
@@ -368,6 +370,7 @@ def test_a_drift_of_the_bridge_is_named_and_found_again(plain, tmp_path):
     assert "g.measured_drift" not in [one.name for one in named.values]
 
 
+@pytest.mark.dear("1.3-measured strain does not agree with the computed one: 30 % above it (limit ")
 @pytest.mark.parametrize(
     ("gain", "words"),
     [
@@ -416,6 +419,7 @@ def test_a_roughly_known_strain_passes_no_measurement(plain):
     )
 
 
+@pytest.mark.dear
 def test_what_corner_contact_changes_is_stated_and_counts_in_the_limit(tmp_path):
     """It lowers the peak by 2.3 %, and the ratio of a trace to the whole curve by 0.6 %."""
     document = changed({"measured": {"file": "t.csv"}}, effects__corner_contact=False)
@@ -469,6 +473,7 @@ def test_the_remedy_of_a_rough_strain_is_that_of_its_model(width, remedy):
     assert GAUGE.inputs(scene, "g").sharper == remedy
 
 
+@pytest.mark.dear
 def test_a_half_bridge_that_was_read_as_one_gauge_is_named(plain, tmp_path):
     """Its ratio to the gauge is that over the whole curve: before and after the contact both fillets have one sign."""
     history = plain.history

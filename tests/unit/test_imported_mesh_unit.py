@@ -43,7 +43,7 @@ def test_nothing_is_printed_where_a_mesh_is_read(capsys):
     assert capsys.readouterr().out == ""
 
 
-@pytest.mark.dear("four_square-four_square_test_gear.msh")
+@pytest.mark.dear("four_square-four_square_test_gear.msh", "shifted-shifted_40_teeth.inp")
 @pytest.mark.parametrize(
     ("make", "name"), [(four_square, "four_square_test_gear.msh"), (shifted, "shifted_40_teeth.inp")]
 )

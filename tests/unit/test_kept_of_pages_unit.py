@@ -92,6 +92,7 @@ def test_many_threads_see_the_whole_or_make_it(folder):
     assert len(entries(folder)) == 1
 
 
+@pytest.mark.dear
 def test_pages_of_a_second_run_are_those_of_the_first(tmp_path):
     environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(tmp_path)}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -115,6 +115,7 @@ def test_every_field_of_a_spec_is_among_them():
     assert missing == set(), "give each another value in OTHERS: it has to change the transmission error"
 
 
+@pytest.mark.dear
 def test_every_field_acts_from_a_shared_cache_as_alone():
     cache, before = SolutionCache(), error_of(SPEC)
     assert (error_of(SPEC, cache=cache) == before).all()

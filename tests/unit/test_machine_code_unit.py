@@ -147,6 +147,7 @@ def test_what_the_set_up_compiles_serves_every_train():
     assert len(kernel.compiled().signatures) == before == 1
 
 
+@pytest.mark.dear
 def test_a_ctrl_c_on_the_way_is_raised_and_does_not_end_the_process():
     """It was raised as numba made a named tuple of what it hands back, and nobody looked: a segmentation fault."""
     constant = MeshExcitation.from_mesh(Periodic.constant(2e8), Periodic.constant(0.0))

@@ -457,6 +457,7 @@ CHEAP = ("--no-plots", "--set", 'pair.I.width="slices"', "--set", "load_distribu
 COARSE = ("--set", "accuracy.tolerance=2e-2")
 
 
+@pytest.mark.dear
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0
@@ -588,6 +589,7 @@ def test_an_example_needs_a_folder_where_another_file_stands(say, tmp_path):
     assert (tmp_path / "data").read_text() == "mine"
 
 
+@pytest.mark.dear
 def test_helical_gears_have_relief_and_crowning_unless_the_drawing_has_others_or_none():
     """Line load and pressure at sharp edges stood on fresh reports with errors of 14 and 6 %."""
     for kind in HELICAL:
@@ -702,6 +704,7 @@ def test_bearings_of_two_drafted_stages_last_and_hold_what_fits_them(given):
             assert bearing.printed.bore == pytest.approx(shaft.sections[0].outer)
 
 
+@pytest.mark.dear
 def test_three_drafted_stages_have_each_the_torque_of_the_one_before_and_bearings_that_last():
     given = {"teeth": "21 125 20 73 21 58", "torque": "49 N*m", "speed": "1460 rpm"}
     assert kind_of("gearbox", given) == kind_of(None, given) == THREE_STAGES

@@ -203,6 +203,7 @@ def test_folders_of_work_are_held_by_one_at_a_time(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.dear
 def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
     case = tmp_path / "case.toml"
     case.write_text('results = ["stiffness"]\naccuracy.tolerance = 1e-6\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')

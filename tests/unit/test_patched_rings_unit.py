@@ -38,6 +38,7 @@ def patched(plain, keyway, **known):
     )
 
 
+@pytest.mark.dear
 def test_sectors_as_one_are_the_ring_that_they_were_and_know_what_the_gear_knew(plain):
     """With a keyway of next to nothing; solved from meshes, or from the ordinary sector's solution."""
     found, again, patch = patched(plain, HARDLY), patched(plain, HARDLY, known=plain.fine), SETTINGS.patch_half_width

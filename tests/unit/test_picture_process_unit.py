@@ -56,6 +56,7 @@ def pictures(drawing: Drawing, *figures: object) -> tuple[list, list[str]]:
     return drawing.finish(lambda _fraction: None)
 
 
+@pytest.mark.dear
 def test_it_draws_the_same_bytes_in_the_same_order(process, tmp_path):
     there, here = tmp_path / "there", tmp_path / "here"
     there.mkdir()
@@ -81,6 +82,7 @@ def test_its_copy_draws_the_same_bytes(process, tmp_path):
     assert len(set(drawn)) == 1
 
 
+@pytest.mark.dear
 def test_what_it_cannot_draw_is_drawn_here_or_fails_here_in_its_own_words(process, tmp_path, monkeypatch):
     unsent = Figure("lambda", "", "", (Panel(Axis("x"), Axis("y"), (lambda: None,)),))  # type: ignore[arg-type]
     wrong = Figure("wrong", "", "", (Panel(Axis("x"), Axis("y"), (Curve([0.0, 1.0], [0.0]),)),))
@@ -111,6 +113,7 @@ def test_when_it_dies_the_pictures_are_drawn_here(tmp_path):
     assert all(picture.path.stat().st_size > 5000 for one in found for picture in one.pictures)
 
 
+@pytest.mark.dear
 def test_leaving_ends_it_whatever_it_draws(monkeypatch, tmp_path):
     monkeypatch.setattr("fegear.output.picture_process._pays", lambda: True)
     with PictureProcess() as process:
@@ -173,6 +176,7 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
         CliRunner().invoke(program(), arguments, catch_exceptions=False)
 
 
+@pytest.mark.dear("pdf")
 @pytest.mark.parametrize("kind", ["svg", "pdf"])
 def test_figures_are_drawn_in_the_wanted_format_and_what_a_report_embeds_as_png(kind, process, tmp_path):
     x = np.array([0.0, 1.0, 0.0])
@@ -200,6 +204,7 @@ def test_the_command_takes_a_format_and_refuses_others(tmp_path):
             CliRunner().invoke(program(), [*arguments, *more], catch_exceptions=False)
 
 
+@pytest.mark.dear
 def test_none_outlives_a_killed_parent_nor_complains(tmp_path):
     program = (
         "import time\n"

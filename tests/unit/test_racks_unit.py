@@ -160,6 +160,7 @@ def relieved(amount, *, relief, **effects):
     return run_plan(scene, make_plan(scene, STAGES))
 
 
+@pytest.mark.dear
 def test_relief_of_nothing_changes_nothing_and_relief_that_is_off_is_said(results):
     before = {value.name: value.value for value in results.values}
     none, off = relieved("0 um", relief=True), relieved("6 um", relief=False)

@@ -79,6 +79,7 @@ def test_what_is_held_is_the_same_whether_or_not_its_parts_have_been_looked_thro
         known[id(outcome.data)] = found
 
 
+@pytest.mark.dear
 def test_a_changed_load_solves_no_gear_again(first):
     cache, _before = first
     after = run(cache, load="1100 N")
@@ -145,6 +146,7 @@ def joined_words():
     return {long[len(stem) + 1 :] for stem in stems for long in stems if long.startswith(f"{stem}_")}
 
 
+@pytest.mark.dear
 def test_every_word_that_a_name_of_a_table_goes_on_with_is_known():
     found = joined_words()
     assert len(found) > 40

@@ -109,6 +109,7 @@ def test_leaps_lead_from_a_descent_s_end_to_the_deepest_valley():
     assert at[:2] == pytest.approx([24e-6, 3e-3], rel=0.02)
 
 
+@pytest.mark.dear
 def test_the_best_come_first_and_no_more_than_three():
     places = (8e-6, 8e-3), (24e-6, 3.1e-3), (38e-6, 1.2e-3), (14e-6, 8e-3)
     starts = [relief(amount, length) for amount, length in places]

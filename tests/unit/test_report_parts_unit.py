@@ -105,6 +105,7 @@ def test_numbers_and_units_are_written_for_people():
     assert [pretty_unit(u) for u in ("um.mm/N", "deg", "N/(mm.um)", "")] == ["µm·mm/N", "°", "N/(mm·µm)", ""]
 
 
+@pytest.mark.dear
 def test_every_stage_names_its_sources_and_every_work_is_used():
     cited = set()
     for scene in [

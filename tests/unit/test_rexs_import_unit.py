@@ -304,6 +304,7 @@ def planned(tree):
     return [tuple(float(one[key].split()[0]) for key in ("torque", "speed")) for one in found["pair"].values()], text
 
 
+@pytest.mark.dear
 def test_one_assumed_torque_and_speed_are_carried_through_the_train():
     tree = without(without(two_stages(), 31, "torque_around_u_axis"), 3, "rotational_speed")
     (first, second), text = planned(tree)

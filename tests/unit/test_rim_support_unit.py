@@ -133,7 +133,7 @@ def supports(support, known, number, count):
     return held
 
 
-@pytest.mark.dear("support3-4.0-1")
+@pytest.mark.dear("support3-4.0-1", "support0-1.0-0")
 @pytest.mark.parametrize(
     ("support", "rim", "tooth"),
     [

@@ -99,6 +99,7 @@ def test_formulas_of_external_teeth_refuse_a_ring_gear():
         tooth_compliance(ring(), np.array([0.12]))
 
 
+@pytest.mark.dear("0.99-60-15 deg")
 @pytest.mark.parametrize(("teeth", "helix"), [(60, None), (61, None), (60, "15 deg")])
 @pytest.mark.parametrize("size", [0.99, 1.0, 1.15])
 def test_balls_touch_the_flanks_of_the_drawn_outline(teeth, helix, size):

@@ -112,6 +112,7 @@ def test_of_a_tooth_without_load_another_load_changes_what_it_has_at_the_place_o
     assert np.median(stated[idle]) < 3.0 * np.median(by_load[idle])
 
 
+@pytest.mark.dear
 def test_largest_compression_and_the_range_of_stress_state_errors_that_finer_gears_confirm():
     """Gears of edges three times as short lie within the stated errors, and these are no blanket."""
 

@@ -155,6 +155,7 @@ def test_edges_along_a_bore_are_halved_near_points_and_stay_on_it(share):
 RADII = MODULE * np.array([9.3, 9.8, 10.3])
 
 
+@pytest.mark.dear
 def test_a_web_as_thick_as_the_face_is_the_solid_body():
     """Of plane stress, fixed where the web is; a thin one gives way, by either solver alike."""
     width = np.full(3, 1e-4)

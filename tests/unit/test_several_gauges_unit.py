@@ -46,6 +46,7 @@ def written(folder, name, history, gain):
     (folder / f"{name}.csv").write_text("angle [deg],strain [um/m]\n" + rows)
 
 
+@pytest.mark.dear
 def test_every_gauge_has_its_row_and_the_one_that_fails_is_first(tmp_path):
     plain = run({"one": {}})
     (outcome,) = (one for task, one in plain.outcomes.items() if str(task) == "gauge of one")

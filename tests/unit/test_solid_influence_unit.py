@@ -38,6 +38,7 @@ def solve(cache=None, estimate_error=True):
     )
 
 
+@pytest.mark.dear
 def test_a_solved_solid_is_recalled_from_disk_bit_for_bit(tmp_path):
     first = solve(cache_on_disk(tmp_path))
     again = cache_on_disk(tmp_path)

@@ -62,6 +62,7 @@ def test_the_shaft_that_tilts_most_grows_until_both_open_little_enough_or_there_
     assert stiff_diameters(shafts, found, [0.2, 0.2]) == found
 
 
+@pytest.mark.dear("60")
 @pytest.mark.parametrize("ratio", ["11", "60"])
 def test_drafted_shafts_open_what_is_permissible_by_the_gearbox_itself(monkeypatch, ratio):
     most = {}

@@ -310,6 +310,7 @@ def test_a_text_of_the_case_that_names_a_pipe_or_a_device_is_not_waited_for(tmp_
     assert [files.keys() for _, files in found] == [{"file"}]
 
 
+@pytest.mark.dear
 def test_sweeps_work_from_python_too(case):
     found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], executor=Executor(workers=1))
     assert [point.values[0].name for point in found.points] == ["I.contact_ratio"] * 3
@@ -317,6 +318,7 @@ def test_sweeps_work_from_python_too(case):
     assert found.place(2) == "gear.a.teeth = 22"
 
 
+@pytest.mark.dear
 def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path, monkeypatch):
     monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path / "cache"))
     told = []

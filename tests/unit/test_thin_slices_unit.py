@@ -39,6 +39,7 @@ def pairs(betas: list[float], width: float = 30e-3, teeth: tuple[int, int] = (23
     )  # fmt: skip
 
 
+@pytest.mark.dear
 def test_without_a_helix_it_is_the_spur_pair():
     some, loads = pairs([0.0, 1e-4]), np.full((2, 1), 6000.0)
     found = sliced_errors(shipped_atlas("A"), some, loads, STEEL)

@@ -88,6 +88,7 @@ def test_a_line_on_an_edge_stays_on_it_and_has_its_curvature():
     assert edge_reach(sharp, 0.0) == (0.0, 0.0)
 
 
+@pytest.mark.dear("0.0")
 @pytest.mark.parametrize("rounding", [0.0, pytest.param(0.1, marks=pytest.mark.long)])
 def test_a_spur_pair_meets_its_tips_as_in_the_plane(rounding):
     one = gear(0.0, rounding=rounding)
@@ -122,6 +123,7 @@ def largest(beta, most_gap):
     return float(np.where(known.lines.present & ~known.lines.at_edge, pressure, 0.0).max())
 
 
+@pytest.mark.dear
 def test_the_largest_pressure_does_not_jump_at_a_small_helix_angle():
     spur, edged, ending = largest(0.0, 60e-6), largest(0.1, 60e-6), largest(0.1, 0.0)
     assert edged == pytest.approx(spur, rel=0.02)

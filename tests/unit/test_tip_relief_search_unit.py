@@ -417,6 +417,10 @@ def test_a_region_that_one_half_has_missed_is_begun_from_by_both():
     np.testing.assert_array_equal(_of_every_region(close, close[1], outward, unit), close)
 
 
+@pytest.mark.dear(
+    "teeth2-2.0-effective_error-83521-2050-0.6948320497-best2-low2-high2",
+    "teeth0-1.0-peak_to_peak-50625-645-0.8388938182-best0-low0-high0",
+)
 @pytest.mark.parametrize(("teeth", "power", "metric", "count", "solved", "least", "best", "low", "high"), SEARCHES)
 def test_the_course_of_searches(teeth, power, metric, count, solved, least, best, low, high):
     """What is found, and on how long a way: a search that goes astray finds as much by more steps."""
@@ -463,6 +467,7 @@ def test_searches_are_recalled_and_under_several_loads_ends_of_bands_are_within_
     assert (found.best <= found.band[1] * (1.0 + 1e-9)).all()
 
 
+@pytest.mark.dear
 def test_compliances_of_which_no_key_is_made_are_searched_each_time(pair, tmp_path):
     with pytest.raises(TypeError, match="no content key"):  # a formula is a function
         content_key(pair)
@@ -489,6 +494,7 @@ def test_a_whole_path_more_of_relief_is_worth_a_hundredth_of_the_mean_error():
     assert _RULE.tolist() == [1.0, -0.01, 1.0, -0.01]
 
 
+@pytest.mark.dear("loads1")
 @pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
 def test_differences_of_one_side_lead_where_those_of_both_do(pair, monkeypatch, loads):
     """With fewer load sharings, where no kink is near."""
@@ -552,6 +558,7 @@ def test_a_step_past_a_kink_is_tried_downward_too(pair):
     assert both["smooth"].left == both["kinked"].left
 
 
+@pytest.mark.dear("loads0", "loads1")
 @pytest.mark.parametrize("loads", [[LOAD], [0.5 * LOAD, LOAD]])
 def test_without_the_band_of_equals_the_same_reliefs_are_found(loads):
     e = engaged(24, 36)

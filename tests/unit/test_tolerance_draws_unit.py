@@ -275,6 +275,7 @@ def test_quasi_random_and_another_generator_agree_within_their_intervals():
             assert other.low - slack <= one.high, (name, percent)
 
 
+@pytest.mark.dear
 def test_nothing_on_the_grid_is_better_than_the_relief_found():
     """Every combination by exact load sharing over the same draws."""
     table, some = small_bench(), drawn(20)

@@ -52,6 +52,7 @@ def test_harmonics_of_a_curve_that_repeats_have_their_closed_form_behind_a_low_p
     np.testing.assert_allclose(found, expected, atol=1e-4)
 
 
+@pytest.mark.dear
 def test_an_encoder_behind_a_low_pass_has_its_time_constant_and_no_other_difference_has_one():
     """A transmission error with three harmonics, 23 teeth; samples filtered one by one along three turns."""
     x = np.linspace(-2e-3, 7e-3, 181)
@@ -96,6 +97,7 @@ def test_the_low_pass_is_named_in_place_of_a_verdict(lag):
     assert not alike(found, otherwise)
 
 
+@pytest.mark.dear
 def test_what_is_no_low_pass_has_none():
     steady = trace(0.0)
     other = steady + 6e-5 * np.sin(TURNS * 9.7)  # hum

@@ -29,7 +29,7 @@ DEAR = {
 }  # fmt: skip
 
 
-@pytest.mark.dear("planetary-phases", "fmu", "edge-cracks")
+@pytest.mark.dear("planetary-phases", "fmu", "edge-cracks", "calculix-planet-and-ring", "fillets-rolled")
 @pytest.mark.parametrize(
     "row",
     [pytest.param(row, marks=[pytest.mark.long] * (row.name in DEAR)) for row in ALL],

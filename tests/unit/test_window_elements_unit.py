@@ -198,6 +198,7 @@ def test_arrow_keys_step_by_one_unit_of_the_last_digit_and_by_ten(client, bench)
     assert stepped("gear", 1) is None
 
 
+@pytest.mark.dear
 def test_a_number_that_is_dragged_is_one_stroke_and_what_is_none_is_not_taken(client, tmp_path):
     bench = Bench(None)
     bench.desk = Desk(TEXT, "c", tmp_path)

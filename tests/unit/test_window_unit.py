@@ -659,6 +659,7 @@ def test_a_comparison_with_what_is_pinned_no_longer_is_not_shown(tmp_path):
     assert bench.shown_now() == []
 
 
+@pytest.mark.dear
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
     for path in CASES:
         asked = Asked(path.read_text("utf-8"), path.stem, str(path.parent))
@@ -959,6 +960,7 @@ def computing():
         os.kill(pid, 0)
 
 
+@pytest.mark.dear
 def test_the_page_is_told_the_numbers_of_a_run_and_only_what_depends_is_computed_again(computing, tmp_path):
     made, heard = computing
     made.ask(Compute(1, Asked(TEXT, "c", str(tmp_path))))
@@ -1094,7 +1096,7 @@ def test_while_a_value_moves_what_it_is_moved_for_is_found_and_the_rest_when_it_
     assert whole(again, geometry[-1])["figures"] == geometry[-1]["figures"]
 
 
-@pytest.mark.dear("load-distribution")
+@pytest.mark.dear("load-distribution", "load-sharing")
 @pytest.mark.parametrize("result", ["load-distribution", "load-sharing"])
 def test_a_glance_at_a_pair_with_a_width_refuses_nothing_that_the_case_has(tmp_path, result):
     """Load over the face and load sharing both tell the largest pressure: one of them stands beside the other."""

@@ -213,6 +213,7 @@ def test_xarray_has_every_table_and_value(found):
     assert np.array_equal(data["transmission_error_I.te"].values, te["te"])
 
 
+@pytest.mark.dear
 def test_xarray_finds_a_row_of_a_table_by_its_place(found):
     pytest.importorskip("xarray")
     data, te = found.to_xarray("transmission_error_I"), found.tables["transmission_error_I"]
