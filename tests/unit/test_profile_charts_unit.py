@@ -27,7 +27,7 @@ from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 from fegear.results.relief.answer_numbers import ground_microns, with_limits
 from fegear.results.relief.grinding import tip_row
 from fegear.results.relief.ground_tips import GroundTip
-from fegear.results.relief.profile_charts import _abscissa, _apart, _tip_side, profile_chart
+from fegear.results.relief.profile_charts import _abscissa, _apart, _ordinate, _tip_side, profile_chart
 from fegear.results.relief.recommended import marked
 
 LOAD = 6000.0
@@ -110,12 +110,22 @@ def test_what_is_left_lies_between_the_ends_and_these_part_with_the_tolerance(en
             assert least * 0.98 <= left(engagement, ends, LOAD) <= most * 1.02
 
 
-def test_a_gear_without_relief_stays_without(engagement, tips):
-    bare = replace(tips[1], amount=0.0)
+def test_of_a_gear_without_relief_the_profile_slope_is_off(engagement, tips):
+    """It was taken for exact: with relief on one gear only the pair looked more robust than with both."""
+    pair, bare = engagement.pair, replace(tips[1], amount=0.0)
+    found = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(5e-6, None, 0.0)), [LOAD])
+    ends = [float(pair.roll_angle(x, "driven")) for x in (pair.x_end, pair.x_start)]
+    slopes = [UNMODIFIED, EndRelief(5e-6, *ends, 1.0), EndRelief(5e-6, *ends[::-1], 1.0)]
+    own = [left(engagement, (tips[0], one), LOAD) for one in slopes]
+    assert found[0] == pytest.approx([min(own), max(own)], rel=1e-9)
+    assert max(own) > 1.1 * own[0]
     given = EXACT, TipTolerance(5e-6, None, 0.0)
-    found = within_tolerances(engagement, (tips[0], bare), given, [LOAD])
-    assert decisive_tolerances(engagement, (tips[0], bare), given, [LOAD], found[:, 1]) == (None,)
-    assert found[0, 1] == pytest.approx(left(engagement, (tips[0], UNMODIFIED), LOAD), rel=1e-9)
+    (decides,) = decisive_tolerances(engagement, (tips[0], bare), given, [LOAD], found[:, 1])
+    halved = within_tolerances(engagement, (tips[0], bare), (EXACT, TipTolerance(2.5e-6, None, 0.0)), [LOAD])
+    assert (decides.member, decides.number, decides.given) == ("driven", "profile_slope", 5e-6)
+    assert decides.most == pytest.approx(halved[0, 1], rel=0.01)
+    exact = within_tolerances(engagement, (tips[0], bare), (EXACT, EXACT), [LOAD])
+    assert exact[0, 1] == pytest.approx(left(engagement, (tips[0], UNMODIFIED), LOAD), rel=1e-9)
 
 
 def test_the_tolerance_that_decides_is_the_one_that_halved_reduces_the_maximum_most(engagement, tips):
@@ -228,7 +238,14 @@ def test_the_drawing_of_a_ring_gear_has_positive_roll_angles_and_lengths():
     assert tip.equal_starts == f"{np.degrees(0.05 - top):.5g} to {np.degrees(0.05 - top):.5g} deg"
 
 
-def test_a_gear_without_relief_has_a_level_chart(engagement, tips):
+def test_a_gear_without_relief_has_a_level_chart_with_the_band_of_its_profile_slope(engagement, tips):
     chart = profile_chart("p", engagement.pair.driver, replace(tips[0], amount=0.0), TipTolerance(4e-6, None, 3e-6))
     assert not chart.profile.any()
-    assert (np.ptp(chart.lower), chart.marks, chart.words) == (0.0, (), "no relief; f_{fα} 3 µm")
+    assert (chart.marks, chart.words) == ((), "no relief, profile slope ± 4 µm; f_{fα} 3 µm")
+    assert (chart.lower[0], chart.upper[0], chart.with_form[0]) == pytest.approx((0.0, 0.0, -3e-6), abs=1e-12)
+    assert (chart.lower[-1], chart.upper[-1], chart.with_form[-1]) == pytest.approx((-4e-6, 4e-6, -7e-6), abs=1e-12)
+    assert chart.upper == pytest.approx(-chart.lower, abs=1e-15)
+    axis = _ordinate(SimpleNamespace(one=chart))
+    assert axis.limits[1] > 4.0
+    exact = profile_chart("p", engagement.pair.driver, replace(tips[0], amount=0.0), TipTolerance(0.0, None, 3e-6))
+    assert exact.words == "no relief; f_{fα} 3 µm"

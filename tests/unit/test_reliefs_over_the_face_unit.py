@@ -1,6 +1,7 @@
 """Tip reliefs and lead corrections of teeth with a width: charts, readings and searches with contacts made up."""
 
 from dataclasses import dataclass, replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.design.charts import ReliefChart, unit_length
 from fegear.design.flanks import flank_tolerance, lead_correction, tip_bench, tip_chart, tip_design, tip_search
+from fegear.design.flanks.forms import FormsAt
 from fegear.design.flanks.tip_bench import TipReader, TipTrials
 from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
@@ -217,8 +219,7 @@ def test_the_worst_within_tolerances_is_of_all_ends_of_both_gears():
         numbers * [0, 1, 1, 1, 1, 1, 1, 1, 1],
         flank_tolerance.FlankTolerance((Allowed(1e-6, 1e-4), Allowed(0.0, 0.0))),
     )
-    assert bare[0, 0] == 0.0
-    assert bare[0, 1] == pytest.approx(0.5 * PAIR.path_length)
+    assert bare[0, :2] == pytest.approx([1e-6, PAIR.path_length])  # its profile slope
 
 
 @pytest.mark.parametrize(("driven", "decides"), [(2e-6, ("driven", "amount")), (1e-9, ("driver", "amount"))])
@@ -236,8 +237,28 @@ def test_the_tolerance_of_flanks_that_decides_is_the_one_that_halved_leaves_leas
     assert (one.member, one.number) == decides
     assert one.most == pytest.approx(min(halved))
     assert one.given == tips[["driver", "driven"].index(one.member)].amount
-    none = flank_tolerance.decisive_tolerances(Trials(np.array([1.0])), PAIR, 0.0 * numbers, given, np.ones(1))
+    bare = 0.0 * numbers
+    (slope,) = flank_tolerance.decisive_tolerances(Trials(np.array([1.0])), PAIR, bare, given, np.ones(1))
+    assert (slope.member, slope.number) == (decides[0], "profile_slope")
+    lead = replace(given, lead=flank_tolerance.LeadTolerance(0.0, 0.0, 0.0))
+    none = flank_tolerance.decisive_tolerances(Trials(np.array([1.0])), PAIR, bare, lead, np.ones(1))
     assert none == (None,)
+
+
+def test_the_profile_slope_of_a_gear_without_tip_relief_is_straight_whatever_the_shape_of_the_other():
+    numbers = np.array([5e-6, 1e-3, 0.0, 0.0, 0, 0, 0, 0, 0])
+    assert flank_tolerance.powers_with_slopes(numbers, 2.0) == (2.0, 1.0)
+    assert flank_tolerance.powers_with_slopes(numbers[[2, 3, 0, 1, 4, 5, 6, 7, 8]], 2.0) == (1.0, 2.0)
+    assert flank_tolerance.powers_with_slopes(np.array([5e-6, 1e-3, 1e-6, 1e-3]), 2.0) == 2.0
+    x = np.linspace(PAIR.x_start, PAIR.x_end, 5)
+    off = np.array([5e-6, 1e-3, 4e-6, PAIR.path_length, 0, 0, 0, 0, 0])
+    for power, sign in product((1.0, 2.0), (1.0, -1.0)):
+        at = FormsAt.over(PAIR, x, 0.0 * x, flank_tolerance.powers_with_slopes(numbers, power))
+        tip = np.maximum(1.0 - (PAIR.x_end - x) / 1e-3, 0.0) ** power
+        slope = (PAIR.x_end - x) / PAIR.path_length
+        given = off * [1, 1, sign, 1, 1, 1, 1, 1, 1]
+        assert at.removed(given) == pytest.approx(5e-6 * tip + sign * 4e-6 * slope, abs=1e-15)
+        assert at.slopes(given)[[0, 2]] == pytest.approx(np.array([tip, slope]), abs=1e-12)
 
 
 # ---- readings --------------------------------------------------------------------------------------------------------

@@ -10,23 +10,25 @@ import pytest
 from fegear.contact.plane.closed_form_compliance import closed_form_compliance
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.load_range import LoadRange
 from fegear.design.tip_relief.grindable import grindable, relief_over_path, tolerated
 from fegear.design.tip_relief.relief_limits import ReliefLimits
 from fegear.design.tip_relief.relief_scan import even_bench
 from fegear.design.tip_relief.tip_tolerance import TipTolerance
 from fegear.design.tip_relief.tolerated import within_tolerances
-from fegear.design.tip_relief.tolerated_search import _EVERY, ToleratedTrials
+from fegear.design.tip_relief.tolerated_search import ToleratedTrials, tolerance_ends
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.pair import GearPair
 from fegear.geometry.rack import BasicRack
-from fegear.geometry.relief import roll_of_radius
+from fegear.geometry.relief import UNMODIFIED, EndRelief, roll_of_radius
 
 GEARS = [Gear(Tooth(z, BasicRack()), 3e-3, 0.1 * z * 3e-3, 0.02) for z in (24, 36)]
 PAIR = GearPair(*GEARS)
 OVER = LoadRange((3000.0, 6000.0))
 LOADS = np.array(OVER.loads)
+EVERY = tolerance_ends((True, True), "every")
 TOLERANCES = TipTolerance(6e-6, None, 0.0), TipTolerance(5e-6, 0.6e-3, 0.0)
 
 
@@ -40,7 +42,7 @@ def engagement():
 def trials(engagement):
     rolls = [float(roll_of_radius(gear, gear.involute_tip_radius)) * gear.base_radius for gear in GEARS]
     return ToleratedTrials(
-        even_bench(engagement, 20), LOADS, 1.0, "peak_to_peak", None, _EVERY, (6e-6, 5e-6),
+        even_bench(engagement, 20), LOADS, 1.0, "peak_to_peak", None, EVERY, (6e-6, 5e-6),
         (None, 0.6e-3 / PAIR.path_length), (rolls[0] / PAIR.path_length, rolls[1] / PAIR.path_length),
     )  # fmt: skip
 
@@ -59,15 +61,50 @@ def most(engagement, p, tolerances=TOLERANCES):
     [(20e-6, 0.4, 15e-6, 0.5), (3e-6, 0.9, 2e-6, 0.05), (0.0, 0.3, 9e-6, 1.0), (8e-6, 1.0, 0.0, 0.3)],
 )  # fmt: skip
 def test_reliefs_are_off_as_a_drawing_allows(trials, p):
-    """Amounts are not negative, lengths not nothing and not beyond the base circle; no relief is not off."""
+    """Amounts are not negative, lengths not nothing and not beyond the base circle; at no amount there is no step."""
     q, _ = trials.off(np.array([p]))
-    for off, found in zip(_EVERY.tolist(), q[0], strict=True):
+    for off, found in zip(EVERY.tolist(), q[0], strict=True):
         for i, (gear, tip, allowed) in enumerate(zip(GEARS, tips(p), TOLERANCES, strict=True)):
-            expected = allowed.off(gear, tip, *off[2 * i : 2 * i + 2]) if tip.amount else tip
+            expected = allowed.off(gear, tip, *off[2 * i : 2 * i + 2])
             assert found[2 * i] == pytest.approx(expected.amount, abs=1e-15)
-            if tip.amount:
-                length = gear.base_radius * (expected.end - expected.start) / PAIR.path_length
-                assert found[2 * i + 1] == pytest.approx(length, rel=1e-9)
+            length = gear.base_radius * (expected.end - expected.start) / PAIR.path_length
+            assert found[2 * i + 1] == pytest.approx(length, rel=1e-9)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+@pytest.mark.parametrize(
+    ("ground", "p"), [((True, False), (20e-6, 0.4, 0.0, 0.3)), ((False, True), (0.0, 0.3, 15e-6, 0.5))]
+)  # fmt: skip
+def test_the_profile_slope_of_a_gear_that_is_not_ground_is_off(engagement, trials, ground, p, power):
+    """Against every combination written out: straight removal over the path, growing to the tip or to the root."""
+    ends = tolerance_ends(ground, "every")
+    assert len(ends) == 27
+    one = replace(trials, bench=even_bench(engagement, 56), power=power, ends=ends, ground=ground)
+    bare = ground.index(False)
+    root, tip = (PAIR.x_start, PAIR.x_end) if bare == 0 else (PAIR.x_end, PAIR.x_start)
+    roll = [float(PAIR.roll_angle(x, ("driver", "driven")[bare])) for x in (root, tip)]
+    sloped = {
+        0: UNMODIFIED,
+        1: EndRelief(TOLERANCES[bare].amount, *roll, 1.0),
+        -1: EndRelief(TOLERANCES[bare].amount, *roll[::-1], 1.0),
+    }
+    own = np.empty((27, 2))
+    for row, off in enumerate(ends.tolist()):
+        flanks = [
+            sloped[off[2 * i]] if i == bare else TOLERANCES[i].off(GEARS[i], tips(p, power)[i], *off[2 * i : 2 * i + 2])
+            for i in (0, 1)
+        ]
+        ground_pair = replace(engagement, driver_relief=flanks[0], driven_relief=flanks[1])
+        own[row] = [transmission_error(ground_pair, load, 12).peak_to_peak for load in LOADS]
+    worst = (own * [2.0, 1.0]).max(axis=1)
+    assert one.exactly(np.array(p)) == pytest.approx(worst, rel=2e-3)
+    assert one.each(np.array([p]))[0] == pytest.approx(worst, rel=0.1)
+    tried = one.exact(np.array([p]))
+    assert one.left(tried.seen, tried.low)[0] == pytest.approx(worst.max(), rel=2e-3)
+    found = within_tolerances(engagement, tips(p, power), TOLERANCES, LOADS)
+    assert found[:, 1] == pytest.approx(own.max(axis=0), rel=1e-3)
+    assert found[:, 0] == pytest.approx(own.min(axis=0), rel=0.05)
+    assert worst.max() > 1.1 * worst[ends[:, 2 * bare] == 0].max()  # what counting the ground gear only would say
 
 
 @pytest.mark.parametrize("way", ["rough", "exact"])
@@ -121,6 +158,25 @@ def test_no_relief_leaves_less_within_its_tolerances_by_brute_force(engagement, 
     # The relief that leaves the least as drawn goes with it.
     for one, other in zip(found.undeviated, (drawn.driver, drawn.driven), strict=True):
         assert one.amount == pytest.approx(other.amount, rel=1e-3)
+
+
+@pytest.mark.dear
+@pytest.mark.parametrize("bare", [0, 1])
+def test_no_relief_of_one_gear_leaves_less_within_its_tolerances_by_brute_force(engagement, trials, bare):
+    """360 reliefs of one gear with the profile slope of the other, which a relief of both cannot hide from."""
+    most_amounts = [0.0 if gear == bare else math.inf for gear in (0, 1)]
+    found = tolerated(engagement, OVER, "linear", TOLERANCES, limits=ReliefLimits(tuple(most_amounts)))
+    own, ground = most(engagement, numbers(found)), (bare == 1, bare == 0)
+    one = replace(trials, ends=tolerance_ends(ground, "every"), ground=ground)
+    grid = np.zeros((360, 4))
+    grid[:, [1, 3]] = 0.3
+    kept = 2 * (1 - bare)
+    grid[:, kept : kept + 2] = list(product(np.linspace(2e-6, 40e-6, 20), np.linspace(0.1, 1.0, 18)))
+    values = one.each(grid).max(axis=1)
+    least = min(most(engagement, grid[i]) for i in np.argsort(values)[:12])
+    assert own < 1.002 * least
+    both = tolerated(engagement, OVER, "linear", TOLERANCES)
+    assert most(engagement, numbers(both)) < 1.001 * own
 
 
 @pytest.mark.dear

@@ -1,15 +1,19 @@
-"""What the ground flanks of teeth with a width leave when amounts and lengths are off by what a drawing allows."""
+"""What the ground flanks of teeth with a width leave when amounts and lengths are off by what a drawing allows.
+
+Where only tips are ground the profile slope of a gear without tip relief is off by the same tolerance.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Literal
 
 import numpy as np
 
 from fegear.base.arrays import Array
-from fegear.design.flanks.forms import NUMBERS, lead_bearer
+from fegear.design.flanks.forms import NUMBERS, TipPower, lead_bearer, powers_of
 from fegear.design.flanks.trials import FlankTrials, Tries
 from fegear.design.tip_relief.tip_tolerance import (
     HALVED,
@@ -99,16 +103,26 @@ class FlankTolerance:
         return found
 
 
-def end_reliefs(numbers: Array, pair: GearPair, tip_power: float) -> tuple[EndRelief, EndRelief]:
+def powers_with_slopes(numbers: Array, tip_power: float) -> TipPower:
+    """Powers of the tip reliefs that a pair has: the profile slope of a gear without one is straight."""
+    amounts = numbers[0:4:2].tolist()
+    if all(amounts):
+        return tip_power
+    driver, driven = (tip_power if amount else 1.0 for amount in amounts)
+    return driver, driven
+
+
+def end_reliefs(numbers: Array, pair: GearPair, tip_power: TipPower) -> tuple[EndRelief, EndRelief]:
     """The tip reliefs of driver and driven gear over their roll angles."""
     found = []
-    for member, amount, length in zip(MEMBERS, numbers[0:4:2].tolist(), numbers[1:4:2].tolist(), strict=True):
+    amounts, lengths = numbers[0:4:2].tolist(), numbers[1:4:2].tolist()
+    for member, amount, length, power in zip(MEMBERS, amounts, lengths, powers_of(tip_power), strict=True):
         end = pair.x_end if member == "driver" else pair.x_start
         start = end - length if member == "driver" else end + length
         if amount == 0.0:
             start = end - 0.5 * pair.path_length if member == "driver" else end + 0.5 * pair.path_length
         first, last = (float(pair.roll_angle(x, member)) for x in (start, end))
-        found.append(EndRelief(amount, first, last, tip_power))
+        found.append(EndRelief(amount, first, last, power))
     return found[0], found[1]
 
 
@@ -117,12 +131,13 @@ def within_tolerances(trials: FlankTrials, pair: GearPair, numbers: Array, toler
 
     Amounts and lengths of both tip reliefs are at the ends of their tolerances and in their middle, each with each; so
     are then the amounts over the face with the tips that leave most, and the tips once more with these. What is not
-    ground is not off.
+    ground is not off, but for profile slopes where only tips are ground.
 
     Parameters
     ----------
     trials : FlankTrials
-        By whose roll positions the worst is chosen.
+        By whose roll positions the worst is chosen; their tip reliefs have `powers_with_slopes` where only tips are
+        ground.
     pair : GearPair
     numbers : ndarray, shape (9,)
         Nominal.
@@ -149,9 +164,9 @@ def unrelieved_within(trials: FlankTrials, pair: GearPair, numbers: Array, toler
     trials, pair, tolerance
         As in `within_tolerances`; tip reliefs of the trials are straight lines.
     numbers : ndarray, shape (9,)
-        Of the relief, which say what is ground.
+        Of the relief, which say what is ground; where only tips are, both profile slopes are off.
     """
-    off = np.where(numbers != 0.0, tolerance.amounts, 0.0)
+    off = np.where((numbers != 0.0) | _are_tips(tolerance), tolerance.amounts, 0.0)
     off[_CROWNING] = max(off[_CROWNING], off[_END])  # both have one tolerance
     off[_END] = 0.0
     of_each = [(0.0,) if size == 0.0 else (-size, size) for size in off.tolist()]
@@ -159,6 +174,13 @@ def unrelieved_within(trials: FlankTrials, pair: GearPair, numbers: Array, toler
     both[:, [1, 3]] = np.where(both[:, [0, 2]] != 0.0, pair.path_length, 0.0)
     left = np.stack([trials.of_numbers(one).peak_to_peak[0] for one in both])
     return np.asarray(both[left.argmax(axis=0)])
+
+
+def _are_tips(tolerance: FlankTolerance) -> Array:
+    """Which of nine numbers are amounts of tip reliefs that are off whether or not they are ground, shape (9,)."""
+    found = np.zeros(len(NUMBERS), dtype=bool)
+    found[[0, 2]] = tolerance.lead is None
+    return found
 
 
 def _worst(
@@ -202,16 +224,17 @@ def decisive_tolerances(
 
 
 def _halved(
-    pair: GearPair, numbers: Array, tip_power: float, tolerance: FlankTolerance
-) -> Iterator[tuple[Member, TipNumber | LeadNumber, float, FlankTolerance]]:
+    pair: GearPair, numbers: Array, tip_power: TipPower, tolerance: FlankTolerance
+) -> Iterator[tuple[Member, TipNumber | Literal["profile_slope"] | LeadNumber, float, FlankTolerance]]:
     """Whose tolerance of which number is halved, what it was [m], and all tolerances then."""
     for k, (member, tip) in enumerate(zip(MEMBERS, end_reliefs(numbers, pair, tip_power), strict=True)):
         one, gear = tolerance.tips[k], pair.gear(member)
         for number, given in zip(TIP_NUMBERS, (one.amount, one.length_of(gear, tip)), strict=True):
-            if tip.amount and given:
+            bare = tip.amount == 0.0 and number == "amount" and tolerance.lead is None
+            if given and (tip.amount or bare):
                 tips = list(tolerance.tips)
                 tips[k] = one.halved(number, gear, tip)
-                yield member, number, given, replace(tolerance, tips=(tips[0], tips[1]))
+                yield member, "profile_slope" if bare else number, given, replace(tolerance, tips=(tips[0], tips[1]))
     lead = tolerance.lead
     if lead is None:
         return
@@ -242,8 +265,10 @@ def _tips(trials: FlankTrials, pair: GearPair, numbers: Array, tolerance: FlankT
     ends = end_reliefs(numbers, pair, trials.tip_power)
     for member, tip, allowed in zip(MEMBERS, ends, tolerance.tips, strict=True):
         gear = pair.gear(member)
-        off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else [tip]
+        off = [allowed.off(gear, tip, *by) for by in ((-1, -1), (-1, 1), (1, -1), (1, 1))] if tip.amount else []
         each.append([(one.amount, gear.base_radius * (one.end - one.start)) for one in (tip, *off)])
+        if not tip.amount and allowed.amount and tolerance.lead is None:
+            each[-1] += [(allowed.amount, pair.path_length), (-allowed.amount, pair.path_length)]
     # A number without a tolerance gives some of them twice.
     each = [list(dict.fromkeys(one)) for one in each]
     return np.array([[*driver, *driven] for driver, driven in product(*each)])

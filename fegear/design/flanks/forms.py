@@ -12,6 +12,14 @@ from fegear.base.shown import shown
 from fegear.contact.wide.lines import ContactLines
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 
+#: Of both gears' tip reliefs, or of each.
+TipPower = float | tuple[float, float]
+
+
+def powers_of(tip_power: TipPower) -> tuple[float, float]:
+    """Of driver and driven gear."""
+    return tip_power if isinstance(tip_power, tuple) else (tip_power, tip_power)
+
 
 @dataclass(frozen=True, slots=True)
 class GroundRelief:
@@ -89,8 +97,8 @@ class FormsAt(ReadOnlyArrays):
         Distance from the nearer end of the face [m].
     across, along : ndarray
         -1 to 1 from the driver's root to its tip, and from one end of the face to the other.
-    tip_power : float
-        1 for straight tip reliefs, 2 for parabolas.
+    tip_power : float or tuple of float
+        1 for straight tip reliefs, 2 for parabolas; one for each gear where they differ.
     """
 
     driver_depth: Array
@@ -98,10 +106,10 @@ class FormsAt(ReadOnlyArrays):
     end_depth: Array
     across: Array
     along: Array
-    tip_power: float = 1.0
+    tip_power: TipPower = 1.0
 
     @classmethod
-    def over(cls, pair: GearPair, x: ArrayLike, z: ArrayLike, tip_power: float = 1.0) -> FormsAt:
+    def over(cls, pair: GearPair, x: ArrayLike, z: ArrayLike, tip_power: TipPower = 1.0) -> FormsAt:
         """Places of a pair."""
         first, second = np.asarray(x, dtype=float), np.asarray(z, dtype=float)
         half = 0.5 * pair.face_width
@@ -111,7 +119,7 @@ class FormsAt(ReadOnlyArrays):
         )  # fmt: skip
 
     @classmethod
-    def on(cls, pair: GearPair, lines: ContactLines, tip_power: float = 1.0) -> FormsAt:
+    def on(cls, pair: GearPair, lines: ContactLines, tip_power: TipPower = 1.0) -> FormsAt:
         """Stations of contact lines; where these go on along tip edges, the points of both flanks that touch there."""
         found = cls.over(pair, lines.x, lines.z, tip_power)
         if lines.edges is None:
@@ -128,8 +136,8 @@ class FormsAt(ReadOnlyArrays):
         """Removal by nine numbers, without the constant that keeps it from being negative, shape of the places [m]."""
         tip, tip_length, foot, foot_length, crowning, end, end_length, slope, bias = numbers.tolist()
         total = crowning * self.along**2 + 0.5 * slope * self.along + 0.25 * bias * self.across * self.along
-        power = self.tip_power
-        ends = ((tip, tip_length, self.driver_depth, power), (foot, foot_length, self.driven_depth, power),
+        powers = powers_of(self.tip_power)
+        ends = ((tip, tip_length, self.driver_depth, powers[0]), (foot, foot_length, self.driven_depth, powers[1]),
                 (end, end_length, self.end_depth, 1.0))  # fmt: skip
         for amount, length, depth, of in ends:
             if amount != 0.0:
@@ -139,8 +147,9 @@ class FormsAt(ReadOnlyArrays):
     def slopes(self, numbers: Array) -> Array:
         """Derivative by each of the nine numbers, shape (9, ...)."""
         found = np.zeros((len(NUMBERS), *self.across.shape))
-        power = self.tip_power
-        for i, depth, of in ((0, self.driver_depth, power), (2, self.driven_depth, power), (5, self.end_depth, 1.0)):
+        powers = powers_of(self.tip_power)
+        ends = ((0, self.driver_depth, powers[0]), (2, self.driven_depth, powers[1]), (5, self.end_depth, 1.0))
+        for i, depth, of in ends:
             amount, length = numbers[i], numbers[i + 1]
             if length > 0.0:
                 share = np.maximum(1.0 - depth / length, 0.0)

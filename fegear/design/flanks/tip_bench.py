@@ -19,6 +19,7 @@ from fegear.contact.wide.gaps import FlankGaps
 from fegear.contact.wide.loaded import FlankPair
 from fegear.contact.wide.roll_points import roll_points
 from fegear.contact.wide.tip_edges import edge_reach
+from fegear.design.flanks.forms import TipPower
 from fegear.design.flanks.trials import FlankTrials
 from fegear.design.load_range import LoadRange
 from fegear.fem.solid.flank_body import FlankBody
@@ -124,7 +125,7 @@ class TipReader:
         """The same under other loads [N]."""
         return self._each(lambda one: replace(one, apart=apart.at(one.pair, one.known.lines, loads), loads=loads))
 
-    def shaped(self, tip_power: float) -> TipReader:
+    def shaped(self, tip_power: TipPower) -> TipReader:
         """The same for tip reliefs of another shape."""
         return self._each(lambda one: replace(one, tip_power=tip_power))
 

@@ -16,6 +16,7 @@ from fegear.design.flanks.families import FamilyBest
 from fegear.design.flanks.flank_tolerance import (
     FlankTolerance,
     decisive_tolerances,
+    powers_with_slopes,
     unrelieved_within,
     within_tolerances,
 )
@@ -168,24 +169,26 @@ def design_tips(
     found: dict[Shape, FamilyBest] = {}
     single: dict[Shape, FamilyBest] = {}
     most: dict[Shape, Array] = {}
+    off: dict[Shape, TipReader] = {}
     for number, shape in enumerate(task.grind):
         power = POWERS[shape]
         of_shape = reader.shaped(power)
         found[shape] = best_tips(trials.over(task.over or task.one_load, power, apart))
         numbers = found[shape].relief.numbers
         left[f"{shape} tip relief"] = of_shape.read(numbers)
-        most[shape] = _left(of_shape, within_tolerances(of_shape.plain, pair, numbers, task.tolerance))
+        off[shape] = reader.shaped(powers_with_slopes(numbers, power))
+        most[shape] = _left(off[shape], within_tolerances(off[shape].plain, pair, numbers, task.tolerance))
         if task.over is not None:
             single[shape] = best_tips(trials.over(task.one_load, power, apart))
             left[f"{shape} tip relief for one load"] = of_shape.read(single[shape].relief.numbers)
         report(0.5 + 0.5 * (number + 1) / len(task.grind))
     design = TipDesign(task, reader.points, found, single, left, most)
     shape = design.shapes[0]
-    of_shape, numbers = reader.shaped(POWERS[shape]), found[shape].relief.numbers
+    numbers = found[shape].relief.numbers
     design = replace(design, unrelieved_most=_unrelieved_most(reader, pair, design, shape))
     return replace(
-        design, finer=_classes_finer(of_shape, pair, design, shape),
-        decisive=decisive_tolerances(of_shape.plain, pair, numbers, task.tolerance, most[shape]),
+        design, finer=_classes_finer(off[shape], pair, design, shape),
+        decisive=decisive_tolerances(off[shape].plain, pair, numbers, task.tolerance, most[shape]),
     )  # fmt: skip
 
 

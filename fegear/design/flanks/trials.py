@@ -17,7 +17,7 @@ from fegear.contact.wide.load_sharing import (
     solve_contact,
 )
 from fegear.contact.wide.loaded import LoadedFlanks
-from fegear.design.flanks.forms import FormsAt, GroundRelief
+from fegear.design.flanks.forms import FormsAt, GroundRelief, TipPower, powers_of
 from fegear.design.flanks.scatter import NOMINAL, Scatter
 from fegear.design.load_range import proportions
 from fegear.geometry.pair import GearPair
@@ -103,8 +103,8 @@ class FlankTrials:
     scatter : Scatter
     weights : tuple of float, optional
         What each load counts; all the same by default.
-    tip_power : float
-        1 for straight tip reliefs, 2 for parabolas.
+    tip_power : float or tuple of float
+        1 for straight tip reliefs, 2 for parabolas; one for each gear where they differ.
     """
 
     pair: GearPair
@@ -113,7 +113,7 @@ class FlankTrials:
     loads: Array
     scatter: Scatter = NOMINAL
     weights: tuple[float, ...] | None = None
-    tip_power: float = 1.0
+    tip_power: TipPower = 1.0
 
     @cached_property
     def forms(self) -> FormsAt:
@@ -121,8 +121,8 @@ class FlankTrials:
         return FormsAt.on(self.pair, self.known.lines, self.tip_power)
 
     def relief(self, numbers: Array) -> GroundRelief:
-        """A ground relief by its nine numbers."""
-        return GroundRelief.of(numbers, self.tip_power)
+        """A ground relief by its nine numbers; where shapes differ a gear without relief has the straight one."""
+        return GroundRelief.of(numbers, max(powers_of(self.tip_power)))
 
     def apart_under(self, load: int) -> Array:
         """The gap under a load, by its number, shape (P, M) [m]."""

@@ -13,7 +13,7 @@ from fegear.base.arrays import Array
 from fegear.design.preferred import CLASS_STEP, FINEST
 from fegear.formulas.iso1328 import rounded
 from fegear.geometry.gear import Gear
-from fegear.geometry.pair import Member
+from fegear.geometry.pair import GearPair, Member
 from fegear.geometry.relief import EndRelief
 
 #: Length of a tip relief without a tolerance of its own may be off by this part of it.
@@ -109,12 +109,32 @@ class TipTolerance:
         return replace(tip, amount=max(tip.amount + amount * self.amount, 0.0), start=start)
 
     def limits(self, gear: Gear, tip: EndRelief, roll: ArrayLike) -> tuple[Array, Array]:
-        """Least and largest removal that a profile chart allows at roll angles [m]."""
+        """Least and largest removal that a profile chart allows at roll angles [m].
+
+        Without a relief the profile slope is off: straight over these roll angles, to either side at the tip.
+        """
         at = np.asarray(roll, dtype=float)
         if tip.amount <= NOTHING:
-            return np.zeros_like(at), np.full_like(at, self.form)
+            from_tip = np.abs(at - tip.end)
+            slope = self.amount * (1.0 - from_tip / from_tip.max())
+            return -slope, slope + self.form
         ends = [self.off(gear, tip, *off).removal(at) for off in product((-1, 1), repeat=2)]
         return np.min(ends, axis=0), np.max(ends, axis=0) + self.form
+
+
+def profile_slopes(pair: GearPair, member: Member, size: float) -> tuple[EndRelief, EndRelief]:
+    """A flank without relief whose profile slope is off, straight over the path of contact, to either side.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    size : float
+        By how much over the path [m].
+    """
+    ends = (pair.x_start, pair.x_end) if member == "driver" else (pair.x_end, pair.x_start)
+    root, tip = (float(pair.roll_angle(x, member)) for x in ends)
+    return EndRelief(size, root, tip, 1.0), EndRelief(size, tip, root, 1.0)
 
 
 @dataclass(frozen=True)
@@ -125,8 +145,8 @@ class Decisive:
     ----------
     member : {"driver", "driven"}
         Whose flank has the number.
-    number : {"amount", "length", "crowning", "slope", "twist"}
-        The first two of the member's tip relief.
+    number : {"amount", "length", "profile_slope", "crowning", "slope", "twist"}
+        The first two of the member's tip relief, the third of its flank without one.
     most : float
         Largest peak-to-peak transmission error with half of this tolerance and all others as they are [m].
     given : float
@@ -134,6 +154,6 @@ class Decisive:
     """
 
     member: Member
-    number: TipNumber | LeadNumber
+    number: TipNumber | Literal["profile_slope"] | LeadNumber
     most: float
     given: float

@@ -1,4 +1,7 @@
-"""What tip reliefs leave when amounts and lengths are off by what a drawing allows."""
+"""What tip reliefs leave when amounts and lengths are off by what a drawing allows.
+
+The profile slope of a flank without relief is off by the same tolerance: a gear that is not ground is not exact.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,13 @@ from fegear.base.arrays import Array
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.relief_bench import Bench, bench
-from fegear.design.tip_relief.tip_tolerance import NOTHING, TIP_NUMBERS, Decisive, TipTolerance
+from fegear.design.tip_relief.tip_tolerance import (
+    NOTHING,
+    TIP_NUMBERS,
+    Decisive,
+    TipTolerance,
+    profile_slopes,
+)
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Relief
 
@@ -29,15 +38,15 @@ def within_tolerances(
     """Least and largest peak-to-peak transmission error at each load, shape (L, 2) [m].
 
     Amounts and lengths of both reliefs are at the lower end, in the middle and at the upper end of their tolerances,
-    each with each; which combination is the best and which are among the worst is found on one grid, what these leave
-    with every kink.
+    each with each, and so is the profile slope of a flank without relief; which combination is the best and which are
+    among the worst is found on one grid, what these leave with every kink.
 
     Parameters
     ----------
     engagement : Engagement
         Its own reliefs are replaced.
     tips : tuple of EndRelief
-        Of driver and driven gear; one of no amount stays what it is.
+        Of driver and driven gear; one of no amount is none.
     tolerances : tuple of TipTolerance
         Of driver and driven gear.
     loads : array_like, shape (L,)
@@ -77,13 +86,7 @@ def unrelieved_within(
     loads : array_like, shape (L,)
         [N].
     """
-    pair = engagement.pair
-    ends = (pair.x_start, pair.x_end), (pair.x_end, pair.x_start)
-    slopes: list[tuple[EndRelief, EndRelief]] = []
-    for member, allowed, (root, tip) in zip(MEMBERS, tolerances, ends, strict=True):
-        low, high = (float(pair.roll_angle(x, member)) for x in (root, tip))
-        slopes.append((EndRelief(allowed.amount, low, high, 1.0), EndRelief(allowed.amount, high, low, 1.0)))
-    both: list[tuple[Relief, ...]] = [(UNMODIFIED, UNMODIFIED), *product(*slopes)]
+    both = _combinations(engagement, (UNMODIFIED, UNMODIFIED), tolerances)
     flanks = [replace(engagement, driver_relief=driver, driven_relief=driven) for driver, driven in both]
     w = np.atleast_1d(np.asarray(loads, dtype=float))
     return np.array([max(transmission_error(one, float(load), 12).peak_to_peak for one in flanks) for load in w])
@@ -115,26 +118,28 @@ def decisive_tolerances(
     for k, number in product(range(2), TIP_NUMBERS):
         gear, tip = engagement.pair.gear(MEMBERS[k]), tips[k]
         given = tolerances[k].amount if number == "amount" else tolerances[k].length_of(gear, tip)
-        if tip.amount <= NOTHING or given <= 0.0:
+        ground = tip.amount > NOTHING
+        if given <= 0.0 or not (ground or number == "amount"):
             continue
         tighter = tolerances[k].halved(number, gear, tip)
         then = part * worst((tighter, tolerances[1]) if k == 0 else (tolerances[0], tighter))
         for i, least in enumerate(found):
             if least is None or then[i] < least.most:
-                found[i] = Decisive(MEMBERS[k], number, float(then[i]), given)
+                found[i] = Decisive(MEMBERS[k], number if ground else "profile_slope", float(then[i]), given)
     return tuple(found)
 
 
 def _combinations(
-    engagement: Engagement, tips: tuple[EndRelief, EndRelief], tolerances: tuple[TipTolerance, TipTolerance]
+    engagement: Engagement, tips: tuple[Relief, Relief], tolerances: tuple[TipTolerance, TipTolerance]
 ) -> list[tuple[Relief, ...]]:
-    """Both reliefs at the ends and in the middle of their tolerances, each with each."""
-    gears = engagement.pair.driver, engagement.pair.driven
+    """Reliefs, or profile slopes without one, at the ends and in the middle of their tolerances, each with each."""
+    pair = engagement.pair
     ends: list[list[Relief]] = [
-        [allowed.off(gear, tip, *off) for off in product((-1, 0, 1), repeat=2)]
-        if tip.amount > NOTHING else [UNMODIFIED]
-        for gear, tip, allowed in zip(gears, tips, tolerances, strict=True)
-    ]  # fmt: skip
+        [allowed.off(pair.gear(member), tip, *off) for off in product((-1, 0, 1), repeat=2)]
+        if isinstance(tip, EndRelief) and tip.amount > NOTHING
+        else [UNMODIFIED, *profile_slopes(pair, member, allowed.amount)]
+        for member, tip, allowed in zip(MEMBERS, tips, tolerances, strict=True)
+    ]
     return list(product(*ends))
 
 

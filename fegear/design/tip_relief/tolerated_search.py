@@ -5,8 +5,8 @@ of all of these is made small, not that of the drawing. The ends of the toleranc
 candidate is tried with amounts and lengths off, and the largest of all counts. Of the 81 combinations of both gears
 the corners and the drawing are tried; others that leave more at the end are added, and the search goes on.
 
-A gear that has no relief has none that is off: reliefs of both gears, of the driver and of the driven gear only are
-searched for apart, and the best of them is taken.
+Of a gear that is not ground the profile slope is off by its tolerance in place of amount and length: reliefs of both
+gears, of the driver and of the driven gear only are searched for apart, and the best of them is taken.
 """
 
 from __future__ import annotations
@@ -15,24 +15,23 @@ import time
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
+from typing import Literal
 
 import numpy as np
 
-from fegear.base.arrays import Array, Floats
+from fegear.base.arrays import Array, Floats, Index
 from fegear.base.solution_cache import fields_codec
 from fegear.contact.plane.engagement import Engagement
-from fegear.design.relief_bench import bench
+from fegear.design.relief_bench import Bench, bench
 from fegear.design.tip_relief.descent import Limits, descend
 from fegear.design.tip_relief.relief_limits import SHORTEST, ReliefLimits
 from fegear.design.tip_relief.relief_scan import LONGEST, apart, box, even_bench
 from fegear.design.tip_relief.search import search
-from fegear.design.tip_relief.tip_tolerance import NOTHING, OF_LENGTH, SHORTEST_LEFT, TipTolerance
+from fegear.design.tip_relief.tip_tolerance import NOTHING, OF_LENGTH, SHORTEST_LEFT, TipTolerance, profile_slopes
 from fegear.design.tip_relief.trials import Trials, Tried
-from fegear.geometry.relief import roll_of_radius
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.relief import UNMODIFIED, Relief, roll_of_radius
 
-#: Ends of both gears' tolerances, amount and length each: the drawing and the corners, and all 81.
-_CORNERS = np.array([(0, 0, 0, 0), *product((-1, 1), repeat=4)])
-_EVERY = np.array(list(product((-1, 0, 1), repeat=4)))
 #: Grid of amounts, over the mean transmission error, and lengths of each gear from which searches start.
 _AMOUNTS, _LENGTHS = (0.1, 0.3, 0.6, 1.0, 1.5, 2.2), (0.1, 0.2, 0.33, 0.5, 0.7, 1.0)
 #: Starts of the descents, of which the best go on exactly; candidates tried at a time.
@@ -43,6 +42,33 @@ _POSITIONS, _ROUGH, _EXACT = 56, (0.2, 10), (0.15, 10)
 _ADDITIONS, _MORE = 3, 1.002
 
 
+def tolerance_ends(ground: tuple[bool, bool], amounts: Literal["corners", "every"]) -> Array:
+    """Ends of both gears' tolerances, amount and length each, or profile slope and none of a gear that is not ground.
+
+    Parameters
+    ----------
+    ground : tuple of bool
+        Whether driver and driven gear have relief.
+    amounts : {"corners", "every"}
+        The drawing and the corners, or these and all between: 17 and 81 of two reliefs, 9 and 27 of one.
+
+    Returns
+    -------
+    ndarray, shape (K, 4)
+    """
+    ends = (-1, 1) if amounts == "corners" else (-1, 0, 1)
+    of_each = [product(ends, ends if one else (0,)) for one in ground]
+    corners = [(*driver, *driven) for driver, driven in product(*of_each)]
+    return np.array(corners if amounts == "every" else [(0, 0, 0, 0), *corners])
+
+
+def _sloped(table: Bench, driver: Relief, driven: Relief) -> Bench:
+    """The pair with flanks that keep these deviations besides what is tried."""
+    contacts = table.grid.contacts
+    gap = contacts.gap + np.where(contacts.present, table.removal(driver, driven), 0.0)
+    return replace(table, grid=replace(table.grid, contacts=replace(contacts, gap=gap)))
+
+
 @dataclass(frozen=True)
 class ToleratedTrials(Trials):
     """Trials of reliefs that are off: every end of the tolerances is a further load of each candidate.
@@ -50,23 +76,38 @@ class ToleratedTrials(Trials):
     Parameters
     ----------
     ends : ndarray, shape (K, 4)
-        -1, 0 or 1 for amount and length of driver and driven gear; the drawing only by default.
+        -1, 0 or 1 for amount and length of driver and driven gear, see `tolerance_ends`; the drawing only by default.
     amounts : tuple of float
         Tolerances of the amounts [m].
     lengths : tuple of float or None
         Of the lengths, over the path of contact; None: a tenth of the length.
     longest : tuple of float
         Lengths over the path at which reliefs reach the base circle.
+    ground : tuple of bool
+        Whether driver and driven gear have relief; the profile slope of one without is off by its amount's tolerance.
     """
 
     ends: Array = field(default_factory=lambda: np.zeros((1, 4)))
     amounts: tuple[float, float] = (0.0, 0.0)
     lengths: tuple[float | None, float | None] = (None, None)
     longest: tuple[float, float] = (np.inf, np.inf)
+    ground: tuple[bool, bool] = (True, True)
 
     @cached_property
-    def _plain(self) -> Trials:
-        return Trials(self.bench, self.loads, self.power, self.metric, self.weights)
+    def _by_slopes(self) -> tuple[tuple[Index, Trials], ...]:
+        """Numbers of the ends with equal profile slopes, and trials of the pair with these."""
+        pair = self.bench.engagement.pair
+        sides = np.where(np.repeat(self.ground, 2), 0, self.ends)[:, ::2]
+        found = []
+        for at in np.unique(sides, axis=0).tolist():
+            driver, driven = (
+                UNMODIFIED if side == 0 else profile_slopes(pair, member, size)[int(side < 0)]
+                for side, member, size in zip(at, MEMBERS, self.amounts, strict=True)
+            )
+            table = _sloped(self.bench, driver, driven)
+            here = np.flatnonzero((sides == at).all(axis=1))
+            found.append((here, Trials(table, self.loads, self.power, self.metric, self.weights)))
+        return tuple(found)
 
     def off(self, p: Floats) -> tuple[Floats, Floats]:
         """Candidates (C, 4) at the ends of their tolerances, and by the numbers of the drawing, shapes (C, K, 4)."""
@@ -74,10 +115,12 @@ class ToleratedTrials(Trials):
         by = np.ones_like(q)
         for gear in (0, 1):
             i, j = 2 * gear, 2 * gear + 1
-            ground = p[:, None, i] > NOTHING
+            if not self.ground[gear]:
+                by[:, :, i] = q[:, :, i] = 0.0
+                continue
             amount = q[:, :, i] + self.ends[:, i] * self.amounts[gear]
-            by[:, :, i] = np.where(ground & (amount > 0.0), 1.0, 0.0)
-            q[:, :, i] = np.where(ground, np.maximum(amount, 0.0), 0.0)
+            by[:, :, i] = np.where(amount > 0.0, 1.0, 0.0)
+            q[:, :, i] = np.maximum(amount, 0.0)
             whole, given = q[:, :, j].copy(), self.lengths[gear]
             step = OF_LENGTH * whole if given is None else given
             length = whole + self.ends[:, j] * step
@@ -103,29 +146,46 @@ class ToleratedTrials(Trials):
     def rough(self, p: Floats) -> Tried:
         """By the quick sharing, of candidates (C, 4)."""
         q, by = self.off(p)
-        return self._as_loads(self._plain.rough(q.reshape(-1, 4)), by)
+        return _together([
+            self._as_loads(trials.rough(q[:, here].reshape(-1, 4)), by[:, here]) for here, trials in self._by_slopes
+        ])  # fmt: skip
 
     def exact(self, p: Floats) -> Tried:
         """By the exact load sharing, of candidates (C, 4)."""
         q, by = self.off(p)
-        return self._as_loads(self._plain.exact(q.reshape(-1, 4)), by)
+        return _together([
+            self._as_loads(trials.exact(q[:, here].reshape(-1, 4)), by[:, here]) for here, trials in self._by_slopes
+        ])  # fmt: skip
 
     def exactly(self, p: Floats) -> Floats:
         """What a candidate (4,) leaves at each end of its tolerances, shape (K,) [m]."""
-        tried = self.exact(p[None])
-        left = (tried.seen.max(axis=-1) - tried.low.min(axis=-1)).reshape(len(self.ends), -1)
-        return np.asarray(left.max(axis=1))
+        (q,), _ = self.off(p[None])
+        left = np.empty(len(self.ends))
+        for here, trials in self._by_slopes:
+            tried = trials.exact(q[here])
+            left[here] = trials.left(tried.seen, tried.low)
+        return left
 
     def each(self, p: Floats) -> Floats:
         """What candidates leave at each end of their tolerances, by the quick sharing, shape (C, K) [m]."""
-        found = []
+        left = np.empty((len(p), len(self.ends)))
         for first in range(0, len(p), _BATCH):
-            q, _ = self.off(p[first : first + _BATCH])
-            removal, _ = self._removed(q.reshape(-1, 4))
-            zeta = self._by_set(removal).min(axis=1)
-            seen = self.seen(zeta)
-            found.append(self._plain.left(seen).reshape(q.shape[:2]))
-        return np.concatenate(found)
+            batch = slice(first, first + _BATCH)
+            q, _ = self.off(p[batch])
+            for here, trials in self._by_slopes:
+                left[batch, here] = trials.least(q[:, here].reshape(-1, 4)).reshape(len(q), -1)
+        return left
+
+
+def _together(tried: list[Tried]) -> Tried:
+    """What is seen of the ends of several profile slopes, as of further loads."""
+    if len(tried) == 1:
+        return tried[0]
+
+    def joined(name: str, axis: int) -> Floats:
+        return np.concatenate([getattr(one, name) for one in tried], axis=axis)
+
+    return Tried(joined("seen", 1), joined("slope", 2), joined("low", 1), joined("low_slope", 2))
 
 
 @dataclass(frozen=True)
@@ -186,18 +246,20 @@ def tolerated_search(
         for gear, roll in zip(gears, rolls, strict=True)
     ]
     coarse = ToleratedTrials(
-        bench(engagement, 5, 6), loads, power, "peak_to_peak", weights, _CORNERS, (first.amount, second.amount),
-        (over_path[0], over_path[1]), (to_base[0], to_base[1]),
+        bench(engagement, 5, 6), loads, power, "peak_to_peak", weights, amounts=(first.amount, second.amount),
+        lengths=(over_path[0], over_path[1]), longest=(to_base[0], to_base[1]),
     )  # fmt: skip
-    fine = replace(coarse, bench=even_bench(engagement, _POSITIONS))
+    even = even_bench(engagement, _POSITIONS)
     scale = coarse.mean()
     nominal = search(engagement, loads, power, "peak_to_peak", weights, False, within)
     candidates, solved, starts = nominal.candidates, nominal.evaluations, 0
     found: list[tuple[float, Floats, float, Floats]] = []
-    for relieved in ((True, True), (True, False), (False, True)):
-        amounts = [most if one else 0.0 for most, one in zip(within.amounts, relieved, strict=True)]
-        if any(one and most <= 0.0 for most, one in zip(within.amounts, relieved, strict=True)):
+    for ground in ((True, False), (False, True), (True, True)):
+        amounts = [most if one else 0.0 for most, one in zip(within.amounts, ground, strict=True)]
+        if any(one and most <= 0.0 for most, one in zip(within.amounts, ground, strict=True)):
             continue
+        coarse = replace(coarse, ground=ground, ends=tolerance_ends(ground, "corners"))
+        fine = replace(coarse, bench=even)
         limits = box(pair, scale, ReliefLimits((amounts[0], amounts[1]), within.lengths))
         grid = _grid(limits)
         left = coarse.each(grid).max(axis=1)
@@ -207,11 +269,13 @@ def tolerated_search(
         p, values, _ = descend(coarse.rough, coarse, begin, limits, *_ROUGH)
         chosen = apart(p, values, limits, _FOLLOWED)
         p, values, count = descend(fine.exact, fine, p[chosen], limits, *_EXACT)
-        solved += count * len(_CORNERS)
+        solved += count * len(fine.ends)
         order = np.argsort(values, kind="stable")
         led = [_led(fine, p[i], limits) for i in order[:2]]
         solved += sum(count for *_, count in led)
         (first_p, least, _), (second_p, other, _) = sorted((led[0], led[-1]), key=lambda one: one[1])
+        if found and (first_p[::2] <= NOTHING).any():
+            continue  # one gear only, whose other one has a profile slope
         found.append((least, first_p, other - least, np.abs(second_p - first_p)))
     most, best, spread, error = min(found, key=lambda one: one[0])
     return ToleratedFound(
@@ -232,19 +296,20 @@ def _grid(limits: Limits) -> Floats:
 
 
 def _led(trials: ToleratedTrials, p: Floats, limits: Limits) -> tuple[Floats, float, int]:
-    """A relief led on until no combination of the 81 leaves more than those that are tried: it, that, evaluations."""
-    every, solved = replace(trials, ends=_EVERY), 0
+    """A relief led on until no combination of all leaves more than those that are tried: it, that, evaluations."""
+    ends = tolerance_ends(trials.ground, "every")
+    every, solved = replace(trials, ends=ends), 0
     best, least = p, np.inf
     for _ in range(_ADDITIONS + 1):
         of_each = every.exactly(p)
-        solved += len(_EVERY)
+        solved += len(ends)
         if of_each.max() < least:
             best, least = p, float(of_each.max())
-        tried = (_EVERY[:, None] == trials.ends).all(axis=2).any(axis=1)
+        tried = (ends[:, None] == trials.ends).all(axis=2).any(axis=1)
         more = ~tried & (of_each > _MORE * of_each[tried].max())
         if not more.any():
             break
-        trials = replace(trials, ends=np.concatenate([trials.ends, _EVERY[more]]))
+        trials = replace(trials, ends=np.concatenate([trials.ends, ends[more]]))
         led, _, count = descend(trials.exact, trials, p[None], limits, *_EXACT)
         solved += count * len(trials.ends)
         p = led[0]

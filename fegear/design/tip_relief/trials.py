@@ -204,6 +204,11 @@ class Trials:
         found = base + np.einsum("sjn,cjn->csn", weight, states)
         return np.asarray(found.reshape(*found.shape[:2], -1, self.loads.size))
 
+    def least(self, p: Floats) -> Floats:
+        """What candidates (C, 4) leave by the quick sharing at the roll positions, shape (C,) [m]."""
+        removal, _ = self._removed(p)
+        return self.left(self.seen(self._by_set(removal).min(axis=1)))
+
     def rough(self, p: Floats) -> Tried:
         """By the quick sharing, of candidates (C, 4)."""
         removal, by_number = self._removed(p)

@@ -10,7 +10,7 @@ from fegear.design.tip_relief.tip_tolerance import HALVED, OF_LENGTH
 from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 
 #: Numbers of a relief whose tolerance decides, in words.
-_NUMBERS = {"slope": "helix slope", "twist": "flank twist"}
+_NUMBERS = {"profile_slope": "profile slope", "slope": "helix slope", "twist": "flank twist"}
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.results.relief.grinding import Grinding
 
 
-def allowed_words(tolerances: Sequence[TipTolerance], ground: Sequence[Grinding]) -> str:
+def allowed_words(tolerances: Sequence[TipTolerance], ground: Sequence[Grinding], bare: Sequence[Grinding] = ()) -> str:
     """Tolerances of amount and length: "± 5 µm (f_Hα of class 5, assumed) and ± 10 % of the length".
 
     Parameters
@@ -28,7 +28,9 @@ def allowed_words(tolerances: Sequence[TipTolerance], ground: Sequence[Grinding]
     tolerances : sequence of TipTolerance
         Of driver and driven gear.
     ground : sequence of Grinding
-        Reliefs that are ground; a gear without one needs no tolerance.
+        Reliefs that are ground.
+    bare : sequence of Grinding
+        Of gears without relief whose profile slope is off by the tolerance of an amount.
     """
     of = dict(zip(("driver", "driven"), tolerances, strict=True))
     amounts: dict[str, list[str]] = {}
@@ -40,7 +42,8 @@ def allowed_words(tolerances: Sequence[TipTolerance], ground: Sequence[Grinding]
     amount = ", ".join(words if alike else f"{words} on gear {', '.join(gears)}" for words, gears in amounts.items())
     length = of[ground[0].member].length
     over = f"{percent(OF_LENGTH)} of the length" if length is None else f"{figures(length * 1e3, 2)} mm of length"
-    return f"{amount} and ± {over}"
+    slopes = "".join(f", ± {microns(of[row.member].amount)} µm profile slope on gear {row.gear}" for row in bare)
+    return f"{amount} and ± {over}{slopes}"
 
 
 def decisive_words(
@@ -58,7 +61,7 @@ def decisive_words(
         [N m].
     decisive : Decisive or None
     gears : mapping of member to str
-        Names of the ground gears.
+        Names of the gears whose tolerances count.
     """
     if decisive is None or decisive.member not in gears or drawn >= CLEARLY * most:
         return ""

@@ -68,8 +68,7 @@ def said_at(seen: Seen, every: tuple[int, ...], ends: tuple[int, ...]) -> Iterat
     do = f"without deviations {do}" if lost else do
     over = "" if none.share is None else " over the load spectrum"
     rounded = _as_rounded(best, at) if ground else ""
-    excluded = "" if most is None else _excluded(seen, shape)
-    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak{rounded}{excluded}."
+    yield f"Pair {seen.name}: {do}: transmission error{over} {left}, peak to peak{rounded}."
     yield from said_of_spectrum(seen.name, none, best)
     single = d.over_range.get(f"{shape} tip relief for one load")
     if single and len(every) > 1 and none.share is None:  # beside other results a design has room for two sentences
@@ -93,12 +92,6 @@ def _as_rounded(best: LeftOverRange, at: Sequence[int]) -> str:
         return ""
     left = ", ".join(microns(best.rounded[i], 3) for i in at)
     return f" (with the rounded numbers of the grinding table {left} µm)"
-
-
-def _excluded(seen: Seen, shape: str) -> str:
-    """That the maximum within the tolerances has no deviation of a gear that is not ground; empty where both are."""
-    names = " and ".join(row.gear for row in seen.data.grinding if row.shape == shape and not row.words)
-    return f"; profile slopes of gear {names}, which is not ground, are not included in the maximum" if names else ""
 
 
 def _nothing_to_grind(seen: Seen, none: LeftOverRange, rows: Sequence[Grinding], ends: tuple[int, ...]) -> str:
@@ -147,10 +140,13 @@ def _said_of_small_torques(seen: Seen, best: LeftOverRange, single: LeftOverRang
 
 
 def _allowed(seen: Seen, rows: Sequence[Grinding]) -> Callable[[int], str]:
-    """Tolerances of the ground gears that are so many classes finer, in words."""
+    """Tolerances that are so many classes finer, in words: of the ground gears, and profile slopes of the others."""
+    ground = {row.member for row in rows}
+    others = {row.member: row for row in seen.data.grinding if row.member not in ground}
 
     def allowed(classes: int) -> str:
-        return allowed_words([one.finer(classes) if classes else one for one in seen.asked.tolerances], rows)
+        of_gears = [one.finer(classes) if classes else one for one in seen.asked.tolerances]
+        return allowed_words(of_gears, rows, [*others.values()])
 
     return allowed
 
@@ -174,7 +170,7 @@ def said_of_tolerances(seen: Seen, shape: str, every: tuple[int, ...], lost: boo
         within = within_words(*ends, best.finer, _allowed(seen, rows), slopes)
         yield f"Pair {seen.name}: {within}{_as_drawn(seen, shape, best, i)}."
     if best.decisive:
-        gears = {row.member: row.gear for row in rows}
+        gears = {row.member: row.gear for row in seen.data.grinding}
         decides = decisive_words(best.peak_to_peak[i], best.most[i], best.torque[i], best.decisive[i], gears)
         if decides:
             yield f"Pair {seen.name}: {decides}."

@@ -91,7 +91,8 @@ def profile_chart(
     roll = np.unique(np.concatenate([np.linspace(min(low, high), max(low, high), _PLACES), [tip.start]]))
     least, most = tolerance.limits(gear, tip, roll)
     length = gear.base_radius * (tip.end - tip.start)
-    words, marks = "no relief", _single_contact(gear, active)
+    slope = f", profile slope ± {microns(tolerance.amount)} µm" if tolerance.amount > NOTHING else ""
+    words, marks = f"no relief{slope}", _single_contact(gear, active)
     if tip.amount > NOTHING:
         start = gear.base_radius * math.hypot(1.0, tip.start)
         amount = with_limits(tip.amount, tolerance.amount, least=0.0)
@@ -148,7 +149,8 @@ def _ordinate(seen: Seen) -> Axis:
     """With room for the diameter above the profile."""
     curves = (seen.one.lower, seen.one.with_form, seen.one.present)
     deepest = -1e6 * min(0.0, *(float(one.min()) for one in curves if one is not None))
-    return Axis("deviation from the involute", "um", limits=(-1.08 * deepest, _ROOM * deepest))
+    highest = 1e6 * max(0.0, float(seen.one.upper.max()))
+    return Axis("deviation from the involute", "um", limits=(-1.08 * deepest, highest + _ROOM * deepest))
 
 
 def _tip_side(charts: Mapping[str, Sequence[ProfileChart]]) -> str:
@@ -172,7 +174,8 @@ def k_chart(of: str) -> Chart:
         "k_chart_{name}", "Profile charts (K-charts) of pair {name}",
         lambda seen: (
             f"Pair {seen.name}: profile of each gear over roll length, material removed below zero, "
-            f"{_tip_side(seen.find(of))}. Dashed: upper and lower limit by the tolerances of amount and length; "
+            f"{_tip_side(seen.find(of))}. Dashed: upper and lower limit by the tolerances of amount and length, "
+            "without relief of the profile slope; "
             "dotted: the lower one with profile form f_fα (flank tolerance class). LPSTC, HPSTC: lowest and highest "
             "point of single tooth contact; d: start of the relief."
         ),
