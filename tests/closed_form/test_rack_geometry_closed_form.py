@@ -201,6 +201,28 @@ def test_racks_that_cannot_be_are_refused(change, words):
         Rack(**given)
 
 
+@pytest.mark.parametrize("helix", [0.0, 0.3])
+def test_a_pin_holds_from_a_tenth_of_a_module_to_a_pitch_less_as_much(helix):
+    pitch = 2e-3 * math.pi / math.cos(helix)
+    given = {"tooth": RackTooth(helix_angle=helix), "module": 2e-3, "teeth": 11, "reference_height": 0.012,
+             "face_width": 0.01, "hand": "right" if helix else "spur"}  # fmt: skip
+    assert Rack(**given).pitch == pytest.approx(pitch, rel=1e-12)
+    assert Rack(**given, pins=RackPins(1, 0, 1e-3)).pins.every == 1
+    for width, good in ((0.2e-3, True), (pitch - 0.2e-3, True), (0.2e-3, False), (pitch - 0.2e-3, False)):
+        off = 1e-9 * (1.0 if (width < 1e-3) == good else -1.0)
+        pins = RackPins(1000, 10, width + off)
+        if good:
+            assert Rack(**given, pins=pins).pins is pins
+        else:
+            with pytest.raises(FegearError, match="pin_width"):
+                Rack(**given, pins=pins)
+
+
+def test_pins_hold_every_so_many_teeth_from_the_first_on():
+    assert [k for k in range(12) if RackPins(3, 2, 1e-3).holds(k)] == [2, 5, 8, 11]
+    assert [k for k in range(4) if RackPins(1, 0, 1e-3).holds(k)] == [0, 1, 2, 3]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

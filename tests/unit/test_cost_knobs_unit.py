@@ -118,3 +118,34 @@ def test_a_mesh_that_did_not_answer_is_left_out_and_one_alone_shows_nothing(stud
     del study.found.values[second, "c_0"]
     assert ladder_knobs(study.found, study.ladder, study.best)[0].name == "edge length, order 3"
     assert math.isclose(study.asked_for[0], 0.1)
+
+
+def test_bands_of_a_3d_gear_are_those_of_the_case_in_modules_of_its_gear(monkeypatch):
+    m, settings = 4e-3, object()
+    gear = SimpleNamespace(
+        tooth="tooth", module=m, twist=2.0, face_width=20e-3, material=SimpleNamespace(poisson_ratio=0.28),
+        bore_radius=12e-3, body_in_modules="body", support_in_modules="support",
+    )  # fmt: skip
+    scene = SimpleNamespace(gears={"p": gear})
+    asked = SimpleNamespace(scene=scene, gear="p", radii=np.array([40e-3, 44e-3]), half_width=0.2e-3)
+
+    def solver_of(given):
+        assert given is settings
+        return lambda *numbers, **body: (numbers, body)
+
+    def places(given, name):
+        assert (given, name) == (scene, "p")
+        return np.array([-8e-3, 0.0, 4e-3])
+
+    def bands(solution, radii, positions, half):
+        assert solution == (("tooth", 2.0 * m, 5.0, 0.28, 3.0, settings), {"body": "body", "support": "support"})
+        np.testing.assert_allclose(radii, [10.0, 11.0])
+        np.testing.assert_allclose(positions, [-2.0, 0.0, 1.0])
+        assert half == pytest.approx(0.05)
+        return "bands"
+
+    monkeypatch.setattr(knobs, "solver_of", solver_of)
+    monkeypatch.setattr(knobs, "face_positions", places)
+    monkeypatch.setattr(knobs, "bands_of_table", bands)
+    monkeypatch.setattr(knobs, "band_numbers", lambda solution, of: (solution[0][0], of))
+    assert knobs._answer(asked, settings) == ("tooth", "bands")

@@ -245,16 +245,24 @@ def test_a_variant_has_the_larger_root_stress_and_the_largest_error_of_its_own_t
 def test_a_set_takes_as_long_as_the_base_pitches_until_its_odd_teeth_meet_again(monkeypatch, odd, pitches):
     gears = {"sun": SimpleNamespace(teeth=20), "planet": SimpleNamespace(teeth=30)}
     scene = SimpleNamespace(gears=gears)
+
+    def of_set(answer):
+        def fake(given, name):
+            assert (given, name) == (scene, "P")
+            return answer
+
+        return fake
+
     for place in (planet_revolution, planet_vibration_revolution):
-        monkeypatch.setattr(place, "odd_gears_of_set", lambda scene, name: odd)
-    monkeypatch.setattr(planet_vibration_revolution, "planetary_part", lambda scene, name: SimpleNamespace(count=3))
+        monkeypatch.setattr(place, "odd_gears_of_set", of_set(odd))
+    monkeypatch.setattr(planet_vibration_revolution, "planetary_part", of_set(SimpleNamespace(count=3)))
     static = planet_revolution._forecast(scene, "P")
     assert static.settings == {"base pitches": pitches}
     moving = planet_vibration_revolution._forecast(scene, "P")
     assert moving.settings == {"base pitches": pitches, "planets": 3}
-    monkeypatch.setattr(planet_revolution, "odd_gears_of_set", lambda scene, name: ())
-    monkeypatch.setattr(planet_vibration_revolution, "odd_gears_of_set", lambda scene, name: ())
-    monkeypatch.setattr(planet_vibration_revolution, "planetary_part", lambda scene, name: SimpleNamespace(count=1))
+    for place in (planet_revolution, planet_vibration_revolution):
+        monkeypatch.setattr(place, "odd_gears_of_set", of_set(()))
+    monkeypatch.setattr(planet_vibration_revolution, "planetary_part", of_set(SimpleNamespace(count=1)))
     one = planet_revolution._forecast(scene, "P").seconds
     assert static.seconds - one == pytest.approx((pitches - 1) * planet_revolution._PITCH)
     assert moving.seconds == pytest.approx(3 * pitches * planet_vibration_revolution._forecast(scene, "P").seconds)

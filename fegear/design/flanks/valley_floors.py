@@ -169,7 +169,7 @@ def _scanned(tips: _QuickTips, low: Array, high: Array) -> Array:
     """For every two amounts and every length of either gear the best of the other's, on a grid, shape (C, 4)."""
     at = slice(_EVERY // 2, None, _EVERY)
     amounts = [np.geomspace(max(_FIRST * high[k], low[k]), high[k], _AMOUNTS) for k in (0, 2)]
-    lengths = [np.unique(np.geomspace(low[k], high[k], _LENGTHS)) for k in (1, 3)]
+    lengths = [np.geomspace(low[k], high[k], _LENGTHS if low[k] < high[k] else 1) for k in (1, 3)]
     first = tips.gaps(np.array([[1.0, one, 0.0, one] for one in lengths[0]]))[:, at]
     second = tips.gaps(np.array([[0.0, one, 1.0, one] for one in lengths[1]]))[:, at]
     cases = [(quick, load, apart[at]) for quick, load, apart in tips.cases()]
