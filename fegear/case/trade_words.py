@@ -132,6 +132,10 @@ _OF_KEYS: tuple[tuple[str, tuple[str, ...], str], ...] = (
      ("gear.NAME.cutter.root_diameter", "gear.NAME.rack.dedendum"), "d_f = m (z + 2 x - 2 h_fP*)"),
     (("bore bore_diameter bore_dia d_i di inner_diameter inside_diameter shaft_hole hole_diameter bohrung "
      "bohrungsdurchmesser"), ("gear.NAME.bore_diameter",), ""),
+    ("start_diameter relief_diameter tip_relief_diameter", ("gear.NAME.relief.tip.start_radius",), "half the diameter"),
+    ("end_diameter", ("gear.NAME.relief.tip.at_radius",), "half the diameter"),
+    ("start_angle", ("gear.NAME.relief.tip.start_roll_angle",), ""),
+    ("length_on_path", ("gear.NAME.relief.tip.length",), ""),
     ("hub_diameter nabendurchmesser", ("gear.NAME.body.hub_radius",), "half the diameter"),
     ("s_n sn s_t s thickness circular_tooth_thickness normal_tooth_thickness zahndicke",
      ("gear.NAME.tooth_thickness",), "normal to the teeth at the reference diameter"),
@@ -314,6 +318,7 @@ def _rows(rows: tuple[tuple[str, tuple[str, ...], str], ...]) -> Iterator[tuple[
 _KEYS = dict(_rows(_OF_KEYS))
 #: What words mean in a table that has a key: this key.
 _BESIDE = {
+    "driver_start_diameter": (("startdiameter",), Meaning(("driver_start_diameter",), "or driven_start_diameter")),
     "samples": (("pairs", "gears", "count", "number"), Meaning(("samples",), "number of random pairs or gears")),
 }
 _RESULTS = dict(_rows(_OF_RESULTS))

@@ -193,8 +193,6 @@ class ReliefDesign:
         """Of the reliefs to grind, the one to be ground first: by what they leave, also within their tolerances."""
         part = proportions(np.array(self.task.over_loads), self.task.over_weights)
         within = {shape: float((both[:, 1] * part).max()) for shape, both in self.within.items()}
-        if self.task.at_most and within:
-            return sorted(within, key=lambda shape: within[shape])
         return preferred({shape: one.objective for shape, one in self.ground.items()}, within)
 
     @property

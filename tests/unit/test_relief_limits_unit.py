@@ -47,6 +47,7 @@ def test_nothing_is_limited_by_default():
 
 def test_one_gear_only_leaves_the_other_without_amount():
     assert limits(relieve="driver") == ReliefLimits((INF, 0.0), (INF, INF))
+    assert limits(limits={"amount": "0.3 mm"}).amounts == pytest.approx((3e-4, 3e-4))  # a tenth of the module
     found = limits(relieve="driven", limits={"amount": "20 um"})
     assert found.amounts == (0.0, pytest.approx(20e-6))
     assert found.lengths == (INF, INF)
@@ -72,6 +73,9 @@ def test_lengths_are_over_the_path_and_starts_are_lengths_from_the_tip():
         ({"driver_start_diameter": "90 mm"}, "design.limits.driver_start_diameter", "68.3407 to 78 mm"),
         ({"driven_start_diameter": "113.99 mm"}, "design.limits.driven_start_diameter", "too close to the tip"),
         ({"length": "0.2 mm"}, "design.limits.length", "must be at least 0.2[0-9]* mm"),
+        ({"amount": "20 mm"}, "design.limits.amount", 'is above 0.3 mm, .* did you mean "20 um"'),
+        ({"amount": "0.31 mm"}, "design.limits.amount", 'did you mean "0.31 um"'),
+        ({"amount": "20 m"}, "design.limits.amount", "check the unit"),
     ],
 )
 def test_limits_without_room_are_refused(keys, key, rule):

@@ -123,6 +123,11 @@ TYPED = {
     "gear.a.rack.haP": '"addendum" (in modules)',
     "gear.a.strength.sigmaHlim": '"contact"',
     "gear.a.relief.tip.Ca": '"amount"',
+    # columns of the grinding table
+    "gear.a.relief.tip.start_diameter": '"start_radius" (half the diameter)',
+    "gear.a.relief.tip.end_diameter": '"at_radius" (half the diameter)',
+    "gear.a.relief.tip.length_on_path": '"length"',
+    "design.limits.start_diameter": '"driver_start_diameter" (or driven_start_diameter)',
     "pair.I.Achsabstand": '"centre_distance"',
     "pair.I.Drehmoment": '"torque"',
     "pair.I.Drehzahl": '"speed"',

@@ -12,6 +12,7 @@ from fegear.base.notes import neglecting
 from fegear.base.printed import figures, percent
 from fegear.base.tally import note
 from fegear.case.effects import EffectsPart
+from fegear.design.tip_relief.tip_tolerance import NOTHING
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -160,8 +161,9 @@ def _to_grind(found: TipReliefPair) -> str:
     each = [
         f"{relief.amount * 1e6:.3g} um from {np.degrees(relief.start):.4g} deg on the {member}"
         for member, relief in (("driver", found.driver), ("driven gear", found.driven))
+        if relief.amount > NOTHING
     ]
-    return f"{' and '.join(each)}, remaining transmission error {found.objective * 1e6:.3g} um"
+    return f"{' and '.join(each) or 'none'}, remaining transmission error {found.objective * 1e6:.3g} um"
 
 
 def design_remarks(

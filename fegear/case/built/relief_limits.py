@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.base.errors import RangeError
 from fegear.design.tip_relief.relief_limits import SHORTEST, ReliefLimits
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible_flanks import DEEPEST_RELIEF
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
@@ -27,6 +28,14 @@ def relief_limits(part: DesignPart, pair: GearPair) -> ReliefLimits | None:
     if part.relieve == "both" and asked is None:
         return None
     amount = math.inf if asked is None or asked.amount is None else asked.amount
+    deepest = DEEPEST_RELIEF * max(pair.gear(member).module for member in MEMBERS)
+    if math.isfinite(amount) and amount > deepest:
+        meant = f'did you mean "{amount * 1e3:.6g} um"?' if amount * 1e-3 <= deepest else "check the unit:"
+        raise RangeError(
+            "design.limits.amount", f"{amount * 1e3:.6g} mm",
+            f"is above {deepest * 1e3:.6g} mm, the maximum of {DEEPEST_RELIEF:g} module that a tooth can lose",
+            f"{meant} Reliefs are some tens of micrometres",
+        )  # fmt: skip
     relieved = [part.relieve in ("both", member) for member in MEMBERS]
     driver, driven = (math.inf if asked is None else _longest(asked, pair, member) for member in MEMBERS)
     amounts = [amount if one else 0.0 for one in relieved]

@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.printed import percent
 from fegear.design.load_range import proportions
+from fegear.design.preferred import CLEARLY
 from fegear.engine.sheet.answer import Answer
 from fegear.geometry.pair import MEMBERS
-from fegear.results.relief.answer_numbers import microns, torque_words
+from fegear.results.relief.answer_numbers import microns, told_apart, torque_words
 from fegear.results.relief.grinding_words import said_at, said_of_range
 from fegear.results.relief.interference_words import said_of_interference
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fegear.base.arrays import Array
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.relief_over_range import LeftOverRange
 
@@ -69,6 +72,27 @@ def _minimised(seen: Seen) -> Iterator[str]:
         f"Pair {seen.name}: minimised: maximum within the tolerances (design.metric). Tip relief with the minimum as "
         f"drawn: {microns(drawn)} µm at {torque_words(best.torque[i])}, within tolerances at most {microns(most)}{own}."
     )
+    yield from _as_good(seen, shape, best, part)
+
+
+def _as_good(seen: Seen, shape: str, best: LeftOverRange, part: Array) -> Iterator[str]:
+    """Which other shape has nearly the same maximum, which decides nothing, and what it leaves as drawn."""
+    if best.most is None:
+        return
+    i = int(np.argmax(part * best.most))
+    for other in seen.data.data.design.shapes:
+        one: LeftOverRange = seen.data.over_range[f"{other} tip relief"]
+        if other == shape or one.most is None:
+            continue
+        if not CLEARLY <= (part * one.most).max() / (part * best.most).max() < 1.0:
+            continue
+        less, more = told_apart(one.most[i], best.most[i])
+        theirs, ours = told_apart(one.peak_to_peak[i], best.peak_to_peak[i])
+        yield (
+            f"Pair {seen.name}: {other} tip relief is as good within the tolerances (at most {less}, not {more} µm at "
+            f"{torque_words(best.torque[i])}: less than {percent(1.0 - CLEARLY, whole=True)}), but {theirs}, not "
+            f"{ours} µm as drawn."
+        )
 
 
 def _at_limits(seen: Seen) -> Iterator[str]:

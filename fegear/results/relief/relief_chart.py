@@ -314,8 +314,8 @@ def _optimum_in_words(seen: Seen) -> Iterator[str]:
     if not seen.asked.said_by_relief:
         amounts = " and ".join(f"{microns(tip.relief.amount)} µm on the {MEMBER_WORDS[tip.member]}" for tip in ground)
         yield (
-            f"Pair {seen.name}: optimum for all loads: {amounts} ({microns(seen.data.left(seen.asked.metric))} µm "
-            "remain at the maximum load)."
+            f"Pair {seen.name}: optimum of {seen.asked.part.shape} tip relief for all loads: {amounts} "
+            f"({microns(seen.data.left(seen.asked.metric))} µm remain at the maximum load)."
         )
     if seen.asked.said_by_relief:  # its answer states better ones, one for each gear
         edges = at_edges(chart)
