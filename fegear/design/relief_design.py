@@ -34,6 +34,9 @@ from fegear.geometry.relief import UNMODIFIED, Shape
 #: which another processor rounds otherwise, move finite-element compliances, and the reliefs made of them, by up to
 #: 3e-10 of it.
 _DIGITS = 1e-9
+#: How far a design has come when reliefs are searched for, what they leave is read, their tolerances are, what these
+#: are compared with is, and the tolerances that would do.
+_SEARCHES, _READINGS, _WITHIN, _COMPARED, _LAST = 0.1, 0.4, 0.65, 0.85, 0.95
 #: Harmonics at loads other than that of the design, where the first one and the extremes are wanted.
 _OVER_LOADS = 12
 
@@ -241,7 +244,7 @@ def design_relief(
         minimum_excitation(replace(plain, compliance=s.compliance), task.loading, load, film=film) for s in shifted
     ]
     reliefs = _reliefs(designed, states.get("diagonal only"), others)
-    report(0.3)
+    report(_SEARCHES)
     ground: dict[Shape, TipReliefPair] = {}
     for_one_load: dict[Shape, TipReliefPair] = {}
     for number, shape in enumerate(dict.fromkeys(task.grind)):
@@ -252,25 +255,27 @@ def design_relief(
                 designed, load, shape, task.metric, banded=False, limits=task.tip_limits, cache=cache
             )
             states[f"{shape} tip relief for one load"] = for_one_load[shape].applied(plain)
-        report(0.3 + 0.5 * (number + 1) / len(task.grind))
+        report(_SEARCHES + (_READINGS - _SEARCHES) * (number + 1) / len(task.grind))
     if (engagement.driver_relief, engagement.driven_relief) != (UNMODIFIED, UNMODIFIED):
         states["present relief"] = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     if film is not None:
         states = {label: film.between(state) for label, state in states.items()}
-    te = {label: transmission_error(state, load, task.harmonics) for label, state in states.items()}
-    over_range = {
-        label: tuple(
-            te[label] if one == load else transmission_error(state, one, _OVER_LOADS) for one in task.over_loads
-        )
-        for label, state in states.items()
-        if label != "diagonal only"
-    }
+    te: dict[str, TransmissionError] = {}
+    over_range: dict[str, tuple[TransmissionError, ...]] = {}
+    for number, (label, state) in enumerate(states.items()):
+        te[label] = transmission_error(state, load, task.harmonics)
+        if label != "diagonal only":
+            over_range[label] = tuple(
+                te[label] if one == load else transmission_error(state, one, _OVER_LOADS) for one in task.over_loads
+            )
+        report(_READINGS + (_WITHIN - _READINGS) * (number + 1) / len(states))
     rounded = {shape: _as_rounded(plain, one, task) for shape, one in ground.items()}
     within: dict[Shape, Array] = {}
     if film is None and task.tip_tolerances is not None:
-        for shape, one in ground.items():
+        for number, (shape, one) in enumerate(ground.items()):
             within[shape] = within_tolerances(plain, (one.driver, one.driven), task.tip_tolerances, task.over_loads)
-    report(0.95)
+            report(_WITHIN + (_COMPARED - _WITHIN) * (number + 1) / len(ground))
+    report(_COMPARED)
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
@@ -281,6 +286,7 @@ def design_relief(
         rounded=rounded,
     )  # fmt: skip
     design = replace(design, unrelieved_most=_unrelieved_most(plain, design), undeviated=_undeviated(plain, design))
+    report(_LAST)
     return replace(design, finer=_classes_finer(plain, design), decisive=_decisive(plain, design))
 
 

@@ -400,7 +400,7 @@ def test_a_design_for_a_range_is_compared_with_reliefs_for_one_load_and_with_the
     progress = []
     found = relief_design.design_relief(own, (), task, progress.append)
     assert asked == [(task.over, "linear", "peak_to_peak", True), (load, "linear", "peak_to_peak", False)]
-    assert progress == pytest.approx([0.3, 0.8, 0.95])
+    assert progress == pytest.approx([0.1, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.85, 0.95])
     wanted = {
         "no relief": plain, "linear tip relief": replace(plain, driver_relief=other),
         "linear tip relief for one load": replace(plain, driver_relief=present),
