@@ -16,7 +16,7 @@ from fegear.geometry.relief import EndRelief
 from fegear.results.relief.allowed_words import allowed_words, decisive_words
 from fegear.results.relief.grinding import TIP, Grinding, tip_row
 from fegear.results.relief.grinding_words import said_at, said_of_range, said_of_undefined
-from fegear.results.relief.ground_tips import said_of_flat_optima
+from fegear.results.relief.ground_tips import GroundTip, said_of_flat_optima, tip_numbers
 from fegear.results.relief.recommended import recommended_design
 from fegear.results.relief.relief_over_range import LeftOverRange
 from fegear.results.relief.relief_robustness import as_designed
@@ -181,6 +181,18 @@ def test_a_gear_that_is_not_ground_has_its_amount_only(amount):
     start, end = (0.06 * np.hypot(1.0, roll) for roll in (0.2, 0.6))
     expected = [4e-6, start, end, 0.03 * 0.4, 0.5e-3] if amount else [np.nan] * 5
     np.testing.assert_allclose(numbers, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("amount", [0.0, 12e-6])
+def test_a_gear_that_is_not_ground_has_no_start_among_the_values(amount):
+    """The summary said "driver.parabolic_tip_start = 11.95 deg" of a pinion that is not ground."""
+    gear = SimpleNamespace(base_radius=0.03, tooth=SimpleNamespace(side=1.0))
+    relief = EndRelief(amount, 0.2, 0.6, 1.0)
+    ground = SimpleNamespace(driver=relief, driver_band=(relief, relief), error=np.zeros(4), undeviated=None)
+    tip = GroundTip(ground, gear, None, None, "linear", "driver")
+    seen = Seen(SimpleNamespace(tips=(tip,)), None, "I")
+    names = [value.name for value in tip_numbers("tips", "{one.shape}_tip_").values(seen)]
+    assert names == ["I.driver.linear_tip_amount", "I.driver.linear_tip_start"][: 2 if amount else 1]
 
 
 @pytest.mark.parametrize(("low", "said"), [(10.4e-6, 1), (11.6e-6, 0)])

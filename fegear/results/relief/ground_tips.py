@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import shown, shows
+from fegear.design.tip_relief.tip_tolerance import NOTHING
 from fegear.engine.sheet.each import Each
 from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
@@ -165,7 +166,7 @@ def tips_of(
 
 
 def tip_numbers(tips: Where, head: str) -> Each:
-    """Amount and start of each tip relief; what is equally good is named with each.
+    """Amount and start of each tip relief, no start without an amount; what is equally good is named with each.
 
     Parameters
     ----------
@@ -182,10 +183,13 @@ def _tip_number(head: str, what: str, words: str, number: int) -> Number:
         equal = getattr(seen.one, f"equal_{what}s")
         return f"{words}; equally good: {equal}" if equal else words
 
+    def starts(seen: Seen) -> bool:
+        return what == "amount" or float(seen.one.relief.amount) > NOTHING
+
     quantity = "relief.amount" if what == "amount" else what
     return Number(
         quantity, lambda seen: seen.one.error[number], owner="{name}.{one.member}", name=f"{head}{what}",
-        meaning=meaning, choice=True,
+        meaning=meaning, choice=True, when=starts,
     )  # fmt: skip
 
 
