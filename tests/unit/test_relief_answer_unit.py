@@ -199,12 +199,28 @@ def test_a_gear_that_is_not_ground_has_no_start_among_the_values(amount):
 def test_amounts_of_a_flat_optimum_are_a_band(low, said):
     tip = SimpleNamespace(
         band=(SimpleNamespace(amount=low), SimpleNamespace(amount=12.8e-6 if said else low)), error=(1.2e-6, 0.0),
-        relief=SimpleNamespace(amount=11.6e-6), shape="parabolic", member="driver",
+        relief=SimpleNamespace(amount=11.6e-6), shape="parabolic", member="driver", has_band=True,
     )  # fmt: skip
     sharp = SimpleNamespace(**{**vars(tip), "error": (1e-9, 0.0), "member": "driven"})
     seen = Seen(SimpleNamespace(tips=(tip, sharp)), SimpleNamespace(gears={"driver": "p", "driven": "w"}), "I")
     band = "10 to 13 µm on gear p with their best starts leave at most 1 % more than the minimum."
     assert list(said_of_flat_optima(seen)) == [f"Pair I: flat optimum of parabolic tip relief: {band}"][:said]
+
+
+@pytest.mark.parametrize(("off", "said"), [(3.9e-6, 1), (0.5e-6, 0)])
+def test_a_flat_optimum_of_the_maximum_within_tolerances_is_said_by_what_two_searches_differ(off, said):
+    """13.4 ± 12 µm stood in the grinding table without a word."""
+    tip = SimpleNamespace(
+        error=(off, 0.0), relief=SimpleNamespace(amount=18.5e-6), shape="linear", member="driven", has_band=False,
+        least_error=0.062e-6,
+    )  # fmt: skip
+    none = SimpleNamespace(**{**vars(tip), "member": "driver", "relief": SimpleNamespace(amount=0.0)})
+    seen = Seen(SimpleNamespace(tips=(none, tip)), SimpleNamespace(gears={"driver": "p", "driven": "w"}), "I")
+    words = (
+        "Pair I: flat optimum of linear tip relief: 18.5 ± 3.9 µm on gear w is what two searches differ by, with "
+        "maxima within the tolerances that differ by 0.062 µm."
+    )
+    assert list(said_of_flat_optima(seen)) == [words][:said]
 
 
 WITHIN = f"Pair I: within ± 5 µm ({CLASS}) and ± 10 % of the length at most "

@@ -15,7 +15,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.geometry.relief import roll_in_drawing
-from fegear.results.relief.answer_numbers import told_apart
+from fegear.results.relief.answer_numbers import ground_microns, microns, told_apart
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Estimated error of an amount over it from which its optimum is flat.
 _SHARP = 0.01
+#: The same where two searches for the least maximum within tolerances are how far amounts are apart.
+_FLAT = 0.05
 
 
 @dataclass(frozen=True)
@@ -197,6 +199,9 @@ def said_of_flat_optima(seen: Seen) -> Iterator[str]:
     """Where amounts of a wide range are equally good: their estimated errors are no inaccuracy of the result."""
     flat: dict[str, list[str]] = {}
     for tip in seen.data.tips:
+        if not tip.has_band:
+            yield from _said_of_two_searches(seen, tip)
+            continue
         low, high = (one.amount for one in tip.band)
         if high > low and tip.error[0] > _SHARP * tip.relief.amount:
             band = " to ".join(told_apart(low, high))
@@ -205,6 +210,17 @@ def said_of_flat_optima(seen: Seen) -> Iterator[str]:
         yield (
             f"Pair {seen.name}: flat optimum of {shape} tip relief: {' and '.join(bands)} with their best starts leave "
             "at most 1 % more than the minimum."
+        )
+
+
+def _said_of_two_searches(seen: Seen, tip: GroundTip) -> Iterator[str]:
+    """Where two searches for the least maximum within the tolerances end apart."""
+    if 0.0 < _FLAT * tip.relief.amount < tip.error[0]:
+        amount = f"{ground_microns(tip.relief.amount)} ± {microns(tip.error[0])} µm"
+        yield (
+            f"Pair {seen.name}: flat optimum of {tip.shape} tip relief: {amount} on gear "
+            f"{seen.asked.gears[tip.member]} is what two searches differ by, with maxima within the tolerances that "
+            f"differ by {microns(tip.least_error)} µm."
         )
 
 

@@ -19,7 +19,7 @@ from fegear.results.relief.interference_words import said_of_interference
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Floats
     from fegear.engine.sheet.seen import Seen
     from fegear.results.relief.relief_over_range import LeftOverRange
 
@@ -75,7 +75,7 @@ def _minimised(seen: Seen) -> Iterator[str]:
     yield from _as_good(seen, shape, best, part)
 
 
-def _as_good(seen: Seen, shape: str, best: LeftOverRange, part: Array) -> Iterator[str]:
+def _as_good(seen: Seen, shape: str, best: LeftOverRange, part: Floats) -> Iterator[str]:
     """Which other shape has nearly the same maximum, which decides nothing, and what it leaves as drawn."""
     if best.most is None:
         return
