@@ -94,7 +94,7 @@ def test_where_a_difference_changes_its_sign_the_error_is_that_of_places_beside_
         return 1e-3 * np.abs(off) * np.exp(-0.5 * off**2) + np.where(high - r < 1e-3, 1.0, 1e-9)
 
     monkeypatch.setattr(Estimate, "_self_difference", difference)
-    monkeypatch.setattr(estimate_module, "_USUAL", 0.0)
+    monkeypatch.setattr(estimate_module, "USUAL", 0.0)
     estimate, b = replace(ring[0].estimate), np.asarray(0.02)
     sampled = difference(None, estimate._samples, estimate._samples, None)
     crossing, before, end, next_to_it = estimate.self_error(np.array([middle, middle + span, high, high - 0.02]), b)

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.fem.plane.estimate import _SAMPLES, Estimate
+from fegear.fem.plane.estimate import Estimate
+from fegear.fem.plane.flank_samples import SAMPLES
 from fegear.fem.plane.influence import _REMOTE_PARTS, _REMOTE_WIDTHS
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
@@ -57,8 +58,8 @@ def test_on_a_ring_that_is_held_the_thinner_the_rim_the_less_of_the_order_is_err
 def test_where_both_solutions_agree_by_chance_the_error_is_what_they_usually_differ_by():
     flank = SimpleNamespace(order=4, arc=np.linspace(0.0, 5.0 * EDGE, 6))
     known = Estimate(SimpleNamespace(flank=flank, reach=0), None, WIDE, 2.0 * WIDE)
-    samples = np.linspace(10.0, 12.0, _SAMPLES)
-    usual = {1: np.full((_SAMPLES, _SAMPLES), 2.0)}
+    samples = np.linspace(10.0, 12.0, SAMPLES)
+    usual = {1: np.full((SAMPLES, SAMPLES), 2.0)}
     known.__dict__.update(_samples=samples, common_errors=(0.0, 0.5), _least_beside=0.0, _neighbours=usual)
     off = np.array([[0.0, 3.0], [1.0, 7.0]])
     object.__setattr__(known, "_neighbour_difference", lambda *_asked: (off, off))
@@ -73,14 +74,14 @@ def test_where_both_solutions_agree_by_chance_the_error_is_what_they_usually_dif
 )
 def test_on_external_gears_two_differences_that_cancel_count_each(internal, order, expected):
     """Both orders differ by 3 at the start of the flank, by 0 in its middle and by -3 at its end."""
-    samples = np.linspace(10.0, 12.0, _SAMPLES)
+    samples = np.linspace(10.0, 12.0, SAMPLES)
     falling = SimpleNamespace(neighbour=lambda _k, p, q, *_width: 1.5 * (11.0 - p[:, None]) + 1.5 * (11.0 - q))
     none = held(12.0, internal, order)
     none.neighbour = lambda _k, p, q, *_width: np.zeros((p.size, q.size))
     known = Estimate(none, falling, WIDE, 2.0 * WIDE)
     known.__dict__.update(_samples=samples, _turned=0.0)
     object.__setattr__(known, "_of_edges", lambda *_asked: 0.0)
-    at = samples[[0, _SAMPLES // 2, -1]]
+    at = samples[[0, SAMPLES // 2, -1]]
     _, difference = known._neighbour_difference(1, at, at)
     share = 0.144 if order == 4 else 0.5
     assert np.diagonal(difference) == pytest.approx(share * np.array(expected))

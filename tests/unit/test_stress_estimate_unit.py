@@ -7,7 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.fem.plane.estimate import (
+from fegear.fem.plane.estimate import Estimate
+from fegear.fem.plane.flank_samples import USUAL
+from fegear.fem.plane.influence import MOSTLY_TURNED
+from fegear.fem.plane.own_stress_error import own_stress_error
+from fegear.fem.plane.root_stress import CLEARANCE, FilletCurve, search_end
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+from fegear.fem.plane.stress_apart import apart_beside_contacts, apart_beside_ends
+from fegear.fem.plane.stress_estimate import (
     _COMPRESSED,
     _LEAST_NEIGHBOUR_STRESS,
     _LEAST_STRESS_SHARE,
@@ -23,15 +31,8 @@ from fegear.fem.plane.estimate import (
     _SMOOTH_STRESS,
     _STRESS_EDGES,
     _STRESS_POWER,
-    _USUAL,
-    Estimate,
+    StressEstimate,
 )
-from fegear.fem.plane.influence import MOSTLY_TURNED
-from fegear.fem.plane.own_stress_error import own_stress_error
-from fegear.fem.plane.root_stress import CLEARANCE, FilletCurve, search_end
-from fegear.fem.plane.settings import settings_at
-from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
-from fegear.fem.plane.stress_apart import apart_beside_contacts, apart_beside_ends
 from fegear.geometry.external_tooth import Tooth
 from fegear.geometry.gear import Gear
 from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
@@ -44,10 +45,16 @@ def estimate(edges, stresses, scatter=0.0):
     """With fillet edges so long, and differences as if looked for at samples: tooth, side -> value, difference."""
     arc = np.concatenate([[0.0], np.cumsum(np.repeat(np.asarray(edges) / ORDER, ORDER))])
     fine = SimpleNamespace(flank=SimpleNamespace(order=ORDER), fillets={"tension": SimpleNamespace(arc=arc)})
-    found = Estimate(fine, fine, 0.1, 0.2)
+    found = StressEstimate(fine, fine, np.zeros(0))
     found.__dict__["_stresses"] = stresses
     found.__dict__["_scatter"] = defaultdict(lambda: np.full(17, scatter))
     return found
+
+
+def whole():
+    """The estimate of all quantities, of a gear with five fillet edges."""
+    fine = estimate([0.1] * 5, {}).fine
+    return Estimate(fine, fine, 0.1, 0.2)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +93,7 @@ def test_the_error_of_a_neighbours_stress_is_relatively_no_less_than_a_part_of_w
         (-2, behind, 9, _MOST_SMOOTH["tension"][1]),
     ):
         found = estimate([0.3 / count] * count, {0: own, tooth: stresses[2]})
-        wanted = [part * _USUAL * 1e-3 * 75.0, of_order * 3.0]
+        wanted = [part * USUAL * 1e-3 * 75.0, of_order * 3.0]
         known = found._stress_estimate(tooth, "tension", np.array([75.0, 75.0]), np.array([0.0, 3.0]))
         assert known == pytest.approx(wanted)
 
@@ -110,7 +117,7 @@ def test_stress_behind_the_loaded_tooth_errs_relatively_by_the_less_where_edges_
     own = {"tension": (100.0 * samples, 0.1 * samples), "compression": (-100.0 * samples, 0.1 * samples)}
     behind = {"tension": (75.0 * samples, 0.0 * samples), "compression": (-75.0 * samples, 0.0 * samples)}
     found = estimate([0.3 / count] * count, {0: own, -1: behind})
-    least = _USUAL * 1e-3 * 75.0
+    least = USUAL * 1e-3 * 75.0
     for side, wanted in (("tension", part), ("compression", pressed)):
         known = found._stress_estimate(-1, side, np.array([75.0]), np.zeros(1))
         assert known == pytest.approx([wanted * least])
@@ -149,7 +156,7 @@ def test_the_error_of_a_neighbours_fillet_that_is_hardly_stressed_does_not_vanis
     found = estimate([0.3 / 40] * 40, stresses)
     for side, least in (
         ("tension", _SMOOTH_STRESS["tension"] * _LEAST_STRESS_SHARE * 0.02),
-        ("compression", _LEAST_NEIGHBOUR_STRESS * _USUAL * 0.2),
+        ("compression", _LEAST_NEIGHBOUR_STRESS * USUAL * 0.2),
     ):
         assert found._stress_estimate(1, side, np.zeros(2), np.zeros(2)) == pytest.approx([least] * 2)
 
@@ -161,19 +168,14 @@ def test_only_the_fillet_of_a_neighbour_that_lies_beside_the_loaded_flank_errs_b
     own = {"tension": (100.0 * samples, 0.0 * samples), "compression": (-100.0 * samples, 0.0 * samples)}
     found = estimate([0.3 / 40] * 40, {0: own, k: dict.fromkeys(own, (samples, 0.2 * samples))})
     beside = (k, side) == (1, "compression")
-    least = _LEAST_NEIGHBOUR_STRESS * _USUAL if beside else _SMOOTH_STRESS[side] * _LEAST_STRESS_SHARE
+    least = _LEAST_NEIGHBOUR_STRESS * USUAL if beside else _SMOOTH_STRESS[side] * _LEAST_STRESS_SHARE
     least = _OF_SHORT_BEHIND if (k, side) == (-1, "tension") else least
     assert found._stress_estimate(k, side, samples, 0.0 * samples) == pytest.approx(least * 0.2 * samples)
 
 
 def judged(found):
     """What all of both differences makes of the largest relative error."""
-    samples = np.ones(17)
-    found.fine.reach = 0
-    found.__dict__["_self_at_samples"] = samples, 0.0 * samples
-    found.__dict__["_samples"] = samples
-    object.__setattr__(found, "_self_estimate", lambda difference, _radius: 0.0 * difference)
-    return found.largest
+    return {f"root_{side}": float(found.judged(side).max()) for side in ("tension", "compression")}
 
 
 @pytest.mark.parametrize("count", [3, 9, 40])
@@ -192,7 +194,7 @@ def test_the_own_stress_errs_by_what_it_usually_differs_by_and_the_other_fillet_
         assert stated == pytest.approx(own_stress_error(side, share, [more * share * differs], 0.0), rel=1e-12)
     assert found._stress_estimate(0, other, np.array([20.0]), np.zeros(1)) == pytest.approx([0.0], abs=1e-15)
     more = _COMPRESSED if other == "compression" else 1.0
-    assert judged(found)[f"root_{other}"] == pytest.approx(share * more * _USUAL * 0.01)
+    assert judged(found)[f"root_{other}"] == pytest.approx(share * more * USUAL * 0.01)
 
 
 @pytest.mark.parametrize(("count", "part"), [(3, 0.8), (9, 0.55), (40, 0.55)])
@@ -238,7 +240,7 @@ def test_tension_errs_by_less_below_contacts_up_the_flank_where_edges_are_rather
 def test_up_the_flank_is_away_from_the_fillet(internal):
     found = estimate([0.1] * 5, {})
     found.fine.tooth = SimpleNamespace(internal=internal)
-    found.__dict__["_samples"] = np.concatenate([np.linspace(10.0, 12.0, 17), [10.01, 11.99]])
+    found.__dict__["samples"] = np.concatenate([np.linspace(10.0, 12.0, 17), [10.01, 11.99]])
     known = found._up(np.array([9.9, 10.0, 10.5, 12.0, 12.1]))
     wanted = np.array([0.0, 0.0, 0.25, 1.0, 1.0])
     assert known == pytest.approx(1.0 - wanted if internal else wanted)
@@ -259,7 +261,7 @@ def test_of_a_neighbours_deflection_more_of_the_order_counts_where_edges_are_lon
 
 
 def test_where_neighbours_agree_what_they_usually_differ_by_is_stated():
-    found = estimate([0.1] * 5, {})
+    found = whole()
     found._neighbours[1] = np.full((20, 20), 3.0)
     found.__dict__.update({"common_errors": (0.0, 0.25), "_least_beside": 1.0})
     known = found._neighbour_estimate(1, np.array([0.0, 5.0]))
@@ -267,7 +269,7 @@ def test_where_neighbours_agree_what_they_usually_differ_by_is_stated():
 
 
 def test_both_orders_may_agree_by_chance_on_how_far_a_gear_turns_on_its_bore():
-    found = estimate([0.1] * 5, {})
+    found = whole()
     beside = {1: [[4e4, 3e4], [3.5e4, 2.5e4]], -1: [[4e4, 3e4], [2e4, 2.6e4]]}
     found.fine.neighbour = lambda k, _p, _q, patch: np.array(beside[k]) * (patch == 0.1)
     found.__dict__.update({"common_errors": (0.0, 0.0), "_samples": np.ones(40)})
@@ -325,7 +327,7 @@ def test_below_a_contact_that_the_fillet_narrows_solutions_are_compared_beside_t
     assert off <= 1.2 * error
     assert error < 0.01 * value
     at_start, higher = (
-        known.estimate._stress_of(0, "tension", radius / gear.module, np.full(1, 0.02))
+        known.estimate._of_stress._stress_of(0, "tension", radius / gear.module, np.full(1, 0.02))
         for radius in (start, start - 0.3 * gear.module)
     )
     assert at_start.beside > 10.0 * at_start.difference
