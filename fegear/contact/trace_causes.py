@@ -4,13 +4,16 @@ For each number that may be otherwise the computed curve is that of the changed 
 offset and shift as they are fitted, and with a scale that is one within what load and encoders, or load and place of
 a gauge, are uncertain by: a relief must not make up for a torque. The number with the least sum of squares is found by
 solving again; its standard error is by the curvature of that sum and by what it leaves, whose neighbours do not differ
-independently. Numbers that leave about as little cannot be distinguished apart.
+independently.
+
+Causes are ranked by one measure: what each leaves against the noise of the trace, and by how many of its tolerances the
+number is off, with a distribution that allows for mistakes. Causes that are about as likely cannot be distinguished.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,16 +28,26 @@ if TYPE_CHECKING:
 
 #: Values of a number that are looked at first, shifts to either side, and how close the best is found over its range.
 _VALUES, _SHIFTS, _CLOSE = 9, 48, 1e-3
+#: Times what the best one leaves above which a parabola through three values tells enough of a number.
+_HOPELESS = 4.0
 #: Step over the range of a number by which the curvature is taken.
 _STEP = 0.02
 #: Part of the range of a curve that the computation, or the average of a trace, may be off anywhere.
 _OFF = 2e-3
-#: Part of the variance beside the stated curve that a cause leaves at most; times that of the best which is as good.
-_LEAVES, _AS_GOOD = 0.25, 2.0
+#: Part of the variance beside the stated curve that a cause leaves at most.
+_LEAVES = 0.25
+#: Neighbours among the values of a trace that are wrong alike where the computed curve is.
+_TOGETHER = 8.0
+#: Difference of the measure, twice a logarithm of the likelihood, within which causes cannot be distinguished.
+_AS_LIKELY = 4.0
 #: Gain as chi squared, and residual beside the stated curve over its range and over the noise, from which on one is.
-_CERTAIN, _LARGE, _OF_NOISE = 50.0, 0.01, 2.0
-#: Standard errors by which a number differs from the stated one, and tolerances by which the scale may.
+_CERTAIN, _LARGE, _OF_NOISE = 50.0, 0.006, 2.0
+#: Standard errors by which a number differs from the stated one.
 _DIFFERS = 2.0
+#: Tolerances by which the scale may differ.
+_SCALE_OFF = 1.25
+#: Kinds of causes that change the size of a trace themselves; of these, those beside which the load may be another.
+SIZES, _PLACES = ("load", "scale", "place", "bridge"), ("place", "bridge")
 #: Least part of the residual that a cause is named for which is not the best one.
 _SOME = 0.1
 
@@ -84,6 +97,10 @@ class Cause:
         Part of the sum of squares beside the stated curves that it explains.
     rms : float
         That is left of the last trace, in its unit.
+    tolerances : float
+        By how many of its tolerances the number is off; zero of one that has none.
+    unlikely : float
+        The measure by which causes are ranked: the smaller, the likelier.
     """
 
     of: Possible
@@ -91,6 +108,8 @@ class Cause:
     error: float
     explained: float
     rms: float
+    tolerances: float = 0.0
+    unlikely: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -105,16 +124,22 @@ class Causes:
         How many of the first cannot be distinguished apart; 0 where none explains the traces.
     rms : float
         Of the last trace beside the stated curve.
+    within : bool
+        Whether one of those is within its own tolerance, so that nothing has to be otherwise than stated.
+    curves : sequence of (ndarray, ndarray)
+        Angle and curve beside each trace with the first cause.
     """
 
     causes: tuple[Cause, ...] = ()
     alike: int = 0
     rms: float = 0.0
+    within: bool = False
+    curves: Sequence[tuple[Array, Array]] = ()
 
     @property
     def best(self) -> Cause | None:
-        """The likeliest; None where none explains the traces."""
-        return self.causes[0] if self.alike else None
+        """The likeliest; None where none explains the traces, or one that is within its tolerance does."""
+        return self.causes[0] if self.alike and not self.within else None
 
 
 def likeliest_causes(
@@ -139,20 +164,33 @@ def likeliest_causes(
         math.hypot(one.noise, _OFF * float(np.ptp(curve))) for one, (_, curve) in zip(traces, as_stated, strict=True)
     ]
     stated = _Beside(traces, as_stated, least)
-    if not any(rms >= _LARGE * float(np.ptp(curve)) for rms, (_, curve) in zip(stated.rms, as_stated, strict=True)):
+    if not any(
+        rms >= max(_LARGE * float(np.ptp(curve)), _OF_NOISE * one.noise)
+        for rms, (_, curve), one in zip(stated.rms, as_stated, traces, strict=True)
+    ):
         return Causes(rms=stated.rms[-1])
-    sought = (_cause(traces, one, curves_of, stated) for one in possible)
-    found = sorted((one for one in sought if one is not None), key=lambda one: -one[0].explained)
-    some = tuple(one for one, _ in found if one.explained > _SOME)
-    if not some:
+    found = _ranked([one for one in _sought(traces, possible, curves_of, stated) if one.explained > _SOME])
+    if not found:
         return Causes(rms=stated.rms[-1])
-    count, best = stated.count, found[0][1]
+    count, best = stated.count, (1.0 - found[0].explained) * stated.squares
     if best > _LEAVES * stated.squares or stated.squares - best < _CERTAIN * max(best / count, 1.0):
-        return Causes(some, 0, stated.rms[-1])
-    alike = [one for one, left in found if one.explained > _SOME and left <= _AS_GOOD * max(best, count)]
-    if any(within(one) for one in alike):
-        return Causes(rms=stated.rms[-1])
-    return Causes(some, len(alike), stated.rms[-1])
+        return Causes(tuple(sorted(found, key=lambda one: -one.explained)), 0, stated.rms[-1])
+    alike = [
+        one for one in found
+        if one.unlikely <= found[0].unlikely + _AS_LIKELY and 1.0 - one.explained <= _LEAVES
+    ]  # fmt: skip
+    rest = [one for one in found if one not in alike]
+    return Causes(
+        (*alike, *rest), len(alike), stated.rms[-1], any(within(one) for one in alike),
+        curves_of(alike[0].of, alike[0].value),
+    )  # fmt: skip
+
+
+def _ranked(found: list[Cause]) -> list[Cause]:
+    """The likeliest first, of filters the likeliest only."""
+    found = sorted(found, key=lambda one: one.unlikely)
+    filters = [one for one in found if one.of.kind == "filter"]
+    return [one for one in found if one not in filters[1:]]
 
 
 class _Beside:
@@ -163,6 +201,7 @@ class _Beside:
         self.least = least
         self.count = sum(trace.values.size for trace in traces)
         self.squares = sum(laid.squares / one**2 for laid, one in zip(each, least, strict=True))
+        self.scale_off = max(laid.scale_off for laid in each)
         self.rms = [math.sqrt(laid.squares / trace.values.size) for laid, trace in zip(each, traces, strict=True)]
         self._each = each
 
@@ -202,6 +241,12 @@ class _Laid:
         """At the best shift, shape (P,)."""
         return np.asarray(self._residuals(np.array([self._shift]))[0][0])
 
+    @property
+    def scale_off(self) -> float:
+        """By how many tolerances the scale differs from one."""
+        scale = float(self._residuals(np.array([self._shift]))[1][0])
+        return abs(scale - 1.0) / self._trace.tolerance if self._trace.tolerance else 0.0
+
     def _left(self, shifts: Array) -> Array:
         rest, scale = self._residuals(shifts)
         return np.asarray((rest**2).sum(axis=1) + self._known * (scale - 1.0) ** 2)
@@ -215,34 +260,91 @@ class _Laid:
         if trace.offset:
             curve, values = curve - curve.mean(axis=1, keepdims=True), values - values.mean()
         scale = (curve @ values + self._known) / ((curve**2).sum(axis=1) + self._known)
-        most = _DIFFERS * trace.tolerance
+        most = _SCALE_OFF * trace.tolerance
         scale = np.clip(scale, 1.0 - most, 1.0 + most)
         return values - scale[:, None] * curve, scale
 
 
-def _cause(traces: Sequence[Traced], of: Possible, curves_of: CurvesOf, stated: _Beside) -> tuple[Cause, float] | None:
-    """The best value of a number, and what it leaves; None where it is the stated one, or at an end."""
-    from scipy.optimize import minimize_scalar
+class _Number:
+    """A number that may be otherwise: what its values leave, the best of them sought as far as it is worth it."""
 
-    def beside(value: float) -> _Beside:
-        return _Beside(traces, curves_of(of, value), stated.least)
+    def __init__(
+        self, traces: Sequence[Traced], of: Possible, curves_of: CurvesOf, stated: _Beside
+    ) -> None:  # fmt: skip
+        if of.kind in SIZES:  # what else scales a trace is a tolerance of its own, or none
+            traces = [replace(one, tolerance=one.load_tolerance if of.kind in _PLACES else 0.0) for one in traces]
+        self._traces, self.of, self._curves_of, self._stated = traces, of, curves_of, stated
+        self._known: dict[float, _Beside] = {}
+        self.values = np.linspace(of.low, of.high, _VALUES) if of.high > of.low else np.array([of.low])
+        left = [self.beside(one).squares for one in self.values.tolist()]
+        self._k = int(np.argmin(left))
+        self.about, self.least = self._parabola(left)
 
-    values = np.linspace(of.low, of.high, _VALUES)
-    k, span = int(np.argmin([beside(one).squares for one in values])), of.high - of.low
-    ends = values[max(k - 1, 0)], values[min(k + 1, _VALUES - 1)]
-    found = minimize_scalar(
-        lambda one: beside(one).squares, bounds=ends, method="bounded", options={"xatol": _CLOSE * span}
-    )
-    value, step = float(found.x), _STEP * span
-    if (of.low != 0.0 and value - of.low < step) or of.high - value < step:
-        return None  # it goes on beyond
-    best, (below, above) = beside(value), (beside(value + side * step).squares for side in (-1.0, 1.0))
-    curved = 0.5 * (below + above - 2.0 * best.squares) / step**2
-    if curved <= 0.0:
-        return None
-    error = math.sqrt(max(best.squares / best.count, 1.0) * best.alike / curved)
-    if of.kind == "tip relief":  # deflections are in proportion to the load, and with them what a relief makes up for
-        error = math.hypot(error, value * traces[-1].load_tolerance)
-    if best.squares >= stated.squares or abs(value - of.stated) < _DIFFERS * error:
-        return None
-    return Cause(of, value, error, 1.0 - best.squares / stated.squares, best.rms[-1]), best.squares
+    def beside(self, value: float) -> _Beside:
+        """What a value leaves."""
+        if value not in self._known:
+            self._known[value] = _Beside(self._traces, self._curves_of(self.of, value), self._stated.least)
+        return self._known[value]
+
+    def _parabola(self, left: Sequence[float]) -> tuple[float, float]:
+        """About the best value, and what it may leave at least."""
+        k = self._k
+        if not 0 < k < self.values.size - 1:
+            return float(self.values[k]), min(left)
+        below, middle, above = left[k - 1 : k + 2]
+        curved, slope = below + above - 2.0 * middle, 0.5 * (above - below)
+        move = -slope / curved if curved > 0.0 else 0.0
+        return float(self.values[k] + move * (self.values[1] - self.values[0])), max(middle + 0.5 * slope * move, 0.0)
+
+    def best(self, *, close: bool) -> float:
+        """The best value, by a few more of them or by the parabola."""
+        if not close or self.values.size == 1:
+            return self.about
+        from scipy.optimize import minimize_scalar
+
+        ends = self.values[max(self._k - 1, 0)], self.values[min(self._k + 1, _VALUES - 1)]
+        close_by = {"xatol": _CLOSE * (self.of.high - self.of.low)}
+        found = minimize_scalar(lambda one: self.beside(float(one)).squares, bounds=ends, method="bounded",
+                                options=close_by)  # fmt: skip
+        return float(found.x)
+
+    def cause(self, value: float) -> Cause | None:
+        """With its error and how likely it is; None where it is the stated one, or at an end."""
+        of, stated, best = self.of, self._stated, self.beside(value)
+        if best.squares >= stated.squares:
+            return None
+        error = 0.0
+        if of.high > of.low:
+            step = _STEP * (of.high - of.low)
+            if (of.low != 0.0 and value - of.low < step) or of.high - value < step:
+                return None  # it goes on beyond
+            below, above = (self.beside(value + side * step).squares for side in (-1.0, 1.0))
+            curved = 0.5 * (below + above - 2.0 * best.squares) / step**2
+            if curved <= 0.0:
+                return None
+            error = math.sqrt(max(best.squares / best.count, 1.0) * best.alike / curved)
+            if of.kind == "tip relief":  # deflections are in proportion to the load, and what a relief makes up for
+                error = math.hypot(error, value * self._traces[-1].load_tolerance)
+            if abs(value - of.stated) < _DIFFERS * error:
+                return None
+        off = abs(value - of.stated) / of.tolerance if of.tolerance else of.unlikely
+        unlikely = best.count / _TOGETHER * math.log(max(best.squares / best.count, 1.0))
+        unlikely += 2.0 * math.log1p(off**2 + best.scale_off**2)
+        return Cause(
+            of, value, error, 1.0 - best.squares / stated.squares, best.rms[-1], off if of.tolerance else 0.0, unlikely
+        )  # fmt: skip
+
+
+def _sought(
+    traces: Sequence[Traced], possible: Sequence[Possible], curves_of: CurvesOf, stated: _Beside
+) -> list[Cause]:  # fmt: skip
+    """The best value of each number, found closely where it may be the likeliest."""
+    numbers = sorted((_Number(traces, one, curves_of, stated) for one in possible), key=lambda one: one.least)
+    found, best = [], math.inf
+    for one in numbers:
+        close = one.least <= _HOPELESS * max(best, stated.count)
+        cause = one.cause(one.best(close=close))
+        if cause is not None:
+            found.append(cause)
+            best = min(best, (1.0 - cause.explained) * stated.squares)
+    return found

@@ -37,13 +37,13 @@ _EXPLAINED, _EXPLAINED_OF_PERIOD = 2e-3, 3e-4
 #: Least correlation behind a low pass, noise included: a rounder curve fits nearly every wrong one better.
 _FITS = 0.97
 #: Kinds of filters of higher order that are looked for, and their orders.
-_HIGHER: tuple[tuple[Kind, int], ...] = (
+HIGHER: tuple[tuple[Kind, int], ...] = (
     ("Butterworth", 2), ("Butterworth", 4), ("Butterworth", 8), ("Bessel", 4), ("moving average", 1),
 )  # fmt: skip
 #: Width of a moving average over one over its limiting angular frequency (-3 dB): twice the root of sin x = x / sqrt 2.
-_WIDTH = 2.783115
+WIDTH_OF_AVERAGE = 2.783115
 #: Part of a curve over which a moving average is taken at most: a wider one leaves of any curve the same.
-_MOST_OF_CURVE = 0.4
+MOST_OF_CURVE = 0.4
 #: Times less that a filter of higher order has to leave unexplained than that of first order.
 _LESS = 2.0
 #: Time constants after which all of them have settled.
@@ -78,7 +78,7 @@ class LowPass:
     @property
     def width(self) -> float:
         """Rotation over which a moving average is taken [rad]."""
-        return _WIDTH * self.lag
+        return WIDTH_OF_AVERAGE * self.lag
 
 
 def filtered_higher(
@@ -113,7 +113,7 @@ def filtered_higher(
 def _transfer(kind: Kind, order: int, frequency: Array) -> Array:
     """Of a filter whose limiting angular frequency is one."""
     if kind == "moving average":  # of the samples before: the mean of exp(-i w t) over its width
-        half = 0.5 * _WIDTH * frequency
+        half = 0.5 * WIDTH_OF_AVERAGE * frequency
         return np.asarray(np.exp(-1j * half) * np.sinc(half / math.pi))
     from scipy.signal import bessel, butter, freqs_zpk
 
@@ -122,6 +122,14 @@ def _transfer(kind: Kind, order: int, frequency: Array) -> Array:
     )  # fmt: skip
     found: Array = freqs_zpk(*made, worN=frequency)[1]
     return found
+
+
+def delay(kind: Kind, order: int) -> float:
+    """Of what is slow, over one over the limiting angular frequency."""
+    if not kind:
+        return 1.0
+    slow = 1e-4
+    return -float(np.angle(_transfer(kind, order, np.array([slow]))[0])) / slow
 
 
 def filtered(angle: Array, curve: Array, lag: float, *, repeats: bool = False) -> tuple[Array, Array]:
@@ -196,7 +204,7 @@ def low_pass(
 
     logs = np.log(_LAGS_OF_PERIOD if repeats else _LAGS)
 
-    longest = math.log(_MOST_OF_CURVE * float(curve_angle[-1] - curve_angle[0]) / _WIDTH)
+    longest = math.log(MOST_OF_CURVE * float(curve_angle[-1] - curve_angle[0]) / WIDTH_OF_AVERAGE)
 
     def nearest(kind: Kind, order: int, most: int) -> tuple[float, float]:
         """What the best lag of a kind leaves unexplained, and its logarithm."""
@@ -212,7 +220,7 @@ def low_pass(
 
     best = laid(nearest("", 1, _MOST)[1], "", 1)
     if best is None or unexplained(best.fitted) > explained:
-        (_, log_lag), which = min((nearest(*one, _MOST_RANKED), one) for one in _HIGHER)
+        (_, log_lag), which = min((nearest(*one, _MOST_RANKED), one) for one in HIGHER)
         higher = laid(log_lag, *which)
         if higher is not None and _LESS * _left(higher.fitted) < _left(None if best is None else best.fitted):
             best = higher

@@ -38,11 +38,13 @@ class Answered:
     leads : bool
         Whether it stands before the others, whatever the order asked for: what the case is about, as odd teeth.
     overviews : tuple of Table
-        A table with a row for each of several subjects, the one to act on first; of one subject its row.
+        A table with a row for each of several subjects, in the order of the case; of one subject its row.
     fact : object
         What it adds to the common sentence of several subjects.
     common : callable, optional
         That sentence, before those of the subjects, from all their facts; empty for none.
+    across : callable, optional
+        A sentence from the facts of all results that have it, before all others; empty for none.
     """
 
     sentences: tuple[str, ...]
@@ -56,3 +58,4 @@ class Answered:
     overviews: tuple[Table, ...] = ()
     fact: Any = None
     common: Callable[[Sequence[Any]], str] | None = None
+    across: Callable[[Sequence[Any]], str] | None = None

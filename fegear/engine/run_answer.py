@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import zip_longest
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.printed import in_words, rounded, unit_said
 from fegear.base.spoken_names import spoken
@@ -20,7 +20,7 @@ from fegear.engine.answered import MOST, Answered
 from fegear.engine.declared import stacked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from fegear.engine.outcome import Outcome
     from fegear.engine.plan import Plan, Step
@@ -70,7 +70,7 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
     covered = {result for one in by_result.values() for result in one.covers}
     found = [one for result, one in by_result.items() if result not in covered]
     found.sort(key=lambda one: (one.background, not one.leads))
-    front = _within(_once([one.sentences for one in found if not one.background]))
+    front = _within([_across(steps, outcomes), *_once([one.sentences for one in found if not one.background])])
     room = 1 if front else MOST  # what describes the gears says no more than that beside an answer
     described = tuple(sentence for one in found if one.background for sentence in one.sentences[:room])
     return RunAnswer(
@@ -78,6 +78,16 @@ def answer_of_run(plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence
         tuple(dict.fromkeys(table for one in found for table in one.tables)),
         tuple(table for one in found for table in one.overviews if len(table.columns[0]) >= _OVERVIEW),
     )  # fmt: skip
+
+
+def _across(steps: Sequence[Step], outcomes: Mapping[Task, Outcome]) -> list[str]:
+    """Sentences from the facts of all results that have one in common."""
+    facts: dict[Callable[[Sequence[Any]], str], list[Any]] = {}
+    for step in steps:
+        answer = outcomes[step.task].answer
+        if answer is not None and answer.across is not None:
+            facts.setdefault(answer.across, []).append(answer.fact)
+    return [said for across, all_facts in facts.items() if (said := across(all_facts))]
 
 
 def in_order(tasks: Iterable[Task], plan: Plan, outcomes: Mapping[Task, Outcome], wanted: Sequence[str]) -> list[Task]:
@@ -164,7 +174,7 @@ def joined(answers: Sequence[Answered]) -> Answered:
         (*filter(None, [common]), *_within(rows))[:MOST], first.figure, covers=first.covers,
         background=first.background,
         tables=tuple(table for one in ordered for table in one.tables), leads=any(one.leads for one in ordered),
-        overviews=_below_each_other([table for one in ordered for table in one.overviews]),
+        overviews=_below_each_other([table for one in answers for table in one.overviews]),
     )  # fmt: skip
 
 

@@ -59,11 +59,12 @@ def test_one_gauge_that_agrees_agrees():
 def test_gauges_whose_traces_are_described_otherwise_are_not_to_be_glued_again():
     good, wrong = gauges(1.0, 1.01), replace(gauges(0.3, alike=False)[0], name="w", explained=True)
     assert of_all_gauges([*good, wrong]) == (
-        "Two of three gauges agree with the computed strain; the trace of w fits only with another description: see "
-        "below."
+        "Two of three gauges agree with the computed strain; the trace of w has a cause: see below."
     )
     said = of_all_gauges([*good, wrong, replace(wrong, name="v")])
-    assert said.endswith("; the traces of w and v fit only with other descriptions: see below.")
+    assert said.endswith("; the traces of w and v have causes: see below.")
+    said = of_all_gauges([*good, wrong, replace(wrong, name="v"), replace(wrong, name="u", explained=False)])
+    assert said.endswith("; the traces of w and v have causes; check u.")
 
 
 def test_one_gauge_that_is_off_is_named_and_the_torque_is_confirmed():

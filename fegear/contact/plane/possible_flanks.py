@@ -6,6 +6,7 @@ single tooth. Contacts and compliances stay those of the pair, so that each is a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Relief
 
-Kind = Literal["tip relief", "start", "load", "pitch", "place", "scale"]
+Kind = Literal["tip relief", "start", "load", "pitch", "place", "scale", "filter", "bridge"]
 #: Amounts that are looked at: times the stated one, and modules more.
 _TIMES, _MODULES = 2.5, 0.01
 #: Load over the stated one.
@@ -31,6 +32,9 @@ _LOADS = (0.5, 2.0)
 _SCALES = (0.2, 5.0)
 #: Pitch deviations [modules].
 _PITCH = 0.01
+#: By how much an amount is known, as a part of it and in modules; a pitch in modules; a start, as a part of the way
+#: from the pitch point to the tip.
+_AMOUNT_KNOWN, _KNOWN, _PITCH_KNOWN, _START_KNOWN = 0.2, 1e-3, 1e-3, 0.1
 #: A start is between this share of the way from the pitch point to the tip, and that.
 _START = (0.0, 0.95)
 #: Where a relief starts that is not stated, on that way, of pairs without a highest point of single contact.
@@ -43,8 +47,8 @@ class Possible:
 
     Parameters
     ----------
-    kind : {"tip relief", "start", "load", "pitch", "place", "scale"}
-        The last two, place of a gauge and scale of the trace, leave the pair as it is.
+    kind : {"tip relief", "start", "load", "pitch", "place", "scale", "filter", "bridge"}
+        The last four, place of a gauge, scale of the trace, low pass and wiring, leave the pair as it is.
     of : tuple of {"driver", "driven"}
         Gears whose flanks it is of; of a start the first one's roll angle is the number, the other's is displaced as
         much along the line of action.
@@ -58,6 +62,14 @@ class Possible:
         Whether there is no relief as stated.
     tooth : int
         Of a pitch: which one, counted in meshing order from that of the gauge.
+    tolerance : float
+        By which it may well be off; zero where nothing is known of it.
+    unlikely : float
+        Where nothing is known of it, as many tolerances as make it as likely.
+    called : str
+        Kind of a filter, or arms of a bridge.
+    order : int
+        Of a filter.
     """
 
     kind: Kind
@@ -68,23 +80,30 @@ class Possible:
     made: Callable[[float], tuple[Engagement, float]]
     added: bool = False
     tooth: int = 0
+    tolerance: float = 0.0
+    unlikely: float = 2.0
+    called: str = ""
+    order: int = 1
 
 
-def possible_flanks(e: Engagement) -> tuple[Possible, ...]:
-    """Reliefs and loads that a trace of a pair may come from."""
+def possible_flanks(e: Engagement, load_tolerance: float = 0.01) -> tuple[Possible, ...]:
+    """Reliefs and loads that a trace of a pair may come from, the load known to a relative tolerance."""
     tips: dict[Member, EndRelief | None] = {member: _tip(_relief(e, member)) for member in MEMBERS}
     found = [
-        Possible("load", (), 1.0, *_LOADS, lambda factor: (e, factor)),
-        Possible("scale", (), 1.0, *_SCALES, lambda _scale: (e, 1.0)),
+        Possible("load", (), 1.0, *_LOADS, lambda factor: (e, factor), tolerance=load_tolerance),
+        Possible("scale", (), 1.0, *_SCALES, lambda _scale: (e, 1.0), tolerance=load_tolerance),
     ]
-    more = _MODULES * e.pair.driver.module
+    more, known = _MODULES * e.pair.driver.module, _KNOWN * e.pair.driver.module
     for member, tip in tips.items():
         start = _usual(e, member) if tip is None else tip
         if start is None:
             continue
         made = partial(_with_amounts, e, {member: start})
         found.append(
-            Possible("tip relief", (member,), start.amount, 0.0, _TIMES * start.amount + more, made, tip is None)
+            Possible(
+                "tip relief", (member,), start.amount, 0.0, _TIMES * start.amount + more, made, tip is None,
+                tolerance=math.hypot(known, _AMOUNT_KNOWN * start.amount),
+            )
         )  # fmt: skip
         if tip is not None and tip.amount > 0.0:
             found.append(_starts(e, {member: tip}))
@@ -92,7 +111,9 @@ def possible_flanks(e: Engagement) -> tuple[Possible, ...]:
     if len(both) == len(MEMBERS):
         stated = both["driver"].amount
         high = _TIMES * stated + more
-        found.append(Possible("tip relief", MEMBERS, stated, 0.0, high, partial(_with_amounts, e, both)))
+        off = math.hypot(known, _AMOUNT_KNOWN * stated)
+        made = partial(_with_amounts, e, both)
+        found.append(Possible("tip relief", MEMBERS, stated, 0.0, high, made, tolerance=off))
         found.append(_starts(e, both))
     return tuple(found)
 
@@ -117,9 +138,10 @@ def possible_pitches(e: Engagement, member: Member, tooth: int) -> tuple[Possibl
         changed[(tooth + other) % teeth] += value
         return (replace(e, driver_spacing=changed) if member == "driver" else replace(e, driven_spacing=changed)), 1.0
 
-    most = _PITCH * e.pair.driver.module
+    most, known = _PITCH * e.pair.driver.module, _PITCH_KNOWN * e.pair.driver.module
     return tuple(
-        Possible("pitch", (member,), 0.0, -most, most, partial(made, other), tooth=other) for other in (0, -1, 1)
+        Possible("pitch", (member,), 0.0, -most, most, partial(made, other), tooth=other, tolerance=known)
+        for other in (0, -1, 1)
     )
 
 
@@ -178,7 +200,7 @@ def _starts(e: Engagement, tips: dict[Member, EndRelief]) -> Possible:
             changed = _with_tip(changed, member, one, replace(one, start=begins))
         return changed, 1.0
 
-    return Possible("start", tuple(tips), tip.start, low, high, made)
+    return Possible("start", tuple(tips), tip.start, low, high, made, tolerance=_START_KNOWN * (end - pitch))
 
 
 def _with_tip(e: Engagement, member: Member, tip: EndRelief, other: EndRelief) -> Engagement:

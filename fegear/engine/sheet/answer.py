@@ -42,7 +42,7 @@ class Answer:
         A table of one row, which several subjects make one table.
     fact : callable, optional
         As of `Answered`, from all that is seen.
-    common : callable, optional
+    common, across : callable, optional
         As of `Answered`.
     """
 
@@ -57,17 +57,19 @@ class Answer:
     overview: Rows | None
     fact: Callable[[Seen], Any] | None
     common: Callable[[Sequence[Any]], str] | None
+    across: Callable[[Sequence[Any]], str] | None
 
     def __init__(
         self, *said: str | _Says | Callable[[Seen], Iterable[str]], figure: Text = "", rank: Where | None = None,
         among: str = "", covers: tuple[str, ...] = (), background: bool = False, tables: tuple[str, ...] = (),
         leads: Where | None = None, overview: Rows | None = None,
         fact: Callable[[Seen], Any] | None = None, common: Callable[[Sequence[Any]], str] | None = None,
+        across: Callable[[Sequence[Any]], str] | None = None,
     ) -> None:  # fmt: skip
         for name, given in (
             ("said", said), ("figure", figure), ("rank", rank), ("among", among), ("covers", covers),
             ("background", background), ("tables", tables), ("leads", leads), ("overview", overview),
-            ("fact", fact), ("common", common),
+            ("fact", fact), ("common", common), ("across", across),
         ):  # fmt: skip
             object.__setattr__(self, name, given)
 
@@ -80,7 +82,7 @@ class Answer:
             found[:MOST], seen.said(self.figure), None if rank is None else float(rank), self.among, self.covers,
             self.background, self.tables, self.leads is not None and seen.holds(self.leads),
             () if self.overview is None else tuple(self.overview.tables(seen)),
-            None if self.fact is None else self.fact(seen), self.common,
+            None if self.fact is None else self.fact(seen), self.common, self.across,
         )  # fmt: skip
 
 

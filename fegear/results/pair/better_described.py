@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.printed import figures, percent
 from fegear.contact.trace_alternatives import Alternative
+from fegear.contact.trace_low_pass import WIDTH_OF_AVERAGE
 
 if TYPE_CHECKING:
     from fegear.contact.fitted_curve import FittedCurve
@@ -65,6 +66,36 @@ class BetterDescribed:
         )
 
 
+def low_pass_said(kind: str, order: int, lag: float, speed: float | None) -> str:
+    """A low pass by its kind and limit, a clause.
+
+    Parameters
+    ----------
+    kind : str
+        Empty for first order.
+    order : int
+    lag : float
+        Rotation within its time constant [rad].
+    speed : float or None
+        Of the shaft of the angle [rad/s].
+    """
+    cutoff = ""
+    if speed:
+        hertz = figures(speed / (2.0 * math.pi * lag), 2)
+        cutoff = f"a limiting frequency of {hertz} Hz at {figures(speed * 30.0 / math.pi)} rpm"
+    if kind == "moving average":
+        width = WIDTH_OF_AVERAGE * lag
+        passed = f"a moving average over {figures(math.degrees(width), 2)}° of rotation"
+        if not speed:
+            return passed
+        return f"{passed}, {figures(1e3 * width / speed, 2)} ms at {figures(speed * 30.0 / math.pi)} rpm"
+    if kind:
+        limit = cutoff or f"a limiting frequency of {figures(1.0 / lag, 2)} times per turn"
+        return f"a low pass of about order {order} ({kind}) with {limit}"
+    passed = f"a low pass with a time constant of {figures(math.degrees(lag), 2)}° of rotation"
+    return passed + (f", {cutoff}" if cutoff else "")
+
+
 def behind_low_pass(behind: LowPass, found: FittedCurve, size: float, speed: float | None, of: str, check: str) -> str:
     """That a trace fits behind a low pass, a clause.
 
@@ -80,22 +111,8 @@ def behind_low_pass(behind: LowPass, found: FittedCurve, size: float, speed: flo
     of, check : str
         How the size is called, and where the low pass is looked for.
     """
-    cutoff = ""
-    if speed:
-        hertz = figures(speed / (2.0 * math.pi * behind.lag), 2)
-        cutoff = f"a limiting frequency of {hertz} Hz at {figures(speed * 30.0 / math.pi)} rpm"
-    if behind.kind == "moving average":
-        passed = f"a moving average over {figures(math.degrees(behind.width), 2)}° of rotation"
-        if speed:
-            passed += f", {figures(1e3 * behind.width / speed, 2)} ms at {figures(speed * 30.0 / math.pi)} rpm"
-    elif behind.kind:
-        limit = cutoff or f"a limiting frequency of {figures(1.0 / behind.lag, 2)} times per turn"
-        passed = f"a low pass of about order {behind.order} ({behind.kind}) with {limit}"
-    else:
-        passed = f"a low pass with a time constant of {figures(math.degrees(behind.lag), 2)}° of rotation"
-        passed += f", {cutoff}" if cutoff else ""
     return (
-        f"the trace fits behind {passed}: RMS of the residual "
+        f"the trace fits behind {low_pass_said(behind.kind, behind.order, behind.lag, speed)}: RMS of the residual "
         f"{percent(behind.fitted.rms / size)} of {of} instead of {percent(found.rms / size)}, measured / computed "
         f"{behind.fitted.gain:#.3g}; check {check}"
     )

@@ -66,4 +66,4 @@ def causes_of_error(traces: Sequence[TraceBeside], teeth: LoadedTeeth, fit: Coll
         kind = cause.of.kind  # a size that nothing but the flanks explains is judged as such
         return kind == "scale" or (kind == "load" and abs(cause.value - 1.0) <= tolerance)
 
-    return likeliest_causes(traced, possible_flanks(e), curves_of, within)
+    return likeliest_causes(traced, possible_flanks(e, tolerance), curves_of, within)

@@ -14,7 +14,7 @@ from fegear.engine.citation import Citation
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
 from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
-from fegear.results.pair.causes_of_strain import causes_of_strain
+from fegear.results.pair.causes_of_strain import PlaneStrain, SeenStrain, causes_of_strain
 from fegear.results.pair.followed_gauge import gauge_in_plane, gauge_on_face
 from fegear.results.pair.gauge_data import GaugeData, GaugeInputs
 from fegear.results.pair.gauge_otherwise import Otherwise
@@ -22,11 +22,7 @@ from fegear.results.pair.gauge_sheet import GAUGE_SHEET
 from fegear.results.pair.half_bridge import HalfBridge
 from fegear.results.pair.likeliest_flank import LikeliestFlank
 from fegear.results.pair.loaded_teeth import check_teeth, kind_of, loaded_teeth, needs_teeth
-from fegear.results.pair.placed_gauge import (
-    behind_low_pass,
-    better_described,
-    compared,
-)
+from fegear.results.pair.placed_gauge import better_described, compared
 from fegear.results.pair.trace_levels import over_torque
 
 if TYPE_CHECKING:
@@ -38,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Seconds of both fillets over the path.
 _SECONDS = 0.4
+#: Part of the time after which the gauge is followed, and causes are sought.
+_FOLLOWED = 0.2
 #: Of 3D gears, for each load: both fillets of both solutions.
 _SECONDS_WIDE = 0.5
 
@@ -66,7 +64,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return (*needs_teeth(scene, gauge.pair), *kind_of(scene, gauge.pair).solutions(gauge.gear), *second)
 
 
-def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
+def _compute(asked: GaugeInputs, upstream: Upstream, work: Work) -> GaugeData:
     gauge, teeth = asked.gauge, loaded_teeth(upstream, asked.gauge.pair)
     followed = (
         gauge_on_face(gauge, upstream, neglected=asked.neglected) if asked.wide else
@@ -94,26 +92,45 @@ def _compute(asked: GaugeInputs, upstream: Upstream, _work: Work) -> GaugeData:
         Otherwise(
             better, gauge.side, pair.gear(gauge.member).teeth, torques, gauge.second,
             0.0 if bridge else _other_fillet(history, at, free=found is not None and "offset" in found.fit),
-            behind_low_pass(gauge, found, better, history.angle, strain), speed,
-            pair.mate(gauge.member).teeth, gauge.over_time,
+            None, speed, pair.mate(gauge.member).teeth, gauge.over_time,
         ),
         gauge.measured.reading if gauge.measured else "", asked.estimates, asked.sharper,
         levels, {effect: one.change for effect, one in neglected.items()},
         including(dict.fromkeys([*neglected, *of_trace]), asked.effects), _gains(gauge, found, of_trace), bridge,
         followed.more if asked.in_bridge else {},
     )  # fmt: skip
-    return replace(data, flank=_flank(asked, data, upstream))
+    work.progress(_FOLLOWED)
+    ranked, explained = _ranked(asked, data, upstream, work)
+    return replace(data, otherwise=replace(data.otherwise, ranked=ranked, explained=explained))
 
 
-def _flank(asked: GaugeInputs, data: GaugeData, upstream: Upstream) -> LikeliestFlank | None:
-    """Which relief, torque or pitch explains the trace of a plane gauge that is described as it is."""
+def _ranked(
+    asked: GaugeInputs, data: GaugeData, upstream: Upstream, work: Work
+) -> tuple[LikeliestFlank | None, FittedCurve | None]:  # fmt: skip
+    """What explains the trace of a gauge that is described as it is, and the trace over the curve with that."""
     found, gauge, otherwise = data.compared, asked.gauge, data.otherwise
-    if found is None or asked.wide or gauge.second or not asked.estimates or otherwise.better or found.gain <= 0.0:
-        return None
-    load, lever = data.loads[data.at], data.history.pair.driver.base_radius * asked.halves
-    causes = causes_of_strain(gauge, found, data.history, data.at, upstream, load, data.tolerance)
-    peak = abs(float(data.peak_strain[data.at]))
-    return LikeliestFlank(causes, data.history.pair, (load * lever,), peak, "the peak") if causes.causes else None
+    if found is None or not asked.estimates or otherwise.better or found.gain <= 0.0:
+        return None, None
+    history, at, load = data.traced, data.at, data.loads[data.at]
+    of_strain = history.angle, history.strain[:, at], history.displacement, history.displaced[:, at]
+    seen = (
+        SeenStrain(*of_strain, None if data.bridge else history.strain_opposite[:, at])
+        if asked.wide or gauge.second
+        else PlaneStrain(*of_strain, history.strain_opposite[:, at], gauge, upstream, load)
+    )
+    causes = causes_of_strain(
+        gauge, found, seen, data.tolerance, otherwise.teeth,
+        lambda part: work.progress(_FOLLOWED + (1.0 - _FOLLOWED) * part),
+    )  # fmt: skip
+    if not causes.causes:
+        return None, None
+    torque = load * history.pair.driver.base_radius * asked.halves
+    ranked = LikeliestFlank(
+        causes, history.pair, (torque,), abs(data.traced_peak), "the peak", otherwise.speed, of_gauge=True
+    )
+    if causes.best is None or ranked.of_size:
+        return ranked, None
+    return ranked, compared(gauge, *causes.curves[0], otherwise.speed)
 
 
 def _other_fillet(history: GaugeHistory, at: int, *, free: bool) -> float:

@@ -17,7 +17,6 @@ from fegear.contact.gauge_strain import GaugeHistory, StrainWith, gains_of_place
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauges_together import GaugeGain, gain_of
 from fegear.results.pair.half_bridge import HalfBridge
-from fegear.results.pair.likeliest_flank import LikeliestFlank
 from fegear.results.pair.planned_gauges import PlannedGauge
 from fegear.results.pair.trace_levels import OverTorque
 from fegear.results.pair.trace_verdict import BesideTrace, ComputedPeak, Judged, verdict
@@ -137,8 +136,6 @@ class GaugeData(BesideTrace):
         What a half bridge sees, of which the trace is, with this gauge and a second one.
     with_effects : mapping of str to StrainWith
         What the second gauge of a half bridge sees with each effect that is off.
-    flank : LikeliestFlank or None
-        Which relief, torque or pitch explains the trace.
     """
 
     loads: Sequence[float]
@@ -160,7 +157,6 @@ class GaugeData(BesideTrace):
     gains: Mapping[str, float] = field(default_factory=dict)
     bridge: HalfBridge | None = None
     with_effects: Mapping[str, StrainWith] = field(default_factory=dict)
-    flank: LikeliestFlank | None = None
 
     @property
     @shows("s", "time from the first position")
@@ -250,8 +246,8 @@ class GaugeData(BesideTrace):
 
     @property
     def linearity(self) -> Note:
-        """How measured / computed strain changes over torque; empty where no verdict is given or the shapes differ."""
-        if self.over_torque is None or not self.estimated or self.otherwise.better:
+        """How measured / computed strain changes over torque; empty without a verdict, and where it has a cause."""
+        if self.over_torque is None or not self.estimated or self.otherwise.better or self.otherwise.explained:
             return Note("")
         return self.over_torque.said
 

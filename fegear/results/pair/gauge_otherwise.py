@@ -10,6 +10,7 @@ from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.trace_alternatives import Alternative, Change, whole_pitches
 from fegear.contact.trace_low_pass import LowPass
 from fegear.results.pair.better_described import BetterDescribed, behind_low_pass, degrees, of_unit
+from fegear.results.pair.likeliest_flank import LikeliestFlank
 
 #: Ratios of measured to computed strain with a reason.
 _FACTORS = {
@@ -52,6 +53,10 @@ class Otherwise(BetterDescribed):
         Of the gear that it meshes with.
     over_time : bool
         Whether the trace has the time in place of an angle.
+    ranked : LikeliestFlank or None
+        What explains the trace, the likeliest cause first; None where it was not looked for.
+    explained : FittedCurve or None
+        The trace over the computed curve with the likeliest cause, where that is another curve.
     """
 
     side: str = ""
@@ -63,6 +68,13 @@ class Otherwise(BetterDescribed):
     speed: float | None = None
     mate_teeth: int = 1
     over_time: bool = False
+    ranked: LikeliestFlank | None = None
+    explained: FittedCurve | None = None
+
+    @property
+    def cause(self) -> str:
+        """The likeliest cause, and those as likely, with the residual, a clause; empty for none."""
+        return "" if self.ranked is None else self.ranked.agrees
 
     def of_low_pass(self, found: FittedCurve, size: float) -> str:
         """That the trace fits behind a low pass, a clause; empty for none.

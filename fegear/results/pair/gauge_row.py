@@ -28,6 +28,9 @@ class GaugeRow:
     gauge: str = shown("", "gauge")
     torque: float = shown("N.m", "torque on the driver")
     peak: float = shown("um/m", "peak strain computed", name="computed_peak")
+    change: float = shown(
+        "%", "largest change of the computed peak within placement_tolerance", name="change_by_placement"
+    )
     scale: float = shown("", "measured / computed strain by least squares")
     offset: float = shown("um/m", "fitted zero of the bridge")
     shift: float = shown("deg", "fitted zero of the angle")
@@ -37,12 +40,15 @@ class GaugeRow:
     @classmethod
     def of(cls, name: str, data: BesideTrace, torque: float, peak: float) -> GaugeRow:
         """Of a gauge with the peak that is computed for it."""
-        found = data.compared
-        if found is None:
-            return cls(name, torque, peak, *(math.nan,) * 4, "")
+        change = data.planned(name).largest or math.nan
+        if data.compared is None:
+            return cls(name, torque, peak, change, *(math.nan,) * 4, "")
+        word, found = data.judged.word or _DRAFT, data.described
+        if found is None:  # what is fitted to a curve that the trace has not is nothing
+            return cls(name, torque, peak, change, *(math.nan,) * 4, word)
         return cls(
-            name, torque, peak, found.gain, _if_fitted(found, "offset"), _if_fitted(found, "shift"),
-            found.rms if found.fits else math.nan, data.judged.word or _DRAFT,
+            name, torque, peak, change, found.gain, _if_fitted(found, "offset"), _if_fitted(found, "shift"),
+            found.rms if found.fits else math.nan, word,
         )  # fmt: skip
 
 
@@ -53,6 +59,6 @@ def _if_fitted(found: FittedCurve, quantity: Fitted) -> float:
 def gauge_rows(name: str, title: Text, rows: Callable[[Seen], list[GaugeRow]]) -> Rows:
     """A table of gauges, of which each has one row, or without a trace one for each torque."""
     return Rows(
-        name, title, ("gauge", "torque", "peak", "scale", "offset", "shift", "residual", "verdict"),
+        name, title, ("gauge", "torque", "peak", "change", "scale", "offset", "shift", "residual", "verdict"),
         of=rows,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fegear.base.notes import about
+from fegear.base.notes import Note, about
 from fegear.base.printed import figures, percent, with_rough_error
 from fegear.case.built.neglected_effects import remark
 from fegear.engine.figure.items import Mark
@@ -30,20 +30,29 @@ from fegear.results.pair.placed_gauge import (
     comparison_values,
 )
 from fegear.results.pair.planned_gauges import PlannedGauge
+from fegear.results.pair.shared_cause import of_shared_cause
 
 if TYPE_CHECKING:
     from fegear.engine.sheet.seen import Seen
     from fegear.results.pair.gauge_data import GaugePlace
+    from fegear.results.pair.likeliest_flank import LikeliestFlank
 
 #: Change of the peak by an effect that is off above which it is said beside it.
 _SAID = 0.01
 
 
-def _of_flank(seen: Seen, which: str) -> list[str]:
-    """What relief, torque or pitch explains of the trace: that with which it agrees, or what explains less."""
-    data: GaugeData = seen.data
-    said = "" if data.flank is None else getattr(data.flank, which)
+def _less(seen: Seen) -> list[str]:
+    """What explains less of the trace than the likeliest cause."""
+    ranked: LikeliestFlank | None = seen.data.otherwise.ranked
+    said = "" if ranked is None else ranked.less
     return [f"{subject(seen)}: {said}."] if said else []
+
+
+def _besides(seen: Seen) -> Note:
+    """What explains less than the cause that the verdict names, or most where none explains the trace."""
+    ranked: LikeliestFlank | None = seen.data.otherwise.ranked
+    said = "" if ranked is None else ranked.less or ranked.said
+    return about(subject(seen), Note(said)) if said else Note("")
 
 
 def _peaks(seen: Seen) -> list[str]:
@@ -159,7 +168,7 @@ GAUGE_SHEET = Sheet(
         Number("tangent_angle", exact, of="place"),
         Number("centre_angle", exact, of="place"),
         Number("z", exact, of="place", when=lambda seen: seen.asked.wide),
-        *comparison_values(),
+        *comparison_values(fit="described"),
         Number("change", of="over_torque", when=_SEVERAL),
     ),
     figures=(
@@ -220,19 +229,18 @@ GAUGE_SHEET = Sheet(
         ),
     ),
     answer=Answer(
-        lambda seen: _of_flank(seen, "agrees"),
         lambda seen: [f"{subject(seen)}: {seen.data.judged}."] if seen.data.judged else [],
-        lambda seen: _of_flank(seen, "less"),
+        _less,
         lambda seen: [f"{subject(seen)}: {seen.data.linearity}."] if seen.data.linearity else [],
         _peaks,
         lambda seen: by_placement(seen, "peak"),
         figure="gauge_{name}", rank=lambda seen: seen.data.urgency,
         overview=gauge_rows("gauges", lambda seen: title_of_all(seen, "computed"), _rows),
-        fact=_fact, common=of_all_gauges,
+        fact=_fact, common=of_all_gauges, across=of_shared_cause,
     ),
     remarks=(
-        Remark(lambda seen: about(subject(seen), seen.data.flank.said), when="flank"),
         Remark(lambda seen: about(subject(seen), seen.data.verdict), when="verdict"),
+        Remark(_besides, when=lambda seen: bool(_besides(seen))),
         Remark(lambda seen: about(subject(seen), seen.data.linearity), when="linearity"),
         Remark(_neglected, each=lambda seen: list(seen.data.neglected.items())),
         Remark(

@@ -18,6 +18,7 @@ from fegear.base.printed import figures, in_words, percent
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.gauge_teeth import TraceZero, teeth_apart
 from fegear.results.pair.planned_gauges import PlannedGauge, of_planned_gauges
+from fegear.results.pair.shared_cause import NamedCause, shared_cause
 from fegear.results.pair.trace_verdict import alike
 
 if TYPE_CHECKING:
@@ -32,6 +33,10 @@ _SEVERAL = 3
 _PAIR = 2
 #: Standard errors by which a mean that is not one is more than chance.
 _CERTAIN = 2.0
+#: Correlation of the shapes from which on a shift is that of the tooth.
+_LIKE = 0.95
+#: Kinds of causes that a common factor may be the reason of.
+_OF_SIZE = ("scale", "load", "place")
 #: Gauges that a common sentence names.
 _NAMED = 6
 
@@ -58,6 +63,8 @@ class GaugeGain:
         Whether another description, or a low pass, explains its trace.
     fits : tuple or None
         Pair, gear, tooth and side of the fillet that its trace fits, where that is the other one of its tooth.
+    cause : NamedCause or None
+        What explains its trace, by name.
     """
 
     name: str
@@ -70,6 +77,7 @@ class GaugeGain:
     zero: TraceZero | None = None
     explained: bool = False
     fits: tuple[str, str, int, str] | None = None
+    cause: NamedCause | None = None
 
     def within(self, factor: float) -> bool:
         """Whether the strain agrees with a computed one that is multiplied by a factor."""
@@ -96,14 +104,23 @@ def gain_of(gauge: Gauge, data: BesideTrace, peak: ComputedPeak) -> GaugeGain | 
     if found is None or not judged:
         return None
     limits, same = peak.limits_of(found), alike(found, data.otherwise)
-    zero = None
-    if same and gauge.measured is not None and "shift" in found.fit:
+    ranked, cause, zero = data.otherwise.ranked, None, None
+    if ranked is not None and ranked.as_likely:
+        cause = NamedCause("gauge", gauge.name, gauge.pair, ranked, gauge.tooth)
+        same = same and ranked.as_likely[0].of.kind in _OF_SIZE
+    if (
+        not data.otherwise.better
+        and found.likeness >= _LIKE
+        and found.gain > 0.0
+        and gauge.measured is not None
+        and "shift" in found.fit
+    ):
         on = gauge.pair, gauge.gear, gauge.member, gauge.measured.file
         zero = TraceZero(on, gauge.tooth, data.otherwise.teeth, found.shift)
     return GaugeGain(
         gauge.name, found.gain, limits.together(-1.0), limits.together(1.0), gauge.load_tolerance,
         judged.kind is NoteClass.INFORMATION, same, zero,
-        bool(data.otherwise.better or data.otherwise.low_pass), _other_fillet(gauge, data),
+        bool(data.otherwise.better or data.otherwise.low_pass or cause), _other_fillet(gauge, data), cause,
     )  # fmt: skip
 
 
@@ -149,25 +166,35 @@ def of_ratios(measured: Sequence[GaugeGain]) -> str:
         return _all_agree(measured)
     if 2 * len(failing) >= len(measured) and (cause := _common_cause(measured)):
         return cause
-    if len(failing) == len(measured):
-        return (
-            f"None of {in_words(len(measured))} gauges agrees with the computed strain, and no common factor explains "
-            "them: check each of them."
-        )
-    good = len(measured) - len(failing)
-    agree = f"{in_words(good).capitalize()} of {in_words(len(measured))} gauges {'agrees' if good == 1 else 'agree'}"
-    if all(one.explained for one in failing):
-        fits = "trace of {} fits only with another description" if len(failing) == 1 else (
-            "traces of {} fit only with other descriptions"
-        )  # fmt: skip
-        return f"{agree} with the computed strain; the {fits.format(_names(failing))}: see below."
+    good, explained = len(measured) - len(failing), [one for one in failing if one.explained]
+    agree = f"{in_words(good).capitalize() if good else 'None'} of {in_words(len(measured))} gauges " + (
+        "agrees" if good < 2 else "agree"
+    )
+    agree += " with the computed strain"
+    if len(explained) == len(failing):
+        shared = shared_cause([one.cause for one in failing if one.cause is not None])
+        if not good and shared is not None and len(shared.of) == len(failing):
+            return ""  # it is said of all of them, and of encoders
+        return f"{agree}{'' if good else ' as described'}; {_explained(explained)}: see below."
+    rest = [one for one in failing if not one.explained]
+    if explained:
+        return f"{agree}; {_explained(explained)}; check {_names(rest)}."
+    if not good:
+        return f"{agree}, and no common factor explains them: check each of them."
     if 2 * len(failing) < len(measured):
         its = "its" if len(failing) == 1 else "their"
         return (
-            f"{agree} with the computed strain, {_names(failing)} {'does' if len(failing) == 1 else 'do'} not: check "
+            f"{agree}, {_names(failing)} {'does' if len(failing) == 1 else 'do'} not: check "
             f"{its} bridge, bond and position before the torque, which the others confirm."
         )
-    return f"{agree} with the computed strain; no common factor explains the others: check each of them."
+    return f"{agree}; no common factor explains the others: check each of them."
+
+
+def _explained(gauges: Sequence[GaugeGain]) -> str:
+    """That the traces of gauges have a cause, or fit with another description."""
+    if len(gauges) == 1:
+        return f"the trace of {gauges[0].name} has a cause"
+    return f"the traces of {_names(gauges)} have causes"
 
 
 def _exchanged(failing: Sequence[GaugeGain]) -> str:

@@ -335,6 +335,12 @@ class TraceBeside:
         return f" (mesh frequency {figures(speed * self.found.teeth / (2.0 * math.pi))} Hz)"
 
     @property
+    def described(self) -> bool:
+        """Whether the trace is as it is described."""
+        otherwise = self.otherwise
+        return not (otherwise.mate_teeth or otherwise.counted or otherwise.better)
+
+    @property
     def differs_in_size(self) -> bool:
         """Whether shapes agree, and only the ratio does not."""
         fitted, otherwise = self.fitted, self.otherwise
@@ -373,6 +379,18 @@ class MeasuredErrorData:
     def last(self) -> TraceBeside:
         """Of the largest load."""
         return self.traces[-1]
+
+    @property
+    def judged(self) -> Note:
+        """The verdict at the largest load; empty where a cause of all traces is named."""
+        return Note("") if self.flank.agrees else self.last.judged
+
+    @property
+    def described(self) -> FittedCurve | None:
+        """The fit at the largest load; None where the trace has another curve: its numbers are those of no fit."""
+        last = self.last
+        fails = self.flank.agrees or not last.described or last.fitted.gain <= 0.0 or last.fitted.likeness < _ALIKE
+        return None if fails else last.fitted
 
     @property
     def readings(self) -> list[tuple[str, str]]:

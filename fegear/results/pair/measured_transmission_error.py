@@ -30,6 +30,7 @@ from fegear.results.pair.likeliest_flank import LikeliestFlank
 from fegear.results.pair.loaded_teeth import loaded_teeth, needs_teeth
 from fegear.results.pair.measured_error_data import MeasuredErrorData, TraceBeside
 from fegear.results.pair.placed_gauge import TIMES, comparison_values
+from fegear.results.pair.shared_cause import NamedCause, of_shared_cause
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -141,6 +142,12 @@ def _runouts(seen: Seen) -> list[str]:
     return [f"Encoders {seen.name}: {said}."] if said else []
 
 
+def _cause(seen: Seen) -> NamedCause | None:
+    """What explains the traces, to be said with gauges; None for none."""
+    flank: LikeliestFlank = seen.data.flank
+    return NamedCause("encoders", seen.name, seen.asked.pair, flank) if flank.as_likely else None
+
+
 _TORQUE = Cell("torque")
 _SHEET = Sheet(
     tables=(
@@ -179,7 +186,7 @@ _SHEET = Sheet(
         Number("largest_order", exact, of="last", name="largest_other_order"),
         Number("largest_amplitude", of="last", name="largest_other_amplitude"),
         *(Number(one, of="last") for one in ("runout", "runout_angle", "mate_runout", "mate_runout_angle")),
-        *comparison_values(at="last.fitted"),
+        *comparison_values(at="last.fitted", fit="described"),
     ),
     figures=(
         Chart(
@@ -240,7 +247,7 @@ _SHEET = Sheet(
     ),
     answer=Answer(
         lambda seen: [f"Encoders {seen.name}: {seen.data.flank.agrees}."] if seen.data.flank.agrees else [],
-        lambda seen: [f"Encoders {seen.name}: {seen.data.last.judged}."] if seen.data.last.judged else [],
+        lambda seen: [f"Encoders {seen.name}: {seen.data.judged}."] if seen.data.judged else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.flank.less}."] if seen.data.flank.less else [],
         lambda seen: [f"Encoders {seen.name}: {seen.data.common_cause}."] if seen.data.common_cause else [],
         "Encoders {name} at {d.last.torque:.4g}, peak-to-peak values: measured {v[measured_peak_to_peak]} (includes "
@@ -250,13 +257,13 @@ _SHEET = Sheet(
             "Encoders {name}: largest order besides the mesh harmonics: {v[largest_other_order]}, amplitude "
             "{v[largest_other_amplitude]}."
         )],
-        figure="measured_te_{name}", rank=lambda seen: seen.data.urgency,
+        figure="measured_te_{name}", rank=lambda seen: seen.data.urgency, fact=_cause, across=of_shared_cause,
     ),
     remarks=(
         Remark(lambda seen: about(f"Encoders {seen.name}", seen.data.flank.said), when="flank.said"),
         Remark(
             lambda seen: about(f"Encoders {seen.name}, {seen.one.torque:.5g} N m", seen.one.verdict), each="traces",
-            when=lambda seen: bool(seen.one.verdict),
+            when=lambda seen: bool(seen.one.verdict) and not seen.data.flank.agrees,
         ),
         Remark(lambda seen: failing(f"Encoders {seen.name}: {seen.data.common_cause}."), when="common_cause"),
         Remark(

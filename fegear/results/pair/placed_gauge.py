@@ -244,8 +244,16 @@ def behind_low_pass(
     return low_pass(found, gauge.measured.angle, gauge.measured.strain, angle, strain, gauge.measured.fit)
 
 
-def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | Each, ...]:
-    """Values of a comparison, which stands there; their names begin with the prefix."""
+def comparison_values(prefix: str = "", at: str = "compared", fit: str = "") -> tuple[Number | Each, ...]:
+    """Values of a comparison, which stands there; their names begin with the prefix.
+
+    Parameters
+    ----------
+    prefix, at : str
+    fit : str
+        Where the comparison is whose fitted numbers say something. Default: the same.
+    """
+    fit = fit or at
     names = {
         "offset": "measured_offset", "scale": "measured_scale", "shift": "measured_shift", "gain": "measured_gain",
         "drift": "measured_drift", "rms": "residual_rms", "correlation": "correlation", "samples": "measured_samples",
@@ -258,7 +266,7 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
 
     def fitted(quantity: Fitted) -> Each:
         return Each(
-            lambda seen: [seen.find(at)],
+            lambda seen: [seen.find(fit)],
             Number(quantity, name=name(quantity)), Number(f"{quantity}_error", name=name(f"{quantity}_error")),
             when=lambda seen: seen.one is not None and quantity in seen.one.fit,
         )  # fmt: skip
@@ -272,13 +280,18 @@ def comparison_values(prefix: str = "", at: str = "compared") -> tuple[Number | 
     others = ("gain", "gain_error")
     return (
         *map(fitted, FITTED),
-        *(Number(one, of=at, name=name(one)) for one in others),
+        *(Number(one, of=fit, name=name(one), when=lambda seen: seen.find(fit) is not None) for one in others),
         # over a fitted scale near zero a residual is without limit
-        Number("rms", of=at, name=name("rms"), when=lambda seen: getattr(seen.find(at), "fits", False)),
-        Number("correlation", of=at, name=name("correlation")),
+        Number(
+            "rms",
+            name=name("rms"),
+            of=lambda seen: seen.find(fit) or seen.find(at),
+            when=lambda seen: getattr(seen.find(fit) or seen.find(at), "fits", False),
+        ),
+        Number("correlation", of=lambda seen: seen.find(fit) or seen.find(at), name=name("correlation")),
         Number("samples", exact, of=at, name=name("samples")),
         *(
-            Number(one, of=at, name=prefix + declared, when=_has_runout(at))
+            Number(one, of=fit, name=prefix + declared, when=_has_runout(fit))
             for one, declared in (
                 ("runout", "measured_runout"),
                 ("runout_error", "measured_runout_standard_error"),

@@ -14,8 +14,10 @@ from fegear.base.notes import Note, NoteClass, class_of
 from fegear.base.printed import figures, percent
 from fegear.contact.fitted_curve import FittedCurve
 from fegear.contact.gauge_strain import reach_of_places
+from fegear.contact.trace_causes import SIZES
 from fegear.results.pair.gauge_otherwise import Otherwise
 from fegear.results.pair.likely_cause import likely_causes, place_of_gain
+from fegear.results.pair.planned_gauges import PlannedGauge
 from fegear.results.pair.trace_named import (
     drawn_as,
     drift_named,
@@ -217,7 +219,19 @@ class BesideTrace:
     @property
     def _as_described(self) -> FittedCurve | None:
         """The comparison, unless its angle or curve is a wrong one: what it has besides would be no advice."""
-        return None if self.otherwise.better else self.compared
+        return None if self.otherwise.better else self.fitted
+
+    @property
+    def fitted(self) -> FittedCurve | None:
+        """The comparison, or where another curve explains the trace, that with it."""
+        return self.otherwise.explained or self.compared
+
+    @property
+    def described(self) -> FittedCurve | None:
+        """The same, None where nothing explains the trace: its offset, scale and shift are those of no fit."""
+        found = self.fitted
+        fails = found is None or self.otherwise.better or found.gain <= 0.0 or found.likeness < _ALIKE
+        return None if fails else found
 
     @property
     def without(self) -> str:
@@ -228,6 +242,10 @@ class BesideTrace:
     def drawn_as(self) -> str:
         """How the figure draws the trace; empty where it is drawn as measured."""
         return drawn_as(self.compared)
+
+    def planned(self, name: str) -> PlannedGauge:
+        """What the gauge of this name comes to as long as it has no trace."""
+        raise NotImplementedError
 
     def _verdict(self, *, brief: bool) -> Judged:
         """Without a trace, and in drafts, empty."""
@@ -285,6 +303,8 @@ def verdict(
             f"measured strain is {by} the computed one; this cannot be judged: measured / computed strain is "
             f"{found.turn_gains.min():.2f} to {found.turn_gains.max():.2f} from turn to turn ({limit})"
         )
+    elif (cause := _cause(found, otherwise, together)) and not either:
+        judged, word = _caused(cause, otherwise, by, limit)
     elif found.likeness < _ALIKE:  # a gain of another shape proves nothing
         word = f"differs in shape: correlation {found.likeness:.3f}"
         or_fit = "" if "shift" in found.fit else ", or fit shift"
@@ -315,21 +335,26 @@ def verdict(
                 leads=not otherwise.second,
             )
         )  # fmt: skip
-    if brief:  # what is said without its notes has to name what falsifies it
-        drift = found.unfitted_drift
-        judged += f"; {saturated}" if (saturated := saturation(found)) else ""
-        word += _saturated_at(found)
-        drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
-        drifts = f"; its zero {jumps}" if (jumps := jump_of(found)) else drifts
-        steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
-        if hum_named(found) and found.hum is not None:
-            judged += f"; mains hum of ±{figures(found.hum.amplitude * 1e6)} µm/m at {figures(found.hum.frequency)} Hz"
-            word += ", mains hum"
-        return Judged(judged + drifts + steps, kind, word=word)
+    if brief:
+        return _briefly(found, judged, kind, word, unsteady=bool(unsteady))
     if not found.fits:
         return Judged(judged, kind, word=word)
     residual = f"RMS of the residual {percent(found.rms / size)} of the peak, noise {percent(found.noise / size)}"
     return Judged(f"{judged}; {residual}", kind, word=word)
+
+
+def _briefly(found: FittedCurve, judged: str, kind: NoteClass, word: str, *, unsteady: bool) -> Judged:
+    """What is said without its notes has to name what falsifies it."""
+    drift = found.unfitted_drift
+    judged += f"; {saturated}" if (saturated := saturation(found)) else ""
+    word += _saturated_at(found)
+    drifts = "" if drift is None else f"; the trace drifts by {figures(drift * 1e6)} µm/m per turn, not corrected"
+    drifts = f"; its zero {jumps}" if (jumps := jump_of(found)) else drifts
+    steps = "; torque or gauge were not steady from turn to turn" if unsteady else ""
+    if hum_named(found) and found.hum is not None:
+        judged += f"; mains hum of ±{figures(found.hum.amplitude * 1e6)} µm/m at {figures(found.hum.frequency)} Hz"
+        word += ", mains hum"
+    return Judged(judged + drifts + steps, kind, word=word)
 
 
 def _in_place_of_verdict(
@@ -347,6 +372,28 @@ def _in_place_of_verdict(
             NoteClass.FAILS, word="opposite sign",
         )  # fmt: skip
     return None
+
+
+def _cause(found: FittedCurve, otherwise: Otherwise, limit: float) -> str:
+    """The likeliest cause; empty for none, and where the ratio has a reason by itself."""
+    ranked = otherwise.ranked
+    if ranked is None or (ranked.of_size and otherwise.of_ratio(found.gain, limit)):
+        return ""
+    return otherwise.cause
+
+
+def _caused(cause: str, otherwise: Otherwise, by: str, limit: str) -> tuple[str, str]:
+    """The verdict by the likeliest cause, and in a few words."""
+    ranked = otherwise.ranked
+    if ranked is None:
+        return cause, ""
+    if ranked.as_likely[0].of.kind in SIZES:
+        said = cause.removeprefix("the trace agrees with ")
+        return (
+            f"measured strain does not agree with the computed one: {by} it ({limit}); likeliest cause: {said}",
+            ranked.word,
+        )  # fmt: skip
+    return f"{cause}; as described measured strain is {by} the computed one ({limit})", ranked.word
 
 
 def _of_shape(found: FittedCurve, size: float) -> str:
