@@ -11,7 +11,7 @@ from numpy.polynomial.chebyshev import chebval2d
 
 from fegear.atlas import build
 from fegear.atlas.build import Budget, _Region
-from fegear.atlas.tables import _LOADS, _NEIGHBOUR, _OWN, _POINTS, Layout
+from fegear.atlas.tables import _LOADS, _NEIGHBOUR, _OWN, _POINTS, Layout, shares_of_fillet, shares_of_flank
 
 LAYOUT = Layout(1)
 
@@ -173,3 +173,11 @@ def test_a_region_whose_products_are_all_taken_or_that_another_atlas_has_is_left
     whole = quantity(lambda count: 1.0, whole=True)
     whole.grow(Budget(0.01), "progress")
     assert whole.solved == []
+
+
+def test_places_crowd_to_both_ends_of_a_fillet_and_to_the_start_of_a_flank():
+    found = shares_of_fillet()
+    np.testing.assert_allclose(np.sort(np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)), 2.0 * found - 1.0)
+    flank = shares_of_flank()
+    assert (flank.size, flank[0], flank[-1]) == (_LOADS, 0.0, 1.0)
+    np.testing.assert_allclose(np.diff(np.log(flank[1:])) / np.diff(np.log(np.arange(1.0, _LOADS))), 1.7)

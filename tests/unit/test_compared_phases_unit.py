@@ -17,8 +17,8 @@ SEEN = np.array([[0.1, 0.4, 0.7], [0.2, 0.8, 0.1]])
 @pytest.mark.parametrize(
     ("sun", "ring", "delay", "holds"),
     [
-        (0.0, 0.0, 0.0, True), (0.9e-10, 0.9e-5, 0.9e-5, True), (1.1e-10, 0.0, 0.0, False), (0.0, 1.1e-5, 0.0, False),
-        (0.0, 0.0, 1.1e-5, False),
+        (0.0, 0.0, 0.0, True), (0.95e-10, 0.95e-5, 0.95e-5, True), (1.05e-10, 0.0, 0.0, False),
+        (0.0, 1.05e-5, 0.0, False), (0.0, 0.0, 1.05e-5, False),
     ],
 )  # fmt: skip
 def test_each_phase_is_compared_with_its_polygons(monkeypatch, sun, ring, delay, holds):

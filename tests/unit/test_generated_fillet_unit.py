@@ -29,7 +29,7 @@ def met(tooth):
 
 
 @pytest.mark.parametrize("slight", [1e-3, 1e-2, 3e-2])
-@pytest.mark.parametrize("helix", [10.0, 25.0])
+@pytest.mark.parametrize("helix", [0.0, 10.0, 25.0])
 def test_the_trochoid_ends_on_the_involute(slight, helix):
     line, fillet, roll = met(undercut(slight, helix=helix))
     assert line.tangent_roll(RACK) == pytest.approx(-slight, rel=1e-9)

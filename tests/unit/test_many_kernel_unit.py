@@ -95,3 +95,18 @@ def test_a_pair_that_gapes_beyond_what_the_load_closes_carries_nothing():
     assert (nearest, good) == (0.0, True)
     assert z * load == pytest.approx(0.5 * (1e-6 + 0.9e-6))
     assert v == pytest.approx([0.95, 0.05, 0.0], abs=1e-12)
+
+
+def test_a_pair_that_others_push_away_stays_apart():
+    """Two alike, the third 0.4 um farther: alone they come 0.5 um nearer, and push the third as far as coupled."""
+    load, state = 1000.0, states(3)
+    state[:, DIAGONAL], state[:, GAP] = 1e-9, (0.0, 0.0, 0.4e-6)
+    for coupled, bears in ((0.0, True), (0.09e-9, True), (0.11e-9, False)):
+        c, v = np.zeros((3, 3)), np.zeros(3)
+        c[2, :2] = c[:2, 2] = coupled  # the third closes where 0.5 um less what it is pushed exceed its gap
+        z, _, good = kernel.share(0.0, load, 3, state, c, v, np.zeros((MOST, MOST + 2)))
+        assert good
+        assert bool(v[2] > 1e-12) is bears
+        apart = 1e-9 * v + c @ v + state[:, GAP] / load - z
+        np.testing.assert_allclose(apart[:2], 0.0, atol=1e-15)
+        assert (abs(apart[2]) < 1e-15) if bears else apart[2] > 0.0

@@ -107,3 +107,18 @@ def test_rounded_numbers_are_those_of_the_best_shape_at_the_design_load(given):
     assert made.rounded == (5e-6 if given else None)
     assert made.for_range is given
     assert not ReliefShown(Space(design=Space(task=Space(over=None), ground={"linear": 1})), None).for_range
+
+
+def test_flanks_and_what_is_left_over_a_range_are_of_this_design_and_pair(monkeypatch):
+    design = Space(ground={"linear": Space(driver=Space(removal=lambda roll: 2.0 * roll))})
+    data = Space(design=design, pair=Space(pair="pair", shifted="shifted"))
+    made = ReliefShown(data, Space(labels={"driver": "label"}, gears={"driver": "gear"}))
+    monkeypatch.setattr(relief_shown, "left_over_range", lambda *given: given)
+    assert made.over_range == (design, "pair", "shifted")
+    monkeypatch.setattr(relief_shown, "roll_marks", lambda *given: given)
+    monkeypatch.setattr(relief_shown, "replace", lambda table, relief: (table, relief.tolist()))
+    table = Space(roll_angle=np.array([1.0, 3.0]))
+    one = made._flank("driver", table, "diagonal", "error")
+    assert (one.label, one.gear, one.member, one.table) == ("label", "gear", "driver", table)
+    assert (one.diagonal, one.error, one.marks) == ("diagonal", "error", ("pair", "driver"))
+    assert one.ground == {"linear tip relief": (table, [2.0, 6.0])}

@@ -33,7 +33,7 @@ class Tips:
     def gaps(self, tips):
         a, la, b, lb = np.asarray(tips).T[:, :, None, None]
         x = self.positions[:, None]
-        return a * np.abs(x - 1e3 * la) + b * (x - 1e3 * lb) ** 2 + 0.0 * np.zeros((1, 1, 2))
+        return (a * np.abs(x - 1e3 * la) ** 1.5 + b * (x - 1e3 * lb) ** 2) + 0.0 * np.zeros((1, 1, 2))
 
     def cases(self):
         for load in (1.0, 2.0):
