@@ -12,7 +12,6 @@ from fegear.base.errors import InputError
 from fegear.base.notes import NoteClass, class_of, exceeding, neglecting, ordered
 from fegear.case.built.bearing_room import seats_of
 from fegear.case.built.pair_checks import check_wide_pair
-from fegear.case.built.pair_surface import pair_speed
 from fegear.case.built.shafts import mesh_places
 from fegear.contact.wide.on_shafts import FlankForces
 from fegear.design.flanks.lead_correction import level_lead
@@ -52,6 +51,7 @@ from fegear.results.shafts.loaded_shafts import (
 from fegear.results.shafts.other_direction import other_direction, shares_of_life
 from fegear.results.shafts.rated_lead import SafetyOfLead, present_lead, rated_lead, rated_with
 from fegear.results.shafts.shaft_deflection import overlooked
+from fegear.results.shafts.shaft_speeds import against, speeds_of_shafts
 from fegear.shafts.designations import designation_of
 from fegear.shafts.gearbox import CAUSES
 
@@ -160,8 +160,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
     shafts = scene.case.shaft
     names = tuple(tuple(place.bearing for place in one.bearings) for one in shafts.values())
     lives = tuple(tuple(part[one].rating for one in row) for row in names)
-    spins = _speeds(scene)
-    speeds = tuple(tuple(_against(spins, name, place.around) for place in one.bearings) for name, one in shafts.items())
+    spins = speeds_of_shafts(scene)
+    speeds = tuple(tuple(against(spins, name, place.around) for place in one.bearings) for name, one in shafts.items())
     required = max((life for pair in meshes if (life := scene.case.pair[pair].operation.life)), default=math.nan)
     plane = [pair for pair in meshes if not _is_wide(scene, pair)]
     why = [f"pair {pair} is not rated: {reason}" for pair, reason in reasons.items() if reason]
@@ -188,29 +188,6 @@ def _designation(part: BearingPart) -> str:
     if (printed := part.printed) is None:
         return ""
     return designation_of(printed.kind, printed.bore, printed.outside_diameter, printed.width, printed.given_angle)
-
-
-def _speeds(scene: Scene) -> dict[str, float]:
-    """Speeds of the shafts, positive about z, from those of the pairs [rad/s]; NaN where unknown."""
-    found = dict.fromkeys(scene.case.shaft, math.nan)
-    meshes = mesh_places(scene)
-    for mesh in meshes:
-        speed = pair_speed(scene, mesh.pair)
-        if speed > 0.0 and math.isnan(found[mesh.shafts[0]]):
-            found[mesh.shafts[0]] = mesh.sense * speed
-            for _ in meshes:
-                for one in meshes:
-                    ratio = -one.found.side * abs(one.found.driver.teeth / one.found.driven.teeth)
-                    first, second = one.shafts
-                    if math.isnan(found[second]):
-                        found[second] = found[first] * ratio
-                    elif math.isnan(found[first]):
-                        found[first] = found[second] / ratio
-    return found
-
-
-def _against(spins: dict[str, float], shaft: str, around: str | None) -> float:
-    return abs(spins[shaft] - (spins[around] if around else 0.0))
 
 
 def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxData:
