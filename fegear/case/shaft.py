@@ -31,6 +31,7 @@ from fegear.shafts.permissible_tilt import PermissibleTilt, tilt_of_kind
 from fegear.shafts.printed_bearing import Kind, PrintedBearing
 from fegear.shafts.section import Section
 from fegear.shafts.shaft_strength import ShaftStrength
+from fegear.shafts.static_safety import StaticRating
 
 if TYPE_CHECKING:
     from fegear.shafts.beam import Shaft
@@ -343,6 +344,19 @@ class BearingPart(Part):
             rows = printed.inside.rows if printed else 1
             axial = AxialFactors(known.kind == "ball", abs(known.contact_angle), known.count * size**2, self.ribs, rows)
         return LifeRating(rated, kind, **factors, axial=axial)
+
+    @property
+    def static(self) -> StaticRating | None:
+        """What its static safety follows from: C_0 of `catalogue`, otherwise of what rolls; None without either."""
+        from fegear.shafts.load_ratings import static_rating
+        from fegear.shafts.rolling_bearing import RollingBearing
+
+        inside = self.build()
+        if not isinstance(inside, RollingBearing):
+            return None
+        printed = self.printed
+        rated = (printed.static_rating if printed else None) or static_rating(inside)
+        return StaticRating(rated, inside.kind == "ball", abs(inside.contact_angle), inside.rows)
 
     @property
     def catalogue_rating(self) -> float | None:

@@ -19,7 +19,7 @@ from fegear.results.pair import mesh_stiffness_revolution
 from fegear.results.planetary.compound_set import _answer
 from fegear.results.relief.relief_over_face_sheet import _figure, _grind
 from fegear.results.relief.tolerance_data import Sampled
-from fegear.results.shafts import gearbox_overview
+from fegear.results.shafts import shaft_speeds
 from fegear.results.shafts.at_glance import BearingAtGlance
 from fegear.results.shafts.gearbox_changes import _advised, _changed_to
 from fegear.results.sizing import estimated
@@ -72,10 +72,10 @@ def test_shafts_turn_as_one_pair_s_speed_says_before_it_and_behind_it(monkeypatc
 
     meshes = (mesh(0, 20, 40, 1), mesh(1, 18, 36, 1), mesh(2, 20, 50, -1))
     spins = [100.0, 50.0, 25.0]
-    monkeypatch.setattr(gearbox_overview, "mesh_places", lambda _scene: meshes)
-    monkeypatch.setattr(gearbox_overview, "pair_speed", lambda _scene, pair: spins[known] * (pair == f"p{known}"))
+    monkeypatch.setattr(shaft_speeds, "mesh_places", lambda _scene: meshes)
+    monkeypatch.setattr(shaft_speeds, "pair_speed", lambda _scene, pair: spins[known] * (pair == f"p{known}"))
     scene = SimpleNamespace(case=SimpleNamespace(shaft=dict.fromkeys(["s0", "s1", "s2", "s3", "alone"])))
-    found = gearbox_overview._speeds(scene)
+    found = shaft_speeds.speeds_of_shafts(scene)
     assert [found[f"s{k}"] for k in range(4)] == pytest.approx([sense * one for one in (100.0, -50.0, 25.0, 10.0)])
     assert math.isnan(found["alone"])
 

@@ -16,6 +16,7 @@ from fegear.results.shafts.checked_shafts import ShaftChecks, TiltedBearing, til
 from fegear.shafts.bearing_seat import BearingSeat
 from fegear.shafts.larger_bearing import BearingChange, larger_bearing
 from fegear.shafts.life import EXPONENT, LifeRating
+from fegear.shafts.static_safety import StaticRating
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,8 @@ class BearingAtGlance:
     other: float = shown("h", "basic rating life L_10h in the other direction of rotation (coast flanks loaded)",
                          name="life_hours_reverse", default=math.nan)  # fmt: skip
     seat: BearingSeat = field(default_factory=BearingSeat)
+    static: float = shown("", "static safety factor C_0/P_0 under this load, ISO 76 (C_0 of `catalogue`, otherwise "
+                          "estimated from the dimensions, within some 20 %)", name="s_0", default=math.nan)  # fmt: skip
 
     @property
     def least(self) -> float:
@@ -158,6 +161,7 @@ def bearings_at_glance(
     required: float,
     seats: Sequence[Sequence[BearingSeat]],
     others: Sequence[Sequence[float]] | None = None,
+    statics: Sequence[Sequence[StaticRating | None]] | None = None,
 ) -> tuple[BearingAtGlance, ...]:
     """Every bearing, the least load margin first, then the shortest life.
 
@@ -172,13 +176,17 @@ def bearings_at_glance(
     seats : sequence of sequence of BearingSeat
     others : sequence of sequence of float, optional
         Life in the other direction of rotation over that in this one.
+    statics : sequence of sequence of StaticRating or None, optional
+        What the static safety of every bearing follows from.
     """
     found = []
+    if statics is None:
+        statics = [[None] * len(row) for row in lives]
     if others is None:
         others = [[math.nan] * len(row) for row in lives]
     tilts = tilted_bearings(checks, data.nominal.bent)
-    every = zip(data.nominal.bent, lives, speeds, designations, tilts, seats, others, strict=True)
-    for bent, of_lives, of_speeds, of_designations, of_tilts, of_seats, of_others in every:
+    every = zip(data.nominal.bent, lives, speeds, designations, tilts, seats, others, statics, strict=True)
+    for bent, of_lives, of_speeds, of_designations, of_tilts, of_seats, of_others, of_statics in every:
         loads = bent.bearing_loads(tuple(of_lives))
         for k, tilted in enumerate(of_tilts):
             rating = of_lives[k]
@@ -187,10 +195,11 @@ def bearings_at_glance(
             margin = (duration / required) ** (1.0 / exponent)
             radial, axial = float(loads.force_radial[k]), abs(float(loads.force_axial[k]))
             permissible = math.nan if tilted.permissible is None else tilted.permissible.high
+            static = of_statics[k]
             found.append(BearingAtGlance(
                 tilted.bearing, tilted.shaft, radial, axial, float(loads.life[k]), duration, margin, exponent,
                 tilted.tilt, permissible, tilted, of_designations[k], other=duration * of_others[k],
-                seat=of_seats[k],
+                seat=of_seats[k], static=math.nan if static is None else static.safety(radial, axial),
             ))  # fmt: skip
     ordered = sorted(found, key=lambda one: (one.least, last_of(one.margin), last_of(one.duration), last_of(one.life)))
     first = next((one for one in ordered if math.isfinite(one.margin)), None)

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from fegear.shafts.bearing_seat import BearingSeat
     from fegear.shafts.gearbox import MeshState
     from fegear.shafts.life import LifeRating
+    from fegear.shafts.static_safety import StaticRating
 
 
 #: A cause with less of the sum of all is none: seats that are rigid leave round-off.
@@ -105,6 +106,7 @@ class GearboxInputs:
         Of every bearing by shafts.
     why : tuple of str
         Why something is missing.
+    statics : tuple of tuple of StaticRating or None
     other : OtherDirection or None
         With the other direction of rotation.
     """
@@ -123,6 +125,7 @@ class GearboxInputs:
     required: float
     seats: tuple[tuple[BearingSeat, ...], ...]
     why: tuple[str, ...]
+    statics: tuple[tuple[StaticRating | None, ...], ...] | None = None
     other: OtherDirection | None = None
 
 
@@ -177,7 +180,8 @@ def _inputs(scene: Scene, name: str) -> GearboxInputs:
         tuple(present_lead(scene, pair) for pair in meshes),
         tuple(_is_wide(scene, pair) for pair in meshes), tuple(_has_error(scene, pair) for pair in meshes),
         lives, speeds, tuple(tuple(_designation(part[one]) for one in row) for row in names), checks_of(scene),
-        required, seats_of(scene), tuple(why), other_direction(scene),
+        required, seats_of(scene), tuple(why),
+        tuple(tuple(part[one].static for one in row) for row in names), other_direction(scene),
     )  # fmt: skip
 
 
@@ -207,6 +211,7 @@ def _compute(inputs: GearboxInputs, upstream: Upstream, work: Work) -> GearboxDa
         inputs.required,
         inputs.seats,
         shares_of_life(inputs.shafts.gearbox, inputs.other, inputs.lives),
+        inputs.statics,
     )
     checked = checked_shafts(inputs.checks, shafts.nominal.bent)
     return GearboxData(
@@ -386,7 +391,10 @@ _SHEET = Sheet(
             "gearbox_bearings", "Bearings of the gearbox, the weakest first",
             (
                 "bearing", "shaft", "radial", "axial",
-                *(_known(key, "bearings") for key in ("life", "duration", "other", "margin", "tilt", "permissible")),
+                *(
+                    _known(key, "bearings")
+                    for key in ("life", "duration", "other", "margin", "static", "tilt", "permissible")
+                ),
                 Cell("larger", lambda seen: _changes_to(seen.data.bearings)),
             ),
             of="bearings", when="bearings",
