@@ -7,7 +7,8 @@ from types import SimpleNamespace as Space
 import numpy as np
 import pytest
 
-from fegear.fem.plane.estimate import _SAMPLES, Estimate
+from fegear.fem.plane.flank_samples import SAMPLES
+from fegear.fem.plane.stress_estimate import StressEstimate
 
 RADIUS, WIDTH = np.array([10.0, 10.4, 11.2]), np.full(3, 0.03)
 VALUE, PLACE = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3])
@@ -18,13 +19,11 @@ DIFFERENCE, SCATTER, BESIDE = np.array([0.1, 0.5, 0.2]), np.array([0.01, 0.02, 0
 @pytest.mark.parametrize(("k", "scatters", "climbs"), [(0, True, True), (1, True, False), (-1, False, False)])
 def test_the_loaded_tooth_errs_less_up_its_flank_and_a_tooth_behind_does_not_scatter(side, k, scatters, climbs):
     asked = []
-    known = Estimate(Space(tooth=Space(internal=False)), None, 0.1, 0.2)
-    samples = np.linspace(10.0, 12.0, _SAMPLES)
+    known = StressEstimate(Space(tooth=Space(internal=False)), None, np.linspace(10.0, 12.0, SAMPLES))
 
     def put(name, one):
         known.__dict__[name] = one
 
-    put("_samples", samples)
     put("_stress_at_samples", lambda number: asked.append(number))
 
     def stress_of(*given):
@@ -50,7 +49,6 @@ def test_the_loaded_tooth_errs_less_up_its_flank_and_a_tooth_behind_does_not_sca
 
 @pytest.mark.parametrize("internal", [False, True])
 def test_a_contact_is_as_far_up_as_from_the_start_of_the_flank_to_its_end(internal):
-    known = Estimate(Space(tooth=Space(internal=internal)), None, 0.1, 0.2)
-    known.__dict__["_samples"] = np.linspace(10.0, 12.0, _SAMPLES)
+    known = StressEstimate(Space(tooth=Space(internal=internal)), None, np.linspace(10.0, 12.0, SAMPLES))
     up = np.array([0.0, 0.0, 0.25, 1.0, 1.0])
     np.testing.assert_allclose(known._up(np.array([9.0, 10.0, 10.5, 12.0, 13.0])), 1.0 - up if internal else up)
