@@ -20,11 +20,13 @@ def gauge(**given):
     return Space(**usual | given)
 
 
-def beside(*, found=True, judged=None, better=None, low_pass=None, shift=0.25):
+def beside(*, found=True, judged=None, better=None, low_pass=None, shift=0.25, likeness=0.95, gain=1.07, kinds=None):
     fit = {"shift": shift} if shift is not None else {}
-    compared = Space(gain=1.07, fit=fit, shift=shift) if found else None
+    compared = Space(gain=gain, fit=fit, shift=shift, likeness=likeness) if found else None
     told = Judged("said", NoteClass.INFORMATION) if judged is None else judged
-    return Space(compared=compared, judged=told, otherwise=Space(better=better, low_pass=low_pass, teeth=25))
+    ranked = None if kinds is None else Space(as_likely=[Space(of=Space(kind=kind)) for kind in kinds])
+    otherwise = Space(better=better, low_pass=low_pass, teeth=25, ranked=ranked)
+    return Space(compared=compared, judged=told, otherwise=otherwise)
 
 
 def peak(compared):
@@ -60,23 +62,33 @@ def test_a_gauge_without_a_trace_or_a_verdict_says_nothing(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("same", "given", "shift", "fitted"),
+    ("given", "of_gauge", "fitted"),
     [
-        (True, {}, 0.25, True),
-        (False, {}, 0.25, False),
-        (True, {"measured": None}, 0.25, False),
-        (True, {}, None, False),
+        ({}, {}, True), ({"likeness": 0.949}, {}, False), ({"gain": -0.1}, {}, False), ({"shift": None}, {}, False),
+        ({}, {"measured": None}, False), ({"better": [Space(changes=("shift",))]}, {}, False),
+        ({"shift": 0.0}, {}, True),
     ],
+)  # fmt: skip
+def test_its_tooth_has_an_angle_where_shapes_are_alike_and_the_angle_was_fitted(monkeypatch, given, of_gauge, fitted):
+    one = told(monkeypatch, beside(**given), **of_gauge)
+    place = "I", "pinion", "driver", "trace.csv"
+    expected = gauges_together.TraceZero(place, 3, 25, given.get("shift", 0.25)) if fitted else None
+    assert one.zero == expected
+
+
+@pytest.mark.parametrize(
+    ("kinds", "same"),
+    [((), True), (("scale", "shape"), True), (("load",), True), (("place",), True), (("shape",), False)],
 )
-def test_its_tooth_has_an_angle_where_the_shapes_agree_and_the_angle_was_fitted(
-    monkeypatch, same, given, shift, fitted
-):
-    one = told(monkeypatch, beside(shift=shift), same, **given)
-    assert one.alike is same
-    if not fitted:
-        assert one.zero is None
+def test_a_named_cause_explains_a_trace_and_only_one_of_size_may_be_common(monkeypatch, kinds, same):
+    data = beside(kinds=kinds)
+    one = told(monkeypatch, data)
+    assert (one.explained, one.alike) == (bool(kinds), same)
+    assert not told(monkeypatch, data, same=False).alike
+    if not kinds:
+        assert one.cause is None
         return
-    assert one.zero == gauges_together.TraceZero(("I", "pinion", "driver", "trace.csv"), 3, 25, 0.25)
+    assert one.cause == gauges_together.NamedCause("gauge", "g", "I", data.otherwise.ranked, 3)
 
 
 @pytest.mark.parametrize(
