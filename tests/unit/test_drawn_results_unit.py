@@ -26,7 +26,8 @@ from fegear.results.gear.drawing import pair_figure
 from fegear.results.gear.drawing_data import Drawing
 from fegear.results.gear.path_marks import path_marks, roll_marks
 from fegear.results.pair.loaded_teeth import pitch_marks
-from fegear.results.train.dynamic_factor import DYNAMIC_FACTOR, DynamicFactorData
+from fegear.results.train.dynamic_factor import DYNAMIC_FACTOR
+from fegear.results.train.dynamic_factor_data import DynamicFactorData
 from fegear.results.train.mesh_force_lines import MOST_HARMONICS, SpectrumData
 from fegear.results.train.mesh_force_spectrum import MESH_FORCE_SPECTRUM
 from fegear.results.train.natural_modes import NATURAL_MODES, ModesData
