@@ -151,7 +151,7 @@ def test_flanks_over_a_revolution_are_followed_for_all_teeth_of_the_driver_and_s
         stress_over_revolution, "wide_stress_over_revolution", lambda followed, member: (followed.teeth, member)
     )
     monkeypatch.setattr(stress_over_revolution, "usual_errors", lambda one, other: (("e", *one), ("e", *other)))
-    monkeypatch.setattr(mesh_stiffness_revolution, "_by_tooth", lambda one, gear: (one, gear))
+    monkeypatch.setattr(mesh_stiffness_revolution, "by_tooth", lambda one, gear: (one, gear))
     monkeypatch.setattr(mesh_stiffness_revolution, "_data", lambda asked, pair, over, stress: Data(pair, over, stress))
     revolving = SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(teeth=23)))
     work = SimpleNamespace(progress=fractions.append)

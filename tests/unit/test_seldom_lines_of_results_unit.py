@@ -15,7 +15,7 @@ from fegear.results import forecasts
 from fegear.results.gear import crack_shown
 from fegear.results.gear.crosscheck_answer import said_of_helical, said_of_single_contact, said_of_stiffness
 from fegear.results.gear.crosscheck_iso import IsoPair
-from fegear.results.pair import mesh_stiffness_revolution
+from fegear.results.pair import mesh_stiffness_revolution, root_stress_of_teeth
 from fegear.results.planetary.compound_set import _answer
 from fegear.results.relief.relief_over_face_sheet import _figure, _grind
 from fegear.results.relief.tolerance_data import Sampled
@@ -253,7 +253,7 @@ def test_stresses_of_teeth_stand_in_meshing_order_over_their_median(member, want
     """A tooth's own number times 10 MPa, and 50 for tooth 0: the median is 30."""
     largest = np.array([50.0, 10.0, 20.0, 30.0, 40.0])
     found = SimpleNamespace(teeth=5, member=member, largest=largest, largest_error=0.1 * largest)
-    rows = mesh_stiffness_revolution._by_tooth(found, "a")
+    rows = root_stress_of_teeth.by_tooth(found, "a")
     assert rows.gear == "a"
     # row n is the n-th tooth to mesh; its number is the way round that it is
     assert np.argsort(rows.tooth).tolist() == list(range(5))
@@ -262,7 +262,7 @@ def test_stresses_of_teeth_stand_in_meshing_order_over_their_median(member, want
     assert rows.root_tension_change == pytest.approx([one / 30.0 - 1.0 for one in of_tooth])
     assert rows.root_tension_error.tolist() == pytest.approx([0.1 * one for one in of_tooth])
     bare = SimpleNamespace(**vars(found) | {"largest_error": None})
-    assert mesh_stiffness_revolution._by_tooth(bare, "a").root_tension_error is None
+    assert root_stress_of_teeth.by_tooth(bare, "a").root_tension_error is None
 
 
 @pytest.mark.parametrize(("listed", "said"), [((1, 31), 0), ((7, 31), 1), ((7, 5), 2), ((20, 31), 0)])
@@ -270,7 +270,7 @@ def test_fewer_rows_than_teeth_are_explained(listed, said):
     gears = {"driver": SimpleNamespace(teeth=20), "driven": SimpleNamespace(teeth=31)}
     stress = [SimpleNamespace(tooth=np.arange(n), gear=name) for n, name in zip(listed, "ab", strict=True)]
     data = SimpleNamespace(stress=stress, pair=SimpleNamespace(gear=gears.get), base_pitches=7)
-    notes = list(mesh_stiffness_revolution._not_listed(SimpleNamespace(name="I", data=data)))
+    notes = list(root_stress_of_teeth.not_listed(SimpleNamespace(name="I", data=data)))
     assert len(notes) == said
     assert not said or "gear a is listed for 7 of its 20 identical teeth: the meshing repeats after 7" in notes[0]
     assert said < 2 or "gear b is listed for 5 of its 31" in notes[1]

@@ -34,7 +34,7 @@ from fegear.contact.plane.sidebands import (
     indicator_errors,
     revolution_orders,
 )
-from fegear.contact.plane.stress_over_revolution import StressOfTeeth, stress_over_revolution
+from fegear.contact.plane.stress_over_revolution import stress_over_revolution
 from fegear.engine.citation import Citation
 from fegear.engine.sheet.answer import Answer
 from fegear.engine.sheet.chart import Chart, Line, Over
@@ -48,6 +48,7 @@ from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS
 from fegear.results.pair.loaded_teeth import ODD_WIDE, check_teeth, over_revolution_task, plane_pairs, solid_pairs
+from fegear.results.pair.root_stress_of_teeth import CHART_OF_TEETH, TABLE_OF_TEETH, StressByTooth, by_tooth, not_listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -104,17 +105,6 @@ class LoadsOnTeeth:
     driven_tooth: Index = shown("", "number of the driven tooth in meshing order", table="loads")
     load: Array = shown("N", "load on the tooth pair", table="loads")
     share: Array = shown("", "share of the total load", table="loads")
-
-
-@dataclass(frozen=True)
-class StressByTooth:
-    """Largest root stress of every tooth of a gear on its way through the mesh, in meshing order."""
-
-    gear: str
-    tooth: Index = shown("", "number of the tooth in meshing order", table="teeth")
-    root_tension: Array = shown("MPa", "maximum root stress, tension side", table="teeth")
-    root_tension_change: Array = shown("%", "change from the median of all teeth", table="teeth")
-    root_tension_error: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -229,7 +219,7 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
     work.progress(0.6)
     engagement, load, shifted = loaded.engagement, loaded.nominal, loaded.shifted
     stress = tuple(
-        _by_tooth(stress_over_revolution(engagement, load, member, positions=POSITIONS, shifted=shifted), gear)
+        by_tooth(stress_over_revolution(engagement, load, member, positions=POSITIONS, shifted=shifted), gear)
         for member, gear in zip(MEMBERS, asked.gears, strict=True)
         if loaded.spec.compliance == "fe" and loaded.spec.table is None
     )
@@ -242,7 +232,7 @@ def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) ->
 
     followed = follow_flanks(revolving, revolving.pair.driver.teeth, lambda part: work.progress(0.8 * part))
     stresses = usual_errors(*(wide_stress_over_revolution(followed, member) for member in MEMBERS))
-    stress = tuple(_by_tooth(one, gear) for one, gear in zip(stresses, asked.gears, strict=True))
+    stress = tuple(by_tooth(one, gear) for one, gear in zip(stresses, asked.gears, strict=True))
     return replace(_data(asked, revolving.pair, followed.over, stress), positions=followed.over.x.size)
 
 
@@ -269,28 +259,6 @@ def _faces(asked: RevolutionInputs, loaded: LoadedPair, over: OverRevolution) ->
             number = meshing_order(order, known.gear.teeth, member)
             if known.from_middle(number) in known.fine.closing:
                 yield faces_in_mesh(loaded.engagement, over, member, known, number)
-
-
-def _by_tooth(found: StressOfTeeth, gear: str) -> StressByTooth:
-    """In meshing order; of a gear whose teeth are all alike only those that mesh until the same teeth come again."""
-    order = np.array([meshing_order(tooth, found.teeth, found.member) for tooth in range(found.teeth)])
-    at = np.argsort(order)
-    largest = found.largest[at]
-    error = None if found.largest_error is None else found.largest_error[at]
-    return StressByTooth(gear, order[at], largest, largest / np.median(largest) - 1.0, error)
-
-
-def _not_listed(seen: Seen) -> Iterator[str]:
-    """Why a table of root stress has fewer rows than its gear has teeth."""
-    data: RevolutionData = seen.data
-    for member, one in zip(MEMBERS, data.stress, strict=False):
-        teeth = data.pair.gear(member).teeth
-        if 1 < one.tooth.size < teeth:
-            yield (
-                f"Pair {seen.name}: root stress of gear {one.gear} is listed for {one.tooth.size} of its "
-                f"{teeth} identical teeth: the meshing repeats after {data.base_pitches} base pitches, counted from "
-                "the mesh of tooth 0 with tooth 0 of the other gear."
-            )
 
 
 def _closing(seen: Seen) -> Iterator[str]:
@@ -353,10 +321,7 @@ _SHEET = Sheet(
             "tooth_loads_revolution_{name}", "Load sharing of {name} over {d.base_pitches} base pitches",
             (Every("loads"),), of="loads",
         ),
-        Rows(
-            "root_stress_teeth_{name}_{one.gear}", "Maximum root stress of every tooth of gear {one.gear} in {name}",
-            (Every("teeth"), Off("root_tension", "root_tension_error")), each="stress",
-        ),
+        TABLE_OF_TEETH,
         Rows(
             "mesh_stiffness_orders_{name}", "Orders of transmission error and mesh stiffness of {name}",
             (Every("orders"),), of="orders", matlab=True,
@@ -401,12 +366,7 @@ _SHEET = Sheet(
             tuple(Over("mesh_order", (Line(key, kind="stems"),)) for key in ("te", "mesh_stiffness")),
             of="orders",
         ),
-        Chart(
-            "root_stress_teeth_{name}_{one.gear}", "Root stress of every tooth of gear {one.gear} in pair {name}",
-            "Gear {one.gear}: maximum root stress (tension side) of every tooth over its engagement.",
-            (Over("tooth", (Line("root_tension", kind="points", error="root_tension_error"),)),),
-            each="stress",
-        ),
+        CHART_OF_TEETH,
     ),
     answer=Answer(
         _answer, figure="mesh_stiffness_revolution_{name}", rank="mesh_stiffness_min",
@@ -420,7 +380,7 @@ _SHEET = Sheet(
         ),
         _one_load,
         _closing,
-        _not_listed,
+        not_listed,
     ),
     settings={"positions": "positions", "base_pitches_solved": "found.solved"},
 )  # fmt: skip
