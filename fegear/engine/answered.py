@@ -14,6 +14,10 @@ if TYPE_CHECKING:
 MOST = 5
 
 
+class Deciding(str):
+    """A sentence of an answer that a reader decides by: said before other further sentences where room is short."""
+
+
 @dataclass(frozen=True, slots=True)
 class Answered:
     """What one result comes to.

@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fegear.base.printed import in_words, rounded, unit_said
 from fegear.base.spoken_names import spoken
-from fegear.engine.answered import MOST, Answered
+from fegear.engine.answered import MOST, Answered, Deciding
 from fegear.engine.declared import stacked
 
 if TYPE_CHECKING:
@@ -129,13 +128,18 @@ def _once(groups: Sequence[Sequence[str]]) -> list[tuple[str, ...]]:
 
 
 def _within(groups: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """One sentence of each group, further ones as long as there is room, in the order of the groups."""
-    kept = [0] * len(groups)
-    for row, sentences in enumerate(zip_longest(*groups)):
-        for k, sentence in enumerate(sentences):
-            if sentence is not None and (row == 0 or sum(kept) < MOST):
-                kept[k] += 1
-    found = (sentence for count, group in zip(kept, groups, strict=True) for sentence in group[:count])
+    """One sentence of each group and further ones as long as there is room, in the order of the groups.
+
+    Of the further ones those that a reader decides by come first; one of these has room in any case.
+    """
+    kept = [set(range(min(1, len(group)))) for group in groups]
+    further = [(row, k) for k, group in enumerate(groups) for row in range(1, len(group))]
+    further.sort(key=lambda one: (not isinstance(groups[one[1]][one[0]], Deciding), *one))
+    first = sum(map(len, kept))
+    room = max(MOST - first, int(bool(further) and isinstance(groups[further[0][1]][further[0][0]], Deciding)))
+    for row, k in further[:room]:
+        kept[k].add(row)
+    found = (group[row] for group, rows in zip(groups, kept, strict=True) for row in sorted(rows))
     return tuple(dict.fromkeys(found))
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from fegear.base.printed import rounded
 from fegear.base.shown import shown
-from fegear.engine.answered import MOST, Answered
+from fegear.engine.answered import MOST, Answered, Deciding
 from fegear.engine.outcome import Outcome
 from fegear.engine.run_answer import answer_of_run, in_order, joined, plain_sentences
 from fegear.engine.sheet.answer import Answer
@@ -138,6 +138,16 @@ def test_a_run_says_one_sentence_of_every_wanted_result_and_five_in_all():
     assert found.figure == "b_I"
     many = [(f"s{n}", f"R{n}", True, (f"{n}.", "more.")) for n in range(7)]
     assert answer_of_run(*run_of(*many), [f"R{n}" for n in range(7)]).sentences == tuple(f"{n}." for n in range(7))
+
+
+def test_sentences_to_decide_by_come_before_other_further_ones():
+    four = [(f"s{n}", f"R{n}", True, (f"{n}.", f"{n} more.")) for n in range(4)]
+    wanted = [f"R{n}" for n in range(6)]
+    assert answer_of_run(*run_of(*four), wanted).sentences == ("0.", "0 more.", "1.", "2.", "3.")
+    four[2] = ("s2", "R2", True, ("2.", "2 more.", Deciding("2 resonates.")))
+    assert answer_of_run(*run_of(*four), wanted).sentences == ("0.", "1.", "2.", "2 resonates.", "3.")
+    six = [*four, *((f"s{n}", f"R{n}", True, (f"{n}.", "more.")) for n in (4, 5))]  # one of them has room in any case
+    assert answer_of_run(*run_of(*six), wanted).sentences == ("0.", "1.", "2.", "2 resonates.", "3.", "4.", "5.")
 
 
 def test_what_two_results_say_of_the_same_is_said_once_with_more_about_where_it_holds():

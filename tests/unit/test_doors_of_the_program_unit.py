@@ -151,12 +151,13 @@ def test_flanks_over_a_revolution_are_followed_for_all_teeth_of_the_driver_and_s
         stress_over_revolution, "wide_stress_over_revolution", lambda followed, member: (followed.teeth, member)
     )
     monkeypatch.setattr(stress_over_revolution, "usual_errors", lambda one, other: (("e", *one), ("e", *other)))
-    monkeypatch.setattr(mesh_stiffness_revolution, "by_tooth", lambda one, gear: (one, gear))
+    monkeypatch.setattr(mesh_stiffness_revolution, "by_tooth", lambda one, gear, cracked: (one, gear, cracked))
     monkeypatch.setattr(mesh_stiffness_revolution, "_data", lambda asked, pair, over, stress: Data(pair, over, stress))
     revolving = SimpleNamespace(pair=SimpleNamespace(driver=SimpleNamespace(teeth=23)))
     work = SimpleNamespace(progress=fractions.append)
-    found = mesh_stiffness_revolution._of_wide(SimpleNamespace(gears=("p", "w")), revolving, work)
-    assert found == Data(revolving.pair, over, ((("e", 23, "driver"), "p"), (("e", 23, "driven"), "w")), 7)
+    asked = SimpleNamespace(gears=("p", "w"), cracked=(("driven", (4,)),))
+    found = mesh_stiffness_revolution._of_wide(asked, revolving, work)
+    assert found == Data(revolving.pair, over, ((("e", 23, "driver"), "p", ()), (("e", 23, "driven"), "w", (4,))), 7)
     assert fractions == [0.4]
 
 

@@ -12,9 +12,11 @@ from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.motion_over_revolution import MotionOverRevolution
 from fegear.dynamics.motion.revolution_errors import revolution_errors, softer
 from fegear.dynamics.train.excitation import MeshExcitation
-from fegear.dynamics.train.mesh_resonance import mesh_resonance
+from fegear.dynamics.train.mesh_resonance import MeshResonance, mesh_resonance
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Mesh, Shaft, Train
+from fegear.engine.answered import Deciding
+from fegear.results.train.mesh_resonance_said import resonance_said
 
 PITCHES, SAMPLES, PARTS = 11, 64, 8
 PAIR = SimpleNamespace(gear=lambda member: SimpleNamespace(teeth=PITCHES))
@@ -127,3 +129,19 @@ def test_the_mode_of_the_mesh_is_that_in_which_its_teeth_deform():
     )  # fmt: skip
     found = mesh_resonance(SimpleNamespace(train=train, speed_ratio=1.0), 0, 10.0)
     assert found.frequency == pytest.approx(math.sqrt(5e8 * 0.01 / 1e-3) / (2.0 * math.pi), rel=1e-3)
+
+
+def test_the_nearest_resonance_is_said_with_what_occurs_at_the_speed():
+    rpm = 2.0 * math.pi / 60.0
+    far = MeshResonance(2, 1500.0 * rpm, -0.2, 800.0, 3000.0 * rpm)
+    assert list(resonance_said("I", None, 1.0)) == []
+    (said,) = resonance_said("I", far, 1200.0 * rpm)
+    assert isinstance(said, Deciding)
+    assert said == (
+        "Mesh I: resonance nearest to 1200 rpm: harmonic 2 of the mesh frequency meets a natural frequency at 1500 rpm "
+        "(+25 %); the mesh frequency meets 800 Hz at 3000 rpm."
+    )
+    (said,) = resonance_said("I", replace(far, off=0.01), 1515.0 * rpm, "the maximum")
+    assert said.startswith("Mesh I: the maximum, at 1515 rpm, is near a resonance: harmonic 2 of")
+    (said,) = resonance_said("I", far, 1200.0 * rpm, "the maximum")
+    assert said.startswith("Mesh I: resonance nearest to the maximum, at 1200 rpm: harmonic 2 of")

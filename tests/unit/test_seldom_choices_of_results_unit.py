@@ -89,18 +89,20 @@ def test_charts_in_time_are_those_of_the_motion_with_and_without_ripple(monkeypa
         @staticmethod
         def of(speeds, states, i, force):
             charts.append((speeds.tolist(), states, i, force))
-            return SimpleNamespace(speeds=speeds, of=states)
+            return SimpleNamespace(speeds=speeds, of=states, growing=np.ones(2, dtype=bool), worst=(1.2, 20.0))
 
     train = SimpleNamespace(mesh_index=lambda _: 1)
     data = SimpleNamespace(train=train, forces=[3.0, 7.0], speed_ratio=0.5, speed_of="a")
     monkeypatch.setattr("fegear.dynamics.train.charts.SpeedChart", Charted)
     monkeypatch.setattr(dynamic_factor, "gear_train", lambda _: data)
     monkeypatch.setattr(dynamic_factor, "carries_nothing", lambda *_: False)
+    monkeypatch.setattr("fegear.dynamics.train.mesh_resonance.mesh_resonance", lambda *given: given)
     monkeypatch.setattr(dynamic_factor, "replace", lambda one, **more: SimpleNamespace(**vars(one) | more))
     motion = SimpleNamespace(speeds=np.array([10.0, 20.0]), in_time=True)
     for still in ("still", None):
         upstream = {Task("motion"): SimpleNamespace(states="states", still=still)}
         found = dynamic_factor._compute(SimpleNamespace(mesh="II", motion=motion), upstream, None)
+        assert found.resonance == (data, 1, 20.0)  # nearest to the speed of the maximum
         assert found.chart.of == "states"
         assert found.chart.speeds.tolist() == [10.0, 20.0]  # of the named body again
         assert (None if found.still is None else found.still.of) == still

@@ -265,6 +265,29 @@ def test_stresses_of_teeth_stand_in_meshing_order_over_their_median(member, want
     assert root_stress_of_teeth.by_tooth(bare, "a").root_tension_error is None
 
 
+def test_the_stress_of_cracked_teeth_is_said_to_be_that_of_the_fillet_beside_the_crack():
+    """Of five teeth of a driven gear number 1 is relieved by its crack; 3 is cracked on its other side."""
+    largest = np.array([30.0, 3.0, 30.0, 30.5, 30.0])
+    found = SimpleNamespace(teeth=5, member="driven", largest=largest, largest_error=None)
+    rows = root_stress_of_teeth.by_tooth(found, "a", (1, 3))
+    assert rows.relieved == (1,)
+    assert rows.beside_cracks.tooth.tolist() == [1]
+    assert rows.beside_cracks.root_tension.tolist() == [3.0]
+    assert rows.clause.startswith("; tooth 1: fillet beside the crack")
+    seen = SimpleNamespace(name="I", data=SimpleNamespace(stress=[rows]))
+    (note,) = root_stress_of_teeth.beside_cracks(seen)
+    assert "cracked tooth 1 of gear a" in note
+    assert "(-90 %)" in note
+    assert "stress-intensity" in note
+    ordinary = root_stress_of_teeth.by_tooth(found, "a")
+    assert (ordinary.beside_cracks, ordinary.clause) == (None, "")
+    assert list(root_stress_of_teeth.beside_cracks(SimpleNamespace(data=SimpleNamespace(stress=[ordinary])))) == []
+    both = root_stress_of_teeth.by_tooth(
+        SimpleNamespace(**vars(found) | {"largest": largest - [0, 0, 0, 9, 0]}), "a", (1, 3)
+    )
+    assert "; teeth 1, 3: " in both.clause
+
+
 @pytest.mark.parametrize(("listed", "said"), [((1, 31), 0), ((7, 31), 1), ((7, 5), 2), ((20, 31), 0)])
 def test_fewer_rows_than_teeth_are_explained(listed, said):
     gears = {"driver": SimpleNamespace(teeth=20), "driven": SimpleNamespace(teeth=31)}

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: How far a pair's load may be from the mean mesh force that the torques give.
 LOAD_AGREES = 2e-3
+#: Inertia of a body beside its gears, and in place of them, over theirs: below these and above the last no one's.
+_LIGHT, _BARE, _HEAVY = 1e-4, 0.05, 1e5
 
 
 def train_part(scene: Scene) -> TrainPart:
@@ -119,6 +121,8 @@ class TrainInputs:
         Of each mesh.
     sources : mapping of str to str
         What the inertia of each body is made of, in words.
+    unlikely : mapping of str to float
+        Inertias that a case gives over that of the gears of their body, where that is far from any body's.
     assumed : bool
         Whether the body that speeds refer to is assumed: speeds are given, and not whose they are.
     ripple_means : mapping of str to float
@@ -130,6 +134,7 @@ class TrainInputs:
     spec: TrainSpec
     teeth: Mapping[str, MeshTeeth]
     sources: Mapping[str, str] = field(default_factory=dict, compare=False)
+    unlikely: Mapping[str, float] = field(default_factory=dict, compare=False)
     assumed: bool = field(default=False, compare=False)
     ripple_means: Mapping[str, float] = field(default_factory=dict)
     idle_ripple: bool = field(default=False, compare=False)
@@ -151,7 +156,8 @@ def train_inputs(scene: Scene) -> TrainInputs:
         name: " + ".join([*(_said(scene, gear) for gear in body.gears or ()), *(["inertia"] if body.inertia else [])])
         for name, body in part.body.items()
     }
-    still = TrainInputs(spec, {name: _teeth(scene, part, name) for name in part.mesh}, sources, assumed)
+    teeth = {name: _teeth(scene, part, name) for name in part.mesh}
+    still = TrainInputs(spec, teeth, sources, _unlikely(scene, part), assumed)
     # without its effect, ripple is nothing that a result depends on
     if not scene.case.effects.torque_ripple:
         return replace(still, idle_ripple=bool(part.torque_ripple))
@@ -168,6 +174,28 @@ def _inertia(scene: Scene, part: BodyPart) -> float:
     for gear_name in part.gears or ():
         inertia += (2.0 if gear_name in double else 1.0) * scene.gears[gear_name].mass_properties.inertia
     return inertia
+
+
+def _unlikely(scene: Scene, part: TrainPart) -> dict[str, float]:
+    """Given inertias over that of the gears of their body, in its meshes or its own, where the ratio is out of range.
+
+    A body whose gears are not counted otherwise is no lighter than these; beside them a hub or a shaft is no
+    thousandth, and no motor or flywheel is a hundred thousand times as heavy.
+    """
+    found = {}
+    for name, body in part.body.items():
+        meshed = (scene.case.pair[part.pair_of(mesh)] for mesh in part.mesh)
+        of_meshes = {
+            gear for mesh, pair in zip(part.mesh.values(), meshed, strict=True)
+            for member, gear in ((mesh.driver, pair.driver), (mesh.driven, pair.driven)) if member == name
+        }  # fmt: skip
+        gears = {scene.written.get(gear, gear) for gear in body.gears or of_meshes}
+        if not gears or not body.inertia:
+            continue
+        ratio = body.inertia / sum(scene.gears[gear].mass_properties.inertia for gear in gears)
+        if not (_LIGHT if body.gears else _BARE) <= ratio <= _HEAVY:
+            found[name] = ratio
+    return found
 
 
 def _teeth(scene: Scene, part: TrainPart, name: str) -> MeshTeeth:

@@ -48,7 +48,14 @@ from fegear.geometry.pair import MEMBERS, GearPair, Member
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.odd_gear import CRACKS
 from fegear.results.pair.loaded_teeth import ODD_WIDE, check_teeth, over_revolution_task, plane_pairs, solid_pairs
-from fegear.results.pair.root_stress_of_teeth import CHART_OF_TEETH, TABLE_OF_TEETH, StressByTooth, by_tooth, not_listed
+from fegear.results.pair.root_stress_of_teeth import (
+    CHART_OF_TEETH,
+    TABLE_OF_TEETH,
+    StressByTooth,
+    beside_cracks,
+    by_tooth,
+    not_listed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -218,8 +225,13 @@ def _compute(asked: RevolutionInputs, upstream: Upstream, work: Work) -> Revolut
     over = over_revolution(loaded.engagement, loaded.nominal, POSITIONS, loaded.shifted, pair.driver.teeth)
     work.progress(0.6)
     engagement, load, shifted = loaded.engagement, loaded.nominal, loaded.shifted
+    cracked = dict(asked.cracked)
     stress = tuple(
-        by_tooth(stress_over_revolution(engagement, load, member, positions=POSITIONS, shifted=shifted), gear)
+        by_tooth(
+            stress_over_revolution(engagement, load, member, positions=POSITIONS, shifted=shifted),
+            gear,
+            cracked.get(member, ()),
+        )
         for member, gear in zip(MEMBERS, asked.gears, strict=True)
         if loaded.spec.compliance == "fe" and loaded.spec.table is None
     )
@@ -232,7 +244,11 @@ def _of_wide(asked: RevolutionInputs, revolving: RevolvingFlanks, work: Work) ->
 
     followed = follow_flanks(revolving, revolving.pair.driver.teeth, lambda part: work.progress(0.8 * part))
     stresses = usual_errors(*(wide_stress_over_revolution(followed, member) for member in MEMBERS))
-    stress = tuple(by_tooth(one, gear) for one, gear in zip(stresses, asked.gears, strict=True))
+    cracked = dict(asked.cracked)
+    stress = tuple(
+        by_tooth(one, gear, cracked.get(member, ()))
+        for member, one, gear in zip(MEMBERS, stresses, asked.gears, strict=True)
+    )
     return replace(_data(asked, revolving.pair, followed.over, stress), positions=followed.over.x.size)
 
 
@@ -380,6 +396,7 @@ _SHEET = Sheet(
         ),
         _one_load,
         _closing,
+        beside_cracks,
         not_listed,
     ),
     settings={"positions": "positions", "base_pitches_solved": "found.solved"},

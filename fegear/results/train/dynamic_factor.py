@@ -20,7 +20,7 @@ from fegear.engine.sheet.number import Number
 from fegear.engine.sheet.rows import Cell, Off, Rows
 from fegear.engine.sheet.sheet import Remark, Sheet
 from fegear.engine.stage import Forecast, Stage, Task, Upstream, Work
-from fegear.results.train.dynamic_factor_data import DynamicFactorData, ShownFactors
+from fegear.results.train.dynamic_factor_data import DynamicFactorData, ShownFactors, held_speeds
 from fegear.results.train.gear_train import (
     RPM,
     carries_nothing,
@@ -30,6 +30,7 @@ from fegear.results.train.gear_train import (
     needs_train,
     pull_remarks,
 )
+from fegear.results.train.mesh_resonance_said import resonance_said
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,6 +80,7 @@ def _inputs(scene: Scene, name: str) -> FactorInputs:
 def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFactorData:
     from fegear.dynamics.train.charts import SpeedChart
     from fegear.dynamics.train.dynamic_factor import linear_chart
+    from fegear.dynamics.train.mesh_resonance import mesh_resonance
     from fegear.dynamics.train.tooth_force import largest_pull
 
     data, motion = gear_train(upstream), asked.motion
@@ -97,7 +99,8 @@ def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFact
         if data.ripple:
             still = linear_chart(replace(data, ripple=()), i, speeds, asked.positions, asked.harmonics)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
-    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull, still)
+    resonance = mesh_resonance(data, i, held_speeds(chart).worst[1])
+    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull, still, resonance)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -177,6 +180,13 @@ def _lowest(seen: Seen) -> Iterator[str]:
         )
 
 
+def _resonance(seen: Seen) -> Iterator[str]:
+    """The resonance nearest to the speed of the maximum, and whether that explains it."""
+    if seen.data.chart is not None:
+        what = "the maximum" if seen.data.several else ""
+        yield from resonance_said(seen.name, seen.data.found.resonance, seen.data.largest.speed, what)
+
+
 def _lost(seen: Seen) -> Iterator[str]:
     """Whether teeth lose contact, and whether the other flanks carry load instead."""
     if seen.data.chart is not None and seen.data.parting:
@@ -192,6 +202,7 @@ _SHEET = Sheet(
     answer=Answer(
         "Mesh {name}: maximum dynamic factor {v[largest_dynamic_factor]} at {v[speed_of_largest]} (force on one tooth "
         "pair over the mean mesh force).",
+        _resonance,
         _lowest,
         _lost,
         "Mesh {name}: without torque ripple at most {v[largest_dynamic_factor_without_ripple]}.",

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.dynamics.motion.motion_spec import MotionSpec
     from fegear.dynamics.train.charts import SpeedChart
+    from fegear.dynamics.train.mesh_resonance import MeshResonance
     from fegear.dynamics.train.tooth_force import Pull
 
 
@@ -33,6 +34,8 @@ class DynamicFactorData:
         How far the force of the linearised mesh falls below zero.
     still : SpeedChart or None
         The same without torque ripple, where there is any.
+    resonance : MeshResonance or None
+        Nearest to the speed of the largest factor.
     """
 
     chart: SpeedChart | None
@@ -40,6 +43,7 @@ class DynamicFactorData:
     in_time: bool = False
     pull: Pull | None = None
     still: SpeedChart | None = None
+    resonance: MeshResonance | None = None
 
 
 def _errors(chart: SpeedChart, tolerance: float) -> Array:
@@ -61,6 +65,11 @@ class LargestFactor:
         "", "over the speeds, without torque ripple", name="largest_dynamic_factor_without_ripple"
     )
     contact_loss: float | None = shown("", "fraction of time", name="largest_contact_loss")
+
+
+def held_speeds(chart: SpeedChart) -> SpeedChart:
+    """A chart at the speeds with bounded motion; at all where there are none."""
+    return chart if chart.growing.all() else chart.at(~chart.growing)
 
 
 @dataclass(frozen=True)
@@ -113,8 +122,7 @@ class ShownFactors:
     @cached_property
     def held(self) -> SpeedChart:
         """At the speeds with bounded motion; at all where there are none."""
-        growing = self.known.growing
-        return self.known.at(~growing) if not growing.all() else self.known
+        return held_speeds(self.known)
 
     @property
     def largest(self) -> LargestFactor:

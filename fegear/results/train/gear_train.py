@@ -13,7 +13,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.base.notes import assuming, neglecting
-from fegear.base.printed import percent
+from fegear.base.printed import figures, percent
 from fegear.base.shown import shown, shows
 from fegear.case.built.odd_gears import odd_gears_of
 from fegear.case.built.pair_checks import check_odd_teeth, check_relief
@@ -35,7 +35,7 @@ from fegear.results.pair.loaded_teeth import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded_pair import LoadedWidePair
@@ -273,6 +273,16 @@ def _whose_speeds(seen: Seen) -> list[str]:
     return [said]
 
 
+def _unlikely(seen: Seen) -> Iterator[str]:
+    """Inertias that look like another unit."""
+    for name, ratio in seen.asked.unlikely.items():
+        (given,) = (body.inertia for body in seen.asked.spec.bodies if body.name == name)
+        yield assuming(
+            f"train.body.{name}.inertia is {figures(ratio, 2)} times the inertia of its gears (body in all "
+            f"{figures(given, 3)} kg m²): check the unit, 1 kg m² = 10⁶ kg mm²."
+        )
+
+
 def _on_axial_force(seen: Seen) -> str:
     return neglecting(
         f"Mesh {seen.key}: axial force of {seen.one.axial_force:.5g} N on bearings assumed rigid; the train includes "
@@ -295,6 +305,7 @@ _SHEET = Sheet(
     ),
     remarks=(
         _whose_speeds,
+        _unlikely,
         Remark(
             neglecting("train.torque_ripple ignored because effects.torque_ripple is off (constant torques)."),
             when=lambda seen: seen.asked.idle_ripple,

@@ -13,7 +13,7 @@ import numpy as np
 
 from fegear.base.effects import MOTION_EFFECTS
 from fegear.base.notes import assuming
-from fegear.base.printed import figures, percent
+from fegear.base.printed import percent
 from fegear.case.built.train import motion_spec, train_part
 from fegear.engine.citation import Citation, citing
 from fegear.engine.sheet.answer import Answer
@@ -26,6 +26,7 @@ from fegear.results import forecasts
 from fegear.results.pair.loaded_teeth import pair_over_revolution
 from fegear.results.pair.mesh_stiffness_revolution import INDICATORS
 from fegear.results.train.gear_train import RPM, gear_train, needs_meshes, needs_one_speed, needs_train, own_meshes
+from fegear.results.train.mesh_resonance_said import resonance_said
 from fegear.results.train.motion import check_motion
 
 if TYPE_CHECKING:
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from fegear.dynamics.motion.motion_over_revolution import MotionOverRevolution
     from fegear.dynamics.motion.motion_spec import MotionSpec
     from fegear.dynamics.train.gear_train import TrainMesh
-    from fegear.dynamics.train.mesh_resonance import MeshResonance
     from fegear.engine.sheet.seen import Seen
 
 
@@ -151,20 +151,8 @@ def _speed(seen: Seen) -> str:
 
 
 def _resonance(seen: Seen) -> Iterator[str]:
-    """The resonance of the mesh that is nearest to the speed, and whether the speed is near to it."""
-    found: MeshResonance | None = seen.data.resonance
-    if found is None:
-        return
-    which = "the mesh frequency" if found.harmonic == 1 else f"harmonic {found.harmonic} of the mesh frequency"
-    away = percent(1.0 / (1.0 + found.off) - 1.0, signed=True)
-    yield (
-        f"Mesh {seen.name}: {_speed(seen)} is near a resonance: "
-        if found.near
-        else f"Mesh {seen.name}: resonance nearest to {_speed(seen)}: "
-    ) + (
-        f"{which} meets a natural frequency at {figures(found.at * RPM, 4)} rpm ({away}); "
-        f"the mesh frequency meets {figures(found.frequency, 4)} Hz at {figures(found.speed * RPM, 4)} rpm."
-    )
+    """The resonance of the mesh that is nearest to the speed."""
+    yield from resonance_said(seen.name, seen.data.resonance, float(seen.asked.motion.speeds[0]))
 
 
 _SHEET = Sheet(
