@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from fegear.contact.plane.stress_over_revolution import StressOfTeeth
     from fegear.engine.sheet.seen import Seen
-    from fegear.results.pair.mesh_stiffness_revolution import RevolutionData
 
 #: Change of the root stress from which on a cracked tooth is called relieved.
 _RELIEVED = -0.02
@@ -81,7 +80,7 @@ def by_tooth(found: StressOfTeeth, gear: str, cracked: tuple[int, ...] = ()) -> 
 
 def not_listed(seen: Seen) -> Iterator[str]:
     """Why a table of root stress has fewer rows than its gear has teeth."""
-    data: RevolutionData = seen.data
+    data = seen.data
     for member, one in zip(MEMBERS, data.stress, strict=False):
         teeth = data.pair.gear(member).teeth
         if 1 < one.tooth.size < teeth:
