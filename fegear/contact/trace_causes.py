@@ -42,6 +42,8 @@ _TOGETHER = 8.0
 _AS_LIKELY = 4.0
 #: Gain as chi squared, and residual beside the stated curve over its range and over the noise, from which on one is.
 _CERTAIN, _LARGE, _OF_NOISE = 50.0, 0.006, 2.0
+#: Residual over the range of the curve from which on it is said what explains most of it where nothing explains it.
+_UNEXPLAINED = 0.01
 #: Standard errors by which a number differs from the stated one.
 _DIFFERS = 2.0
 #: Tolerances by which the scale may differ.
@@ -164,9 +166,10 @@ def likeliest_causes(
         math.hypot(one.noise, _OFF * float(np.ptp(curve))) for one, (_, curve) in zip(traces, as_stated, strict=True)
     ]
     stated = _Beside(traces, as_stated, least)
+    sizes = [float(np.ptp(curve)) for _, curve in as_stated]
     if not any(
-        rms >= max(_LARGE * float(np.ptp(curve)), _OF_NOISE * one.noise)
-        for rms, (_, curve), one in zip(stated.rms, as_stated, traces, strict=True)
+        rms >= max(_LARGE * size, _OF_NOISE * one.noise)
+        for rms, size, one in zip(stated.rms, sizes, traces, strict=True)
     ):
         return Causes(rms=stated.rms[-1])
     found = _ranked([one for one in _sought(traces, possible, curves_of, stated) if one.explained > _SOME])
@@ -174,6 +177,8 @@ def likeliest_causes(
         return Causes(rms=stated.rms[-1])
     count, best = stated.count, (1.0 - found[0].explained) * stated.squares
     if best > _LEAVES * stated.squares or stated.squares - best < _CERTAIN * max(best / count, 1.0):
+        if all(rms < _UNEXPLAINED * size for rms, size in zip(stated.rms, sizes, strict=True)):
+            return Causes(rms=stated.rms[-1])
         return Causes(tuple(sorted(found, key=lambda one: -one.explained)), 0, stated.rms[-1])
     alike = [
         one for one in found
