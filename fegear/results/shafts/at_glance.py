@@ -124,7 +124,7 @@ class BearingAtGlance:
                          name="life_hours_reverse", default=math.nan)  # fmt: skip
     seat: BearingSeat = field(default_factory=BearingSeat)
     static: float = shown("", "static safety factor C_0/P_0 under this load, ISO 76 (C_0 of `catalogue`, otherwise "
-                          "estimated from the dimensions, within some 20 %)", name="s_0", default=math.nan)  # fmt: skip
+                          "estimated from the dimensions)", name="s_0", default=math.nan)  # fmt: skip
 
     @property
     def least(self) -> float:
