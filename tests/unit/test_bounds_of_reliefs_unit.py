@@ -1,5 +1,6 @@
 """Reliefs deeper than teeth and what would do instead; tolerances of tip reliefs, and which of them decides."""
 
+import math
 import re
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -153,9 +154,10 @@ def test_a_chart_allows_all_that_lies_between_the_ends_and_the_form_besides():
     np.testing.assert_allclose(low, np.min(each, axis=0), atol=1e-18)
     np.testing.assert_allclose(high, np.max(each, axis=0) + 2e-6, atol=1e-18)
     assert (low[-1], high[-1]) == pytest.approx((15e-6, 27e-6))
+    # Without a relief the profile slope is off, straight up to the tip.
+    slope = 5e-6 * (roll - 0.25) / 0.15
     nothing = ALLOWED.limits(GEAR, replace(TIP, amount=0.0), roll)
-    assert (nothing[0] == 0.0).all()
-    assert (nothing[1] == 2e-6).all()
+    np.testing.assert_allclose(nothing, (-slope, slope + 2e-6), atol=1e-18)
 
 
 def test_half_of_a_tolerance_is_that_of_its_number():
@@ -167,20 +169,31 @@ def test_half_of_a_tolerance_is_that_of_its_number():
 
 @pytest.mark.parametrize("ground", [(True, True), (True, False), (False, False)])
 def test_the_tolerance_decides_by_which_halved_least_is_left_under_each_load(monkeypatch, ground):
-    """Errors made up, straight in all deviations: at the first load amounts of the driver count most, then lengths."""
+    """Errors made up, straight in all deviations: at the first load amounts of the driver count most, then lengths.
+
+    Of a gear that is not ground the profile slope counts as an amount does, to either side, and no length.
+    """
     weights = np.array([[3.0, 1.0, 2.0, 1.0], [1.0, 2.0, 1.0, 6.0]])
     tips = tuple(TIP if one else replace(TIP, amount=0.0) for one in ground)
-    gears = SimpleNamespace(driver=GEAR, driven=GEAR, gear=lambda member: GEAR)
+    gears = SimpleNamespace(
+        driver=GEAR, driven=GEAR, gear=lambda member: GEAR, x_start=-5e-3, x_end=5e-3,
+        roll_angle=lambda x, member: 0.3 + (x if member == "driver" else -x) / GEAR.base_radius,
+    )  # fmt: skip
     engagement = SimpleNamespace(pair=gears)
+
+    def deviations(one, is_ground):
+        if one is UNMODIFIED:
+            return [0.0, 0.0]
+        if not is_ground:
+            assert sorted((one.start, one.end)) == pytest.approx([0.3 - 0.125, 0.3 + 0.125])
+            return [math.copysign(one.amount, one.end - one.start) / 20e-6, 0.0]
+        return [one.amount / 20e-6 - 1.0, (one.end - one.start) / 0.1 - 1.0]
 
     def on_grid(table, both, loads):
         assert table == ("table", 6)
         found = []
         for pair in both:
-            off = []
-            for one in pair:
-                length = 0.0 if one is UNMODIFIED else (one.end - one.start) / 0.1 - 1.0
-                off += [0.0 if one is UNMODIFIED else one.amount / 20e-6 - 1.0, length]
+            off = [each for one, of_one in zip(pair, ground, strict=True) for each in deviations(one, of_one)]
             found.append(1e-6 * (5.0 + weights @ np.array(off)))
         return np.array(found)
 
@@ -189,16 +202,14 @@ def test_the_tolerance_decides_by_which_halved_least_is_left_under_each_load(mon
     most = np.array([9e-6, 8e-6])
     allowed = ALLOWED, replace(ALLOWED, length=0.4e-3)
     found = tolerated.decisive_tolerances(engagement, tips, allowed, (100.0, 200.0), most)
-    parts = np.array([0.25, 0.2, 0.25, 0.1]) * np.repeat(ground, 2)
-    if not any(ground):
-        assert found == (None, None)
-        return
+    parts = np.array([0.25, 0.2 * ground[0], 0.25, 0.1 * ground[1]])
     whole = 5.0 + weights @ parts
     half = whole[:, None] - 0.5 * weights * parts
     for load, one in enumerate(found):
-        choices = [k for k in range(4) if ground[k // 2]]
+        choices = [k for k in range(4) if ground[k // 2] or k % 2 == 0]
         best = min(choices, key=lambda k, load=load: half[load, k])
-        assert (one.member, one.number) == (("driver", "driven")[best // 2], ("amount", "length")[best % 2])
+        numbers = ("amount", "length") if ground[best // 2] else ("profile_slope",)
+        assert (one.member, one.number) == (("driver", "driven")[best // 2], numbers[best % 2])
         assert one.most == pytest.approx(most[load] * half[load, best] / whole[load], rel=1e-9)
         assert one.given == (5e-6, (0.8e-3, 0.4e-3)[best // 2])[best % 2]
 
